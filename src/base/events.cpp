@@ -1,0 +1,50 @@
+#include "base/events.hpp"
+
+#include <array>
+
+namespace eulastic {
+namespace {
+
+constexpr int verb_count = static_cast<int>(Verb::count);
+constexpr int stage_count = static_cast<int>(Stage::count);
+constexpr std::array<const char *, verb_count> verb_names = {
+    "EulExchange", "EulWallGhosts", "EulMomentum",  "EulDivergence", "EulACM",  "EulSMAC",
+    "EulCorrect",  "EulFraction",   "EulLeftCauchy", "EulBodies",     "EulSums", "EulWrite"};
+constexpr std::array<const char *, stage_count> stage_names = {"Setup", "Step", "Output"};
+
+PetscLogEvent verb_ids[verb_count];
+PetscLogStage stage_ids[stage_count];
+bool registered = false;
+
+}  // namespace
+
+PetscErrorCode register_events() {
+  PetscFunctionBeginUser;
+  if (registered) PetscFunctionReturn(0);
+  PetscClassId class_id;
+  PetscCall(PetscClassIdRegister("Eulastic", &class_id));
+  for (int e = 0; e < verb_count; ++e) PetscCall(PetscLogEventRegister(verb_names[e], class_id, &verb_ids[e]));
+  for (int s = 0; s < stage_count; ++s) PetscCall(PetscLogStageRegister(stage_names[s], &stage_ids[s]));
+  registered = true;
+  PetscFunctionReturn(0);
+}
+
+VerbScope::VerbScope(Verb verb) : verb_(verb) {
+  if (registered) (void)PetscLogEventBegin(verb_ids[static_cast<int>(verb)], 0, 0, 0, 0);
+}
+
+VerbScope::~VerbScope() {
+  if (!registered) return;
+  (void)PetscLogFlops(flops_);
+  (void)PetscLogEventEnd(verb_ids[static_cast<int>(verb_)], 0, 0, 0, 0);
+}
+
+StageScope::StageScope(Stage stage) {
+  if (registered) (void)PetscLogStagePush(stage_ids[static_cast<int>(stage)]);
+}
+
+StageScope::~StageScope() {
+  if (registered) (void)PetscLogStagePop();
+}
+
+}  // namespace eulastic

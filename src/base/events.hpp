@@ -1,0 +1,51 @@
+// The verbs and stages that -log_view shows, as scopes that end themselves.
+#pragma once
+
+#include "base/petsc.hpp"
+
+namespace eulastic {
+
+enum class Verb {
+  exchange,
+  wall_ghosts,
+  momentum,
+  divergence,
+  acm,
+  smac,
+  correction,
+  solid_fraction,
+  left_cauchy_green,
+  bodies,
+  sums,
+  write,
+  count
+};
+
+enum class Stage { setup, step, output, count };
+
+/// Registers all events and stages; call once after PetscInitialize.
+PetscErrorCode register_events();
+
+/// Logs one verb from construction to destruction; `flops` may be added at any time in between.
+class VerbScope {
+public:
+  explicit VerbScope(Verb verb);
+  ~VerbScope();
+  VerbScope(const VerbScope &) = delete;
+  VerbScope &operator=(const VerbScope &) = delete;
+  void flops(double count) noexcept { flops_ += count; }
+
+private:
+  Verb verb_;
+  double flops_ = 0;
+};
+
+class StageScope {
+public:
+  explicit StageScope(Stage stage);
+  ~StageScope();
+  StageScope(const StageScope &) = delete;
+  StageScope &operator=(const StageScope &) = delete;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,54 @@
+// Sums that do not depend on order, ranks, threads or vector length, and a hash of the state.
+//
+// A row is added in blocks of 256 cells by absolute x index, each with eight fixed lanes (i mod 8) and a fixed
+// tree; the block sums enter a fixed-point superaccumulator (67 limbs of 32 bits cover 2^-1074 ... 2^1024; cf.
+// Kulisch). All sums of a verb share one Allreduce. A non-finite block makes its sum NaN.
+#pragma once
+
+#include "field/field_block.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace eulastic {
+
+/// One exact sum of doubles. Good for 2^31 additions.
+class Superaccumulator {
+public:
+  static constexpr int limbs = 67;
+  static constexpr int words = limbs + 1;  ///< the last one counts non-finite terms
+
+  void add(double value) noexcept;
+  /// The correctly rounded sum of everything added, NaN if any term was not finite.
+  double value() const noexcept;
+
+private:
+  std::array<std::int64_t, words> word_{};
+};
+
+/// Eight-lane sum of values[0..n), at most one block, the first value having absolute index `first`.
+double lane_sum(const double *values, int n, std::int64_t first) noexcept;
+
+/// `count` exact sums over all ranks.
+class ExactSums {
+public:
+  static constexpr int block = 256;
+
+  explicit ExactSums(int count) : sums_(count) {}
+  void clear() noexcept { std::fill(sums_.begin(), sums_.end(), Superaccumulator{}); }
+  void add(int s, double value) noexcept { sums_[s].add(value); }
+  /// Adds values[0..n), a piece of a row that starts at absolute x index `first`. Pieces of one block on one rank
+  /// must be added together (a whole block or all of the row) for the same bits.
+  void add_row(int s, const double *values, int n, std::int64_t first) noexcept;
+  /// Sums over all ranks with one Allreduce; returns `count` doubles.
+  PetscErrorCode reduce(MPI_Comm comm, double *result);
+
+private:
+  std::vector<Superaccumulator> sums_;
+};
+
+/// Rank-independent hash of the owned points of `block` (each field with its own staggering), to be added up over
+/// blocks and then over ranks (MPI_SUM on uint64). `salt` tells blocks apart.
+std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
+
+}  // namespace eulastic

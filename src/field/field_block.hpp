@@ -1,0 +1,43 @@
+// Fields of one group in one contiguous, ghosted, zero-initialised structure-of-arrays block.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+namespace eulastic {
+
+class FieldBlock {
+public:
+  FieldBlock() = default;
+  /// `count` fields on `grid`, all zero, 64-byte aligned.
+  FieldBlock(const Grid &grid, int count);
+
+  explicit operator bool() const noexcept { return count_ > 0; }
+  int count() const noexcept { return count_; }
+  const Layout &layout() const noexcept { return layout_; }
+  double *data() noexcept { return data_.get(); }
+  const double *data() const noexcept { return data_.get(); }
+  std::size_t bytes() const noexcept { return sizeof(double) * layout_.size * count_; }
+
+  View operator[](int f) noexcept { return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz}; }
+  ConstView operator[](int f) const noexcept {
+    return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
+  }
+
+  /// Sets field f to one value, ghosts and padding included.
+  void fill(int f, double value) noexcept;
+  void swap(FieldBlock &other) noexcept { std::swap(*this, other); }
+
+private:
+  struct Free {
+    void operator()(double *p) const noexcept { std::free(p); }
+  };
+  Layout layout_;
+  int count_ = 0;
+  std::unique_ptr<double[], Free> data_;
+};
+
+}  // namespace eulastic

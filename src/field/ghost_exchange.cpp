@@ -1,0 +1,106 @@
+#include "field/ghost_exchange.hpp"
+
+#include "base/events.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+// Periodic image of global index g, or -1 where nothing lives there (behind a wall).
+int image(const Grid &grid, int d, int g) {
+  const int n = grid.cells()[d];
+  if (d >= grid.dimension()) return g;
+  if (grid.boundary(d) == Boundary::periodic) return (g + n) % n;
+  return g >= 0 && g <= n ? g : -1;
+}
+
+}  // namespace
+
+PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
+  PetscFunctionBeginUser;
+  SfHandle &handle = forests_[key];
+  if (!handle) {
+    const Layout &own = grid_->layout();
+    Int3 low{}, high{};
+    for (int d = 0; d < 3; ++d) {
+      const int width = std::min(key.width, own.ghosts[d]);
+      low[d] = -width;
+      high[d] = own.cells[d] + width;
+    }
+    if (wraps_x()) {
+      low[0] = 0;
+      high[0] = own.cells[0];
+    }
+    std::vector<PetscInt> leaves;
+    std::vector<PetscSFNode> roots;
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i) {
+          const Int3 local{i, j, k};
+          Int3 global{};
+          bool inside = true, exists = true;
+          for (int d = 0; d < 3; ++d) {
+            global[d] = image(*grid_, d, own.begin[d] + local[d]);
+            exists &= global[d] >= 0;
+            inside &= local[d] >= 0 && local[d] < grid_->points_end(d, true);
+          }
+          if (inside || !exists) continue;
+          const int owner = grid_->owner(global[0], global[1], global[2]);
+          const Layout theirs = grid_->layout_of(owner);
+          const std::ptrdiff_t from = theirs.offset(global[0] - theirs.begin[0], global[1] - theirs.begin[1],
+                                                    global[2] - theirs.begin[2]);
+          for (int f = 0; f < key.fields; ++f) {
+            leaves.push_back(static_cast<PetscInt>(own.offset(i, j, k) + f * own.size));
+            roots.push_back({owner, static_cast<PetscInt>(from + f * theirs.size)});
+          }
+        }
+    PetscCall(PetscSFCreate(grid_->comm(), handle.put()));
+    PetscCall(PetscSFSetGraph(handle.get(), static_cast<PetscInt>(own.size * key.fields),
+                              static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
+                              PETSC_COPY_VALUES));
+    PetscCall(PetscSFSetUp(handle.get()));
+  }
+  *sf = handle.get();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::begin(FieldBlock &block, int width) {
+  PetscSF sf;
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exchange);
+  PetscCall(forest({block.count(), width}, &sf));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::end(FieldBlock &block, int width) {
+  PetscSF sf;
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exchange);
+  PetscCall(forest({block.count(), width}, &sf));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+  if (wraps_x()) {
+    const Layout &own = block.layout();
+    const int n = own.cells[0], wy = std::min(width, own.ghosts[1]), wz = std::min(width, own.ghosts[2]);
+    for (int f = 0; f < block.count(); ++f)
+      for (int k = -wz; k < own.cells[2] + wz; ++k)
+        for (int j = -wy; j < own.cells[1] + wy; ++j) {
+          double *row = block[f].row(j, k);
+          for (int m = 1; m <= width; ++m) {
+            row[-m] = row[n - m];
+            row[n - 1 + m] = row[m - 1];
+          }
+        }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::update(FieldBlock &block, int width) {
+  PetscFunctionBeginUser;
+  PetscCall(begin(block, width));
+  PetscCall(end(block, width));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,39 @@
+// Ghost-only exchange: a PetscSF straight on the local arrays, so that no interior value is ever copied.
+//
+// Ghosts in a periodic x that is not split are wrapped row by row and never enter the SF. Index N of a wall
+// direction (the high wall of staggered fields) counts as owned: its values travel like any others.
+#pragma once
+
+#include "field/field_block.hpp"
+
+#include <map>
+
+namespace eulastic {
+
+class GhostExchange {
+public:
+  explicit GhostExchange(const Grid &grid) : grid_(&grid) {}
+
+  /// Starts filling `width` ghost layers of every field of `block`. One exchange per block at a time; several
+  /// blocks may be under way together.
+  PetscErrorCode begin(FieldBlock &block, int width);
+  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not.
+  PetscErrorCode end(FieldBlock &block, int width);
+  /// Both.
+  PetscErrorCode update(FieldBlock &block, int width);
+
+private:
+  struct Key {
+    int fields, width;
+    bool operator<(const Key &other) const {
+      return fields != other.fields ? fields < other.fields : width < other.width;
+    }
+  };
+  PetscErrorCode forest(const Key &key, PetscSF *sf);
+  bool wraps_x() const { return grid_->boundary(0) == Boundary::periodic && grid_->processors(0) == 1; }
+
+  const Grid *grid_;
+  std::map<Key, SfHandle> forests_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,22 @@
+// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor.
+#pragma once
+
+#include "field/field_block.hpp"
+
+#include <string>
+
+namespace eulastic {
+
+struct Material {
+  double shear_modulus = 0;  ///< G, pressure units; 0 = a marked part of the fluid
+};
+
+struct Phase {
+  std::string species;   ///< name of the species it belongs to
+  Material material;
+  FieldBlock fraction;   ///< phi, one centred field, 0 ... 1
+  FieldBlock tensor;     ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
+  FieldBlock label;      ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+};
+
+}  // namespace eulastic

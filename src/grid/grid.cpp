@@ -1,0 +1,147 @@
+#include "grid/grid.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace eulastic {
+namespace {
+
+constexpr int sum_block = 256;  // x is split at multiples of it, so that row sums do not depend on the split
+
+std::ptrdiff_t round_up(std::ptrdiff_t n, std::ptrdiff_t m) { return (n + m - 1) / m * m; }
+
+// First cell of each of `parts` ranks; x in whole blocks where there are enough of them.
+std::vector<int> split(int cells, int parts, bool in_blocks) {
+  const int unit = in_blocks && cells >= sum_block * parts ? sum_block : 1;
+  const std::int64_t units = (cells + unit - 1) / unit;
+  std::vector<int> starts(parts + 1);
+  for (int p = 0; p <= parts; ++p) starts[p] = static_cast<int>(std::min<std::int64_t>(cells, units * p / parts * unit));
+  return starts;
+}
+
+bool wide_enough(const std::vector<int> &starts, bool needs_ghosts) {
+  for (std::size_t p = 0; p + 1 < starts.size(); ++p)
+    if (starts[p + 1] - starts[p] < (needs_ghosts ? Grid::ghost_width : 1)) return false;
+  return true;
+}
+
+bool fits(const GridSpec &spec, const Int3 &ranks) {
+  const bool flat = spec.cells[2] == 1;
+  if (flat && ranks[2] != 1) return false;
+  for (int d = 0; d < 3; ++d)
+    if (!wide_enough(split(spec.cells[d], ranks[d], d == 0), !(flat && d == 2))) return false;
+  return true;
+}
+
+}  // namespace
+
+Int3 Grid::decompose(const GridSpec &spec, int ranks) {
+  Int3 best{0, 0, 0};
+  double best_cost = 0;
+  for (int px = 1; px <= ranks; ++px) {
+    if (ranks % px) continue;
+    if (spec.processors[0] && px != spec.processors[0]) continue;
+    for (int py = 1; py <= ranks / px; ++py) {
+      if ((ranks / px) % py) continue;
+      const Int3 trial{px, py, ranks / px / py};
+      if (spec.processors[1] && py != spec.processors[1]) continue;
+      if (spec.processors[2] && trial[2] != spec.processors[2]) continue;
+      if (!fits(spec, trial)) continue;
+      // Ghost cells per rank; z before y, because planes are contiguous.
+      const double ny = double(spec.cells[1]) / py, nz = double(spec.cells[2]) / trial[2];
+      const double cost = (py > 1) * nz * 1.001 + (trial[2] > 1) * ny;
+      if (best[0] == 0 || cost < best_cost) {
+        best = trial;
+        best_cost = cost;
+      }
+    }
+    if (best[0]) break;  // the smallest split of x that works
+  }
+  return best;
+}
+
+std::string Grid::why_not(const GridSpec &spec, int ranks) {
+  for (int d = 0; d < (spec.cells[2] == 1 ? 2 : 3); ++d)
+    if (spec.cells[d] < ghost_width)
+      return std::to_string(spec.cells[d]) + " cells in direction " + "xyz"[d] + ", at least 3 are needed";
+  if (decompose(spec, ranks)[0]) return {};
+  std::string text = std::to_string(ranks) + " ranks cannot share " + std::to_string(spec.cells[0]) + " x " +
+                     std::to_string(spec.cells[1]) + " x " + std::to_string(spec.cells[2]) + " cells";
+  if (spec.processors[0] || spec.processors[1] || spec.processors[2])
+    text += " as " + std::to_string(spec.processors[0]) + " x " + std::to_string(spec.processors[1]) + " x " +
+            std::to_string(spec.processors[2]) + " ranks (0 = free)";
+  return text + ": each rank needs at least 3 cells in every direction";
+}
+
+Layout Grid::make_layout(const Int3 &position) const {
+  Layout layout;
+  for (int d = 0; d < 3; ++d) {
+    layout.begin[d] = starts_[d][position[d]];
+    layout.cells[d] = starts_[d][position[d] + 1] - layout.begin[d];
+    layout.ghosts[d] = d < dimension() ? ghost_width : 0;
+  }
+  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets.
+  layout.sy = round_up(layout.cells[0] + 2 * ghost_width, 8);
+  if (layout.sy % 64 == 0) layout.sy += 8;
+  layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1]);
+  if (layout.sz % 512 == 0) layout.sz += 8;
+  layout.origin = 8 + layout.sy * layout.ghosts[1] + layout.sz * layout.ghosts[2];
+  layout.size = 8 + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2]);
+  if (layout.size % 512 == 0) layout.size += 8;
+  return layout;
+}
+
+Layout Grid::layout_of(int rank) const {
+  const int px = processors(0), py = processors(1);
+  return make_layout({rank % px, rank / px % py, rank / px / py});
+}
+
+int Grid::owner(int i, int j, int k) const {
+  const Int3 cell{i, j, k};
+  Int3 position{};
+  for (int d = 0; d < 3; ++d) {
+    const int c = std::min(cell[d], spec_.cells[d] - 1);
+    position[d] = static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), c) - starts_[d].begin()) - 1;
+  }
+  return position[0] + processors(0) * (position[1] + processors(1) * position[2]);
+}
+
+double Grid::cell_volume() const { return spacing_[0] * spacing_[1] * (dimension() == 3 ? spacing_[2] : 1.0); }
+
+std::vector<Segment> Grid::rows() const {
+  std::vector<Segment> rows;
+  rows.reserve(static_cast<std::size_t>(layout_.cells[1]) * layout_.cells[2]);
+  for (int k = 0; k < layout_.cells[2]; ++k)
+    for (int j = 0; j < layout_.cells[1]; ++j) rows.push_back({0, layout_.cells[0], j, k});
+  return rows;
+}
+
+PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
+  PetscFunctionBeginUser;
+  comm_ = comm;
+  spec_ = spec;
+  if (spec_.cells[2] == 1) spec_.boundary[2] = Boundary::periodic;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank_));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks_));
+  const std::string reason = why_not(spec, ranks_);
+  PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
+  const Int3 ranks = decompose(spec, ranks_);
+  std::array<std::vector<PetscInt>, 3> counts;
+  std::array<DMBoundaryType, 3> type{};
+  for (int d = 0; d < 3; ++d) {
+    spacing_[d] = spec.length[d] / spec.cells[d];
+    starts_[d] = split(spec.cells[d], ranks[d], d == 0);
+    for (int p = 0; p < ranks[d]; ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
+    type[d] = d >= dimension()                           ? DM_BOUNDARY_NONE
+              : spec.boundary[d] == Boundary::periodic ? DM_BOUNDARY_PERIODIC
+                                                         : DM_BOUNDARY_GHOSTED;
+  }
+  layout_ = make_layout({rank_ % ranks[0], rank_ / ranks[0] % ranks[1], rank_ / ranks[0] / ranks[1]});
+  PetscCall(DMDACreate3d(comm, type[0], type[1], type[2], DMDA_STENCIL_BOX, spec.cells[0], spec.cells[1],
+                         spec.cells[2], ranks[0], ranks[1], ranks[2], 1, ghost_width, counts[0].data(),
+                         counts[1].data(), counts[2].data(), dm_.put()));
+  PetscCall(DMSetUp(dm_.get()));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

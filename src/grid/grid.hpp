@@ -1,0 +1,95 @@
+// The one grid of a run: a DMDA of cells, its spacing and walls, and the memory layout of ghosted fields.
+//
+// Staggering: value i of a field staggered in x lies on the low side of cell i, at x = i h_x; of a field that is
+// not, at the centre, x = (i + 1/2) h_x. Index N of a staggered field is the high wall; it lives in a ghost layer.
+#pragma once
+
+#include "base/petsc.hpp"
+#include "grid/segment.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+enum class Boundary : unsigned char { periodic, wall };
+
+using Int3 = std::array<int, 3>;
+using Real3 = std::array<double, 3>;
+
+struct GridSpec {
+  Int3 cells{64, 64, 64};                ///< N_x, N_y, N_z; N_z = 1 is 2-D
+  Real3 length{1, 1, 1};                 ///< box, any length unit
+  std::array<Boundary, 3> boundary{};    ///< both sides of a direction alike; ignored in z when 2-D
+  Int3 processors{0, 0, 0};              ///< ranks per direction, 0 = chosen here
+};
+
+/// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the
+/// row before. Computed by anybody for any rank, without communication.
+struct Layout {
+  Int3 begin{};   ///< global index of the first owned cell
+  Int3 cells{};   ///< owned cells
+  Int3 ghosts{};  ///< layers on each side (0 in z when 2-D)
+  std::ptrdiff_t sy = 0, sz = 0;
+  std::ptrdiff_t origin = 0;  ///< offset of local cell (0,0,0)
+  std::ptrdiff_t size = 0;    ///< doubles per field, a multiple of 8
+
+  std::ptrdiff_t offset(int i, int j, int k) const noexcept { return origin + i + j * sy + k * sz; }
+};
+
+class Grid {
+public:
+  static constexpr int ghost_width = 3;
+
+  /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, or by order) and makes
+  /// the DMDA. Call `why_not` first: it explains in one line why a spec cannot be decomposed.
+  PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
+  /// Empty if `spec` fits on `ranks` ranks, else one sentence with the numbers.
+  static std::string why_not(const GridSpec &spec, int ranks);
+  /// Ranks per direction that `create` would use; {0,0,0} when impossible.
+  static Int3 decompose(const GridSpec &spec, int ranks);
+
+  MPI_Comm comm() const { return comm_; }
+  DM dm() const { return dm_.get(); }
+  const GridSpec &spec() const { return spec_; }
+  int rank() const { return rank_; }
+  int ranks() const { return ranks_; }
+  int dimension() const { return spec_.cells[2] == 1 ? 2 : 3; }
+  const Int3 &cells() const { return spec_.cells; }
+  double cell_count() const { return double(spec_.cells[0]) * spec_.cells[1] * spec_.cells[2]; }
+  double owned_count() const { return double(layout_.cells[0]) * layout_.cells[1] * layout_.cells[2]; }
+  const Real3 &spacing() const { return spacing_; }
+  double cell_volume() const;  ///< area in 2-D
+  Boundary boundary(int d) const { return spec_.boundary[d]; }
+  bool is_wall(int d) const { return d < dimension() && spec_.boundary[d] == Boundary::wall; }
+  bool touches_low(int d) const { return is_wall(d) && layout_.begin[d] == 0; }
+  bool touches_high(int d) const { return is_wall(d) && layout_.begin[d] + layout_.cells[d] == spec_.cells[d]; }
+  /// Ranks along direction d.
+  int processors(int d) const { return static_cast<int>(starts_[d].size()) - 1; }
+
+  const Layout &layout() const { return layout_; }
+  const Int3 &owned() const { return layout_.cells; }
+  Layout layout_of(int rank) const;
+  /// The rank that owns global cell (i,j,k); index N of a wall direction belongs to the owner of N - 1.
+  int owner(int i, int j, int k) const;
+
+  /// One past the last entry of the points a field really has on this rank: one more than the cells where the
+  /// field is staggered and the rank touches the high wall.
+  int points_end(int d, bool staggered) const { return layout_.cells[d] + (staggered && touches_high(d) ? 1 : 0); }
+  /// All owned rows, whole.
+  std::vector<Segment> rows() const;
+
+private:
+  Layout make_layout(const Int3 &position) const;
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, ranks_ = 1;
+  GridSpec spec_;
+  Real3 spacing_{};
+  std::array<std::vector<int>, 3> starts_;  ///< first cell of every rank along a direction, and N at the end
+  Layout layout_;
+  DmHandle dm_;
+};
+
+}  // namespace eulastic
