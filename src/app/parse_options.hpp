@@ -1,0 +1,29 @@
+// From the command line to a validated Config, without MPI or PETSc: every rank gets the same answer by itself.
+#pragma once
+
+#include "app/config.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+struct ParseResult {
+  Config config;
+  std::string error;    ///< one line without "eulastic: error: ", empty if all is well; exit code 2
+  std::string message;  ///< -help, -version: print to stdout and exit 0
+  /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
+  /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
+  std::vector<std::string> petsc_arguments;
+  std::string petsc_options;  ///< PETSC_OPTIONS as found
+};
+
+/// `arguments`: the command line without the program name: options and at most one options file. An options file
+/// has lines `-name value`, # starts a comment. The command line wins over `petsc_options` (the environment
+/// variable), which wins over the file. Reads the options file and position lists, writes nothing.
+ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options = {});
+
+/// Every option as resolved; itself an options file that gives the same run.
+std::string options_text(const ParseResult &result);
+
+}  // namespace eulastic
