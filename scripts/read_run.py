@@ -1,0 +1,144 @@
+#!/usr/bin/python3
+"""Reads the output directory of a run.
+
+    run = Run("output/channel_rbc")
+    run.series.time, run.bodies.centroid[-1], run.snapshots[-1]["pressure"], run.summary["steps"]
+
+As a program it prints what is there: scripts/read_run.py DIRECTORY
+"""
+import json
+import pathlib
+import sys
+import types
+
+import h5py
+import numpy
+
+
+def parse_options(words):
+    """Options as {name without dash: value}; `words` alternate between names and values, "" for a bare name."""
+    options, name = {}, None
+    for word in words:
+        if word.startswith("-") and word[1:2].isalpha():
+            name = word[1:]
+            options[name] = ""
+        elif name is not None:
+            options[name] = word
+            name = None
+    return options
+
+
+def read_options(path):
+    """An options file: lines `-name value`, # starts a comment."""
+    lines = (line.split("#")[0].split(maxsplit=1) for line in pathlib.Path(path).read_text().splitlines())
+    return parse_options(word.strip() for line in lines for word in line)
+
+
+class Snapshot:
+    """One snapshot file. Fields are read when asked for: arrays (nz, ny, nx), each at its own staggered place."""
+
+    def __init__(self, path, run):
+        self.path, self.run = path, run
+        with h5py.File(path) as file:
+            self.time = float(file.attrs["time"])
+            self.fields = sorted(name for name, item in file.items() if isinstance(item, h5py.Dataset) and item.ndim == 3)
+
+    def __contains__(self, name):
+        return name in self.fields
+
+    def __getitem__(self, name):
+        with h5py.File(self.path) as file:
+            return file[name][...]
+
+    def velocity(self):
+        """Velocity at cell centres, (3, nz, ny, nx): the mean of the two faces, the high wall's face being 0."""
+        result = numpy.zeros((3,) + self.run.shape)
+        for d, axis in enumerate("xyz"):
+            name = "velocity_" + axis
+            if name in self:
+                low = self[name].astype(float)
+                high = numpy.roll(low, -1, axis=2 - d)
+                if self.run.is_wall(d):
+                    high[(slice(None),) * (2 - d) + (-1,)] = 0
+                result[d] = (low + high) / 2
+        return result
+
+
+class Run:
+    """A finished or unfinished run; what has not been written yet is empty or None.
+
+    options    {name: value} as resolved
+    summary    summary.json
+    series     numpy record array, one entry per line of series.csv, fields named by its header
+    bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
+    snapshots  list of Snapshot in the order of time
+    """
+
+    def __init__(self, directory):
+        self.directory = pathlib.Path(directory)
+        if not (self.directory / "options.txt").exists():
+            raise FileNotFoundError(f"{directory}: no run here (options.txt is missing)")
+        self.options = read_options(self.directory / "options.txt")
+        self.summary = self._if_there("summary.json", lambda path: json.loads(path.read_text()), {})
+        self.series = self._if_there("series.csv", read_series, None)
+        self.bodies = self._if_there("bodies.h5", read_bodies, None)
+        self.snapshots = sorted((Snapshot(p, self) for p in self.directory.glob("snapshot_*.h5")), key=lambda s: s.time)
+
+    def _if_there(self, name, read, otherwise):
+        path = self.directory / name
+        return read(path) if path.exists() else otherwise
+
+    @property
+    def cells(self):
+        """(nx, ny, nz)"""
+        return tuple(int(n) for n in self.options["grid_cells"].split(","))
+
+    @property
+    def shape(self):
+        return self.cells[::-1]
+
+    @property
+    def length(self):
+        return numpy.array([float(x) for x in self.options["grid_length"].split(",")])
+
+    @property
+    def spacing(self):
+        return self.length / self.cells
+
+    def is_wall(self, d):
+        return self.cells[d] > 1 and self.options.get("boundary_" + "xyz"[d], "periodic") == "wall"
+
+    def centres(self, d):
+        """Coordinates of the cell centres along direction d."""
+        return (numpy.arange(self.cells[d]) + 0.5) * self.spacing[d]
+
+
+def read_series(path):
+    return numpy.atleast_1d(numpy.genfromtxt(path, delimiter=",", names=True, deletechars="")).view(numpy.recarray)
+
+
+def read_bodies(path):
+    with h5py.File(path) as file:
+        arrays = {name: item[...] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+    arrays["species"] = numpy.array([s.decode() if isinstance(s, bytes) else s for s in arrays["species"]])
+    return types.SimpleNamespace(**arrays)
+
+
+def main():
+    run = Run(sys.argv[1])
+    print(f"{run.directory}: {' x '.join(map(str, run.cells))} cells, box {' x '.join(f'{x:g}' for x in run.length)}")
+    for name, value in run.summary.items():
+        if name != "bodies":
+            print(f"  {name:28} {value}")
+    if run.series is not None:
+        print(f"  series: {len(run.series)} lines of {', '.join(run.series.dtype.names)}")
+    if run.bodies is not None:
+        print(f"  bodies: {len(run.bodies.id)} at {len(run.bodies.time)} times")
+    for snapshot in run.snapshots:
+        print(f"  {snapshot.path.name}: t = {snapshot.time:g}: {', '.join(snapshot.fields)}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    main()
