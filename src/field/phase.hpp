@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/active_segments.hpp"
 
 #include <string>
 
@@ -17,6 +18,8 @@ struct Phase {
   FieldBlock fraction;   ///< phi, one centred field, 0 ... 1
   FieldBlock tensor;     ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
   FieldBlock label;      ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+  ActiveSegments solid;     ///< points where B may differ from I
+  ActiveSegments stressed;  ///< faces that feel the elastic stress
 };
 
 }  // namespace eulastic

@@ -67,10 +67,13 @@ std::string Grid::why_not(const GridSpec &spec, int ranks) {
   if (decompose(spec, ranks)[0]) return {};
   std::string text = std::to_string(ranks) + " ranks cannot share " + std::to_string(spec.cells[0]) + " x " +
                      std::to_string(spec.cells[1]) + " x " + std::to_string(spec.cells[2]) + " cells";
-  if (spec.processors[0] || spec.processors[1] || spec.processors[2])
+  std::string rule = ": ";
+  if (spec.processors[0] || spec.processors[1] || spec.processors[2]) {
     text += " as " + std::to_string(spec.processors[0]) + " x " + std::to_string(spec.processors[1]) + " x " +
             std::to_string(spec.processors[2]) + " ranks (0 = free)";
-  return text + ": each rank needs at least 3 cells in every direction";
+    rule += "the product must be " + std::to_string(ranks) + " and ";
+  }
+  return text + rule + "each rank needs at least 3 cells in every direction";
 }
 
 Layout Grid::make_layout(const Int3 &position) const {

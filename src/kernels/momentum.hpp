@@ -1,0 +1,55 @@
+// Second-order central terms of the momentum equation (2) at the faces of one component, added to row rates.
+#pragma once
+
+#include "kernels/stencils.hpp"
+
+namespace eulastic::kernels {
+
+inline constexpr double viscous_pressure_flops_per_direction = 6;
+
+/// rate += nu lap q - (p - p[-step]) pressure_factor + force. `second[d]` = 1/h_d^2; p may be null (no pressure term).
+template <int Dim>
+EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, double viscosity, const double *second,
+                                                ConstView p, std::ptrdiff_t step, double pressure_factor,
+                                                double force, double *rate) noexcept {
+  const double *u = q.row(s.j, s.k), *pressure = p.row(s.j, s.k);
+  const std::ptrdiff_t sy = q.sy, sz = q.sz;
+  const double ax = viscosity * second[0], ay = viscosity * second[1], az = viscosity * second[2];
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i) {
+    const double twice = 2 * u[i];
+    double sum = ax * ((u[i + 1] + u[i - 1]) - twice);
+    sum = fma(ay, (u[i + sy] + u[i - sy]) - twice, sum);
+    if constexpr (Dim == 3) sum = fma(az, (u[i + sz] + u[i - sz]) - twice, sum);
+    sum = fma(-pressure_factor, pressure[i] - pressure[i - step], sum);
+    rate[i] += sum + force;
+  }
+}
+
+/// div v at centres times `density`, into out.
+template <int Dim>
+EULASTIC_INLINE void divergence(const Segment &s, ConstView u, ConstView v, ConstView w, const double *inverse_spacing,
+                                double density, double *out) noexcept {
+  const double *uu = u.row(s.j, s.k), *vv = v.row(s.j, s.k), *ww = w.row(s.j, s.k);
+  const double ix = density * inverse_spacing[0], iy = density * inverse_spacing[1], iz = density * inverse_spacing[2];
+  const std::ptrdiff_t sy = v.sy, sz = v.sz;
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i) {
+    double sum = ix * (uu[i + 1] - uu[i]);
+    sum = fma(iy, vv[i + sy] - vv[i], sum);
+    if constexpr (Dim == 3) sum = fma(iz, ww[i + sz] - ww[i], sum);
+    out[i] = sum;
+  }
+}
+
+/// Compact Laplacian of a centred field at q[0].
+template <int Dim>
+EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, const double *second) noexcept {
+  const double twice = 2 * q[0];
+  double sum = second[0] * ((q[1] + q[-1]) - twice);
+  sum = fma(second[1], (q[sy] + q[-sy]) - twice, sum);
+  if constexpr (Dim == 3) sum = fma(second[2], (q[sz] + q[-sz]) - twice, sum);
+  return sum;
+}
+
+}  // namespace eulastic::kernels

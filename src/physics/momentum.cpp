@@ -1,0 +1,169 @@
+#include "physics/momentum.hpp"
+
+#include "base/events.hpp"
+#include "kernels/elastic.hpp"
+#include "kernels/momentum.hpp"
+#include "kernels/weno5.hpp"
+#include "physics/row_scratch.hpp"
+
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+struct PredictorTerms {
+  const Grid *grid;
+  const FieldBlock *velocity, *pressure;
+  const std::vector<Phase> *phases;
+  bool inertia;
+  double dt, density, kinematic_viscosity, epsilon;
+  Real3 force, inverse, inverse_squared;
+};
+
+template <int Dim>
+EULASTIC_INLINE void elastic_force(const PredictorTerms &t, int a, const Segment &row, double *rate) {
+  // Block position of a tensor component, see tensor_components().
+  const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
+  const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
+  for (const Phase &phase : *t.phases) {
+    if (phase.material.shear_modulus == 0) continue;
+    const FieldBlock &B = phase.tensor;
+    const ConstView phi = phase.fraction[0];
+    const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
+    const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
+    const double inverse[3] = {t.inverse[a], t.inverse[b], t.inverse[c]};
+    for (const Segment &s : phase.stressed.row(row.j, row.k))
+      kernels::add_elastic_force<Dim>({s.i_begin, std::min(s.i_end, row.i_end), s.j, s.k}, phi, views, stride, inverse,
+                                      phase.material.shear_modulus / t.density, rate);
+  }
+}
+
+template <int Dim>
+EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratch &scratch) {
+  const FieldBlock &v = *t.velocity;
+  const ConstView p = (*t.pressure)[0];
+  const Int3 n = t.grid->owned();
+  double *rate = scratch.row(0);
+  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const Segment row{0, n[0], j, k};
+      for (int a = 0; a < Dim; ++a) {
+        for (int i = 0; i < n[0]; ++i) rate[i] = 0;
+        if (t.inertia) {
+          for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
+          kernels::subtract_advection<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
+        }
+        kernels::add_viscous_pressure_force<Dim>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(), p,
+                                                 p.stride(a), t.inverse[a] / t.density, t.force[a], rate);
+        elastic_force<Dim>(t, a, row, rate);
+        const double *now = v[a].row(j, k);
+        double *next = out[a].row(j, k);
+#pragma omp simd
+        for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+      }
+    }
+}
+
+EULASTIC_CLONES void predict_2d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<2>(t, out, s); }
+EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<3>(t, out, s); }
+
+template <int Dim>
+EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const FieldBlock &v, FieldBlock &out) {
+  const Int3 n = grid.owned();
+  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      kernels::divergence<Dim>({0, n[0], j, k}, v[0], v[1], v[Dim - 1], inverse.data(), density, out[0].row(j, k));
+}
+
+EULASTIC_CLONES void divergence_2d(const Grid &g, double density, const FieldBlock &v, FieldBlock &out) {
+  divergence_rows<2>(g, density, v, out);
+}
+EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlock &v, FieldBlock &out) {
+  divergence_rows<3>(g, density, v, out);
+}
+
+EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, const FieldBlock &increment,
+                                  const FieldBlock &star, FieldBlock &velocity, FieldBlock &pressure) {
+  const Int3 n = grid.owned();
+  const int gz = grid.dimension() == 3 ? 1 : 0;
+  const ConstView q = increment[0];
+  for (int k = -gz; k < n[2] + gz; ++k)
+    for (int j = -1; j < n[1] + 1; ++j) {
+      double *p = pressure[0].row(j, k);
+      const double *dp = q.row(j, k);
+#pragma omp simd
+      for (int i = -1; i < n[0] + 1; ++i) p[i] += dp[i];
+      if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
+      for (int a = 0; a < grid.dimension(); ++a) {
+        const double factor = dt_over_density / grid.spacing()[a];
+        const std::ptrdiff_t s = q.stride(a);
+        const double *from = star[a].row(j, k);
+        double *to = velocity[a].row(j, k);
+#pragma omp simd
+        for (int i = 0; i < n[0]; ++i) to[i] = kernels::fma(-factor, dp[i] - dp[i - s], from[i]);
+      }
+    }
+}
+
+}  // namespace
+
+PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, double time, double dt, double speed_scale,
+                                const FieldBlock &velocity, const FieldBlock &pressure,
+                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::momentum);
+  const int dim = grid.dimension();
+  PredictorTerms terms{&grid,
+                       &velocity,
+                       &pressure,
+                       &phases,
+                       fluid.inertia,
+                       dt,
+                       fluid.density,
+                       fluid.kinematic_viscosity(),
+                       weno_epsilon(speed_scale),
+                       fluid.body_force.at(time),
+                       {},
+                       {}};
+  for (int d = 0; d < 3; ++d) {
+    terms.inverse[d] = 1 / grid.spacing()[d];
+    terms.inverse_squared[d] = terms.inverse[d] * terms.inverse[d];
+  }
+  RowScratch scratch(grid, 4);
+  if (dim == 2)
+    predict_2d(terms, velocity_star, scratch);
+  else
+    predict_3d(terms, velocity_star, scratch);
+  double stressed = 0;
+  for (const Phase &phase : phases) stressed += phase.stressed.points();
+  const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
+                          dim * kernels::viscous_pressure_flops_per_direction + 5;
+  scope.flops(dim * (grid.owned_count() * per_face +
+                     stressed * (dim == 2 ? kernels::elastic_flops_2d : kernels::elastic_flops_3d)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+                                  FieldBlock &divergence) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::divergence);
+  if (grid.dimension() == 2)
+    divergence_2d(grid, density, velocity_star, divergence);
+  else
+    divergence_3d(grid, density, velocity_star, divergence);
+  scope.flops(grid.owned_count() * (3 * grid.dimension() - 1));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, const FieldBlock &increment,
+                                const FieldBlock &velocity_star, FieldBlock &velocity, FieldBlock &pressure) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::correction);
+  correct_rows(grid, dt / density, increment, velocity_star, velocity, pressure);
+  scope.flops(grid.owned_count() * (3 * grid.dimension() + 1));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

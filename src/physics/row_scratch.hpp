@@ -1,0 +1,24 @@
+// A few rows of scratch that stay in the first-level cache; indexed like the rows of a field.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <cstdlib>
+#include <memory>
+
+namespace eulastic {
+
+class RowScratch {
+public:
+  RowScratch(const Grid &grid, int rows)
+      : length_((grid.owned()[0] + 3 * 8 + 7) / 8 * 8),
+        data_(static_cast<double *>(std::aligned_alloc(64, sizeof(double) * length_ * rows)), std::free) {}
+  /// Row r; valid for -8 <= i < owned + 8.
+  double *row(int r) const noexcept { return data_.get() + r * length_ + 8; }
+
+private:
+  std::ptrdiff_t length_;
+  std::unique_ptr<double, void (*)(void *)> data_;
+};
+
+}  // namespace eulastic

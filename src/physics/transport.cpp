@@ -1,0 +1,176 @@
+#include "physics/transport.hpp"
+
+#include "base/events.hpp"
+#include "kernels/upper_convected.hpp"
+#include "kernels/weno5.hpp"
+#include "physics/row_scratch.hpp"
+
+namespace eulastic {
+namespace {
+
+constexpr double epsilon = 1e-6;  // WENO5: phi and B are of order 1
+
+struct TransportTerms {
+  const Grid *grid;
+  double dt;
+  const FieldBlock *velocity;
+  Real3 inverse;
+};
+
+template <int Dim>
+EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out,
+                                 RowScratch &scratch) {
+  const Int3 n = t.grid->owned();
+  double *rate = scratch.row(0);
+  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const Segment row{0, n[0], j, k};
+      for (int i = 0; i < n[0]; ++i) rate[i] = 0;
+      for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
+      kernels::subtract_advection<Dim>(row, phi[0], carried, t.inverse.data(), epsilon, rate);
+      const double *now = phi[0].row(j, k);
+      double *next = out[0].row(j, k);
+#pragma omp simd
+      for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+    }
+}
+
+EULASTIC_CLONES void advect_2d(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &s) {
+  advect_rows<2>(t, phi, out, s);
+}
+EULASTIC_CLONES void advect_3d(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &s) {
+  advect_rows<3>(t, phi, out, s);
+}
+
+// Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
+EULASTIC_INLINE double fraction_at(const double *phi, bool diagonal, std::ptrdiff_t a, std::ptrdiff_t b) {
+  return diagonal ? *phi : kernels::average4(phi, -a, -b);
+}
+
+// Block position of component (x, y).
+template <int Dim>
+constexpr int position(int x, int y) {
+  return x == y ? x : Dim == 2 ? 2 : 6 - x - y;
+}
+
+template <int Dim>
+EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phase, int a, int b, FieldBlock &out,
+                                      RowScratch &scratch) {
+  const FieldBlock &B = phase.tensor, &v = *t.velocity;
+  const ConstView phi = phase.fraction[0];
+  const int f = position<Dim>(a, b);
+  const int other = a == b ? (a + 1) % Dim : b;                        // second direction
+  const int third = Dim == 3 ? 3 - a - other : other;                  // and the remaining one
+  const bool at[3] = {a != b && (a == 0 || b == 0), a != b && (a == 1 || b == 1), a != b && (a == 2 || b == 2)};
+  const kernels::Directions d{phi.stride(a),  phi.stride(other),  phi.stride(third),
+                              t.inverse[a], t.inverse[other], t.inverse[third]};
+  const double exterior = a == b ? 1.0 : 0.0;
+  const int end = t.grid->points_end(0, at[0]);
+  double *rate = scratch.row(0);
+  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  for (int k = 0; k < t.grid->points_end(2, at[2]); ++k)
+    for (int j = 0; j < t.grid->points_end(1, at[1]); ++j) {
+      const double *now = B[f].row(j, k), *solid = phi.row(j, k);
+      double *next = out[f].row(j, k);
+      int done = 0;
+      for (const Segment &segment : phase.solid.row(j, k)) {
+        const Segment s{segment.i_begin, segment.i_end < end ? segment.i_end : end, j, k};
+        for (int i = done; i < s.i_begin; ++i) next[i] = exterior;
+        for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
+        for (int e = 0; e < Dim; ++e) kernels::carry_velocity(s, v[e], e, at, Dim, carried[e]);
+        kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
+        if (a == b)
+          kernels::add_diagonal_stretch<Dim>(s, B[f], B[position<Dim>(a, other)], B[position<Dim>(a, third)], v[a], d,
+                                             rate);
+        else
+          kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)],
+                                          v[a], v[b], d, rate);
+#pragma omp simd
+        for (int i = s.i_begin; i < s.i_end; ++i) {
+          const double moved = kernels::fma(t.dt, rate[i], now[i]);
+          next[i] = fraction_at(solid + i, a == b, d.a, d.b) < solid_threshold ? exterior : moved;
+        }
+        done = s.i_end;
+      }
+      for (int i = done; i < end; ++i) next[i] = exterior;
+    }
+}
+
+template <int Dim>
+EULASTIC_INLINE void tensor_rows(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &scratch) {
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b) tensor_component<Dim>(t, phase, a, b, out, scratch);
+}
+
+EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &s) {
+  tensor_rows<2>(t, phase, out, s);
+}
+EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &s) {
+  tensor_rows<3>(t, phase, out, s);
+}
+
+TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
+  return {&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}};
+}
+
+}  // namespace
+
+PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const FieldBlock &fraction,
+                               FieldBlock &next) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::solid_fraction);
+  RowScratch scratch(grid, 4);
+  const TransportTerms terms = make_terms(grid, dt, velocity);
+  if (grid.dimension() == 2)
+    advect_2d(terms, fraction, next, scratch);
+  else
+    advect_3d(terms, fraction, next, scratch);
+  scope.flops(grid.owned_count() * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode find_solid(const Grid &grid, Phase &phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::solid_fraction);
+  phase.solid.build(grid, phase.fraction[0], solid_threshold, 1, 0);
+  phase.stressed.build(grid, phase.fraction[0], solid_threshold, 1, 1);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode transport_tensor(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+                                FieldBlock &next) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::left_cauchy_green);
+  RowScratch scratch(grid, 4);
+  const TransportTerms terms = make_terms(grid, dt, velocity);
+  if (grid.dimension() == 2) {
+    tensor_2d(terms, phase, next, scratch);
+    scope.flops(phase.solid.points() * (3 * (2 * (kernels::weno5_flops + 5) + 2) +
+                                        2 * kernels::stretch_diagonal_flops_2d + kernels::stretch_shear_flops_2d));
+  } else {
+    tensor_3d(terms, phase, next, scratch);
+    scope.flops(phase.solid.points() * (6 * (3 * (kernels::weno5_flops + 5) + 2) +
+                                        3 * kernels::stretch_diagonal_flops_3d + 3 * kernels::stretch_shear_flops_3d));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode reset_exterior(const Grid &grid, Phase &phase) {
+  PetscFunctionBeginUser;
+  const ConstView phi = phase.fraction[0];
+  const auto &components = tensor_components(grid.dimension());
+  for (int f = 0; f < phase.tensor.count(); ++f) {
+    const auto [a, b] = components[f];
+    const Staggering at = components[f].staggering();
+    const View B = phase.tensor[f];
+    for (int k = 0; k < grid.points_end(2, at[2]); ++k)
+      for (int j = 0; j < grid.points_end(1, at[1]); ++j)
+        for (int i = 0; i < grid.points_end(0, at[0]); ++i)
+          if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < solid_threshold)
+            B(i, j, k) = a == b ? 1.0 : 0.0;
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,38 @@
+// The paper's adaptive artificial compressibility method, one explicit step: (11), (12), (13).
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "pressure/pressure_solver.hpp"
+
+#include <array>
+
+namespace eulastic {
+
+/// kappa = beta^2 dt^2 and g = beta^2 dt^2 gamma: delta p = -(kappa D* + g p)/dt.
+struct AcmCoefficients {
+  double kappa = 0, g = 0;
+  double sound_speed(double dt) const;   ///< beta
+  double relaxation() const;             ///< gamma
+};
+
+/// The sums of (13): A1 = -<D lap D>, A2 = <(lap D)^2>, A3 = <(lap p)^2>, B1 = <D lap p>, B2 = <lap D lap p>.
+struct AcmSums {
+  double A1, A2, A3, B1, B2;
+};
+
+/// (12): the least-squares minimum of <(D + kappa lap D + g lap p)^2>, with its guards: g = 0 where the minimum
+/// would be negative in kappa or g or where D and p are parallel; nothing to do where A2 = 0.
+AcmCoefficients acm_coefficients(const AcmSums &sums);
+
+class AcmSolver : public PressureSolver {
+public:
+  explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
+  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  const AcmCoefficients &last() const { return last_; }
+
+private:
+  const Grid *grid_;
+  AcmCoefficients last_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,121 @@
+#include "solver/solver.hpp"
+
+#include "physics/momentum.hpp"
+#include "physics/transport.hpp"
+#include "pressure/acm.hpp"
+#include "pressure/smac.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+
+PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
+  PetscFunctionBeginUser;
+  grid_ = &grid;
+  spec_ = spec;
+  exchange_ = std::make_unique<GhostExchange>(grid);
+  if (spec.pressure == PressureKind::smac)
+    PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
+  else
+    pressure_solver_ = std::make_unique<AcmSolver>(grid);
+  now_.velocity = FieldBlock(grid, grid.dimension());
+  now_.pressure = FieldBlock(grid, 1);
+  velocity_star_ = FieldBlock(grid, grid.dimension());
+  divergence_ = FieldBlock(grid, 1);
+  increment_ = FieldBlock(grid, 1);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::prepare() {
+  PetscFunctionBeginUser;
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::ghost_width));
+  PetscCall(update_centre_ghosts(now_.pressure, 1));
+  for (Phase &phase : now_.phases) {
+    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+    PetscCall(reset_exterior(*grid_, phase));
+    PetscCall(find_solid(*grid_, phase));
+    PetscCall(update_tensor_ghosts(phase.tensor, Grid::ghost_width));
+  }
+  if (!now_.phases.empty()) {
+    next_fraction_ = FieldBlock(*grid_, 1);
+    next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::measure(FlowExtremes *extremes) {
+  PetscFunctionBeginUser;
+  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, extremes));
+  double scale = extremes->max_speed();
+  for (const auto &pair : spec_.walls.motion)
+    for (const WallMotion &wall : pair) scale = std::max(scale, wall.speed());
+  const Real3 &f = spec_.fluid.body_force.force;
+  now_.speed_scale = std::max(scale, now_.dt * std::hypot(f[0], f[1], f[2]));
+  PetscFunctionReturn(0);
+}
+
+TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
+  double modulus = 0;
+  for (const Phase &phase : now_.phases) modulus = std::max(modulus, phase.material.shear_modulus);
+  return euler_limits(*grid_, spec_.fluid, modulus, extremes);
+}
+
+PetscErrorCode Solver::step(double dt) {
+  PetscFunctionBeginUser;
+  PetscCall(predict_velocity(*grid_, spec_.fluid, now_.time, dt, now_.speed_scale, now_.velocity, now_.pressure,
+                             now_.phases, velocity_star_));                                           // (7)
+  PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
+  PetscCall(project(dt));                                                                             // (8)-(13)
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::ghost_width));
+  for (Phase &phase : now_.phases) PetscCall(transport(phase, dt));                                   // (4)(5)
+  now_.time += dt;
+  now_.dt = dt;
+  ++now_.step;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::project(double dt) {
+  PetscFunctionBeginUser;
+  const double density = spec_.fluid.density;
+  PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence_));
+  PetscCall(update_centre_ghosts(divergence_, 1));
+  PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));                     // (10) or (11)
+  PetscCall(correct_velocity(*grid_, density, dt, increment_, velocity_star_, now_.velocity, now_.pressure));
+  PetscFunctionReturn(0);
+}
+
+// B follows the new velocity: forward Euler in both would need dt <= mu/G.
+PetscErrorCode Solver::transport(Phase &phase, double dt) {
+  PetscFunctionBeginUser;
+  PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));              // (4)
+  phase.fraction.swap(next_fraction_);
+  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(find_solid(*grid_, phase));
+  PetscCall(transport_tensor(*grid_, dt, now_.velocity, phase, next_tensor_));                        // (5)
+  phase.tensor.swap(next_tensor_);
+  PetscCall(update_tensor_ghosts(phase.tensor, Grid::ghost_width));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_->update(velocity, width));
+  fill_wall_ghosts_velocity(*grid_, spec_.walls, time, velocity, width);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_->update(field, width));
+  fill_wall_ghosts_even(*grid_, at_centre, field[0], width);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width) {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_->update(tensor, width));
+  fill_wall_ghosts_tensor(*grid_, tensor, width);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

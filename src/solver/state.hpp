@@ -1,0 +1,24 @@
+// All that is carried from one step to the next.
+#pragma once
+
+#include "field/phase.hpp"
+#include "field/walls.hpp"
+
+#include <cstdint>
+
+namespace eulastic {
+
+struct State {
+  double time = 0;
+  std::int64_t step = 0;
+  double dt = 0;            ///< of the last step; the automatic one grows from it smoothly
+  double speed_scale = 0;   ///< max |v| when last measured; scales WENO5's epsilon
+  FieldBlock velocity;      ///< u, v (, w) on faces, three ghosts valid
+  FieldBlock pressure;      ///< at centres, one ghost valid
+  std::vector<Phase> phases;  ///< three ghosts valid
+};
+
+/// Rank-independent 64-bit hash of velocity, pressure and phases.
+PetscErrorCode state_hash(const Grid &grid, const State &state, std::uint64_t *hash);
+
+}  // namespace eulastic
