@@ -15,7 +15,7 @@ public:
   /// `count` fields on `grid`, all zero, 64-byte aligned.
   FieldBlock(const Grid &grid, int count);
 
-  explicit operator bool() const noexcept { return count_ > 0; }
+  explicit operator bool() const noexcept { return data_ != nullptr; }
   int count() const noexcept { return count_; }
   const Layout &layout() const noexcept { return layout_; }
   double *data() noexcept { return data_.get(); }

@@ -48,8 +48,8 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
           if (inside || !exists) continue;
           const int owner = grid_->owner(global[0], global[1], global[2]);
           const Layout theirs = grid_->layout_of(owner);
-          const std::ptrdiff_t from = theirs.offset(global[0] - theirs.begin[0], global[1] - theirs.begin[1],
-                                                    global[2] - theirs.begin[2]);
+          const std::ptrdiff_t from =
+              theirs.offset(global[0] - theirs.begin[0], global[1] - theirs.begin[1], global[2] - theirs.begin[2]);
           for (int f = 0; f < key.fields; ++f) {
             leaves.push_back(static_cast<PetscInt>(own.offset(i, j, k) + f * own.size));
             roots.push_back({owner, static_cast<PetscInt>(from + f * theirs.size)});
@@ -82,10 +82,15 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width) {
   PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
   if (wraps_x()) {
     const Layout &own = block.layout();
-    const int n = own.cells[0], wy = std::min(width, own.ghosts[1]), wz = std::min(width, own.ghosts[2]);
+    // Rows behind walls are left alone: what is there must not depend on whether x is split.
+    const auto first = [&](int d) { return grid_->touches_low(d) ? 0 : -std::min(width, own.ghosts[d]); };
+    const auto last = [&](int d) {
+      return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
+    };
+    const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
     for (int f = 0; f < block.count(); ++f)
-      for (int k = -wz; k < own.cells[2] + wz; ++k)
-        for (int j = -wy; j < own.cells[1] + wy; ++j) {
+      for (int k = k_begin; k < k_end; ++k)
+        for (int j = j_begin; j < j_end; ++j) {
           double *row = block[f].row(j, k);
           for (int m = 1; m <= width; ++m) {
             row[-m] = row[n - m];

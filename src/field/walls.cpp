@@ -8,32 +8,48 @@
 namespace eulastic {
 namespace {
 
-// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width. A staggered field
-// that must vanish on the wall (sign < 0) gets that value as well. Runs over all ghosts of the other directions,
-// so that doing x, y, z in turn fills edges and corners.
+// The plane 0 of direction d, ghosts of the other directions included.
+struct Plane {
+  Int3 begin{}, end{};
+  Plane(const Layout &layout, int d) {
+    for (int e = 0; e < 3; ++e) {
+      begin[e] = e == d ? 0 : -layout.ghosts[e];
+      end[e] = e == d ? 1 : layout.cells[e] + layout.ghosts[e];
+    }
+  }
+};
+
+// No flow through the wall faces; also on the face of a neighbour whose three cells are this rank's ghosts.
+void close_wall_faces(const Grid &grid, View q, int d) {
+  const Layout &layout = grid.layout();
+  const Plane plane(layout, d);
+  for (const int face : {0, grid.cells()[d]}) {
+    const int local = face - layout.begin[d];
+    if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
+    for (int k = plane.begin[2]; k < plane.end[2]; ++k)
+      for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
+        double *row = q.row(j, k) + local * q.stride(d);
+        std::fill(row + plane.begin[0], row + plane.end[0], 0.0);
+      }
+  }
+}
+
+// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width. Runs over all ghosts
+// of the other directions, so that doing the directions in turn fills edges and corners.
 struct Reflection {
   double sign, twice_wall;
 };
 
 void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width) {
-  const Layout &layout = grid.layout();
   const std::ptrdiff_t s = q.stride(d);
-  const int n = layout.cells[d];
-  Int3 begin{}, end{};
-  for (int e = 0; e < 3; ++e) {
-    begin[e] = -layout.ghosts[e];
-    end[e] = layout.cells[e] + layout.ghosts[e];
-  }
-  begin[d] = 0;
-  end[d] = 1;
-  const std::ptrdiff_t step = high ? s : -s;                       // outward
-  const std::ptrdiff_t wall = high ? n * s : staggered ? 0 : -s;   // first point on (staggered) or behind the wall
-  const std::ptrdiff_t mirror = staggered ? 0 : -step;             // mirror image of that point
+  const int n = grid.layout().cells[d];
+  const auto [begin, end] = Plane(grid.layout(), d);
+  const std::ptrdiff_t step = high ? s : -s;                      // outward
+  const std::ptrdiff_t wall = high ? n * s : staggered ? 0 : -s;  // first point on (staggered) or behind the wall
+  const std::ptrdiff_t mirror = staggered ? 0 : -step;            // mirror image of that point
   for (int k = begin[2]; k < end[2]; ++k)
     for (int j = begin[1]; j < end[1]; ++j) {
       double *row = q.row(j, k) + wall;
-      if (staggered && rule.sign < 0)
-        for (int i = begin[0]; i < end[0]; ++i) row[i] = 0;
       const int first = staggered ? 1 : 0;
       for (int m = first; m < first + width && !(high && staggered && m == width); ++m)
         for (int i = begin[0]; i < end[0]; ++i)
@@ -58,13 +74,18 @@ const std::vector<TensorComponent> &tensor_components(int dimension) {
 
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (int side = 0; side < 2; ++side) {
-      if (!(side ? grid.touches_high(d) : grid.touches_low(d))) continue;
-      const Real3 wall = walls.motion[d][side].at(time);
-      for (int c = 0; c < velocity.count(); ++c)
-        reflect(grid, velocity[c], d, side, c == d, {-1.0, c == d ? 0.0 : 2 * wall[c]}, width);
+  const int dimension = grid.dimension();
+  for (int c = 0; c < velocity.count(); ++c) {
+    if (grid.is_wall(c)) close_wall_faces(grid, velocity[c], c);
+    for (int e = 0; e < dimension; ++e) {
+      const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
+      for (const bool high : {false, true}) {
+        if (!(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
+        const double wall = c == d ? 0.0 : walls.motion[d][high].at(time)[c];
+        reflect(grid, velocity[c], d, high, c == d, {-1.0, 2 * wall}, width);
+      }
     }
+  }
 }
 
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width) {

@@ -1,0 +1,91 @@
+// Every rank's view of the decomposition: complete, disjoint, the same everywhere and the same as the DMDA's.
+#include "grid/grid.hpp"
+
+#include <gtest/gtest.h>
+
+namespace eulastic {
+namespace {
+
+int world_size() {
+  int size = 0;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
+void check(const GridSpec &spec) {
+  SCOPED_TRACE(::testing::Message() << spec.cells[0] << " x " << spec.cells[1] << " x " << spec.cells[2] << " as "
+                                    << spec.processors[0] << " x " << spec.processors[1] << " x "
+                                    << spec.processors[2]);
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+  const Layout &own = grid.layout();
+
+  PetscInt x, y, z, nx, ny, nz;
+  ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
+  EXPECT_EQ(own.begin, (Int3{x, y, z}));
+  EXPECT_EQ(own.cells, (Int3{nx, ny, nz}));
+
+  const Layout mine = grid.layout_of(grid.rank());
+  EXPECT_EQ(mine.begin, own.begin);
+  EXPECT_EQ(mine.cells, own.cells);
+  EXPECT_EQ(mine.size, own.size);
+  EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
+
+  // What layout_of says of another rank is what that rank says of itself.
+  std::vector<int> sizes(grid.ranks());
+  const int size = static_cast<int>(own.size);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+
+  const Int3 &n = grid.cells();
+  std::vector<int> times(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
+  int wrong_owner = 0;
+  for (int rank = 0; rank < grid.ranks(); ++rank) {
+    const Layout layout = grid.layout_of(rank);
+    EXPECT_EQ(layout.size, sizes[rank]);
+    for (int k = layout.begin[2]; k < layout.begin[2] + layout.cells[2]; ++k)
+      for (int j = layout.begin[1]; j < layout.begin[1] + layout.cells[1]; ++j)
+        for (int i = layout.begin[0]; i < layout.begin[0] + layout.cells[0]; ++i) {
+          ++times.at(i + n[0] * (j + static_cast<std::size_t>(n[1]) * k));
+          wrong_owner += grid.owner(i, j, k) != rank;
+        }
+    // Index N belongs to the owner of N - 1.
+    const Int3 end{layout.begin[0] + layout.cells[0], layout.begin[1] + layout.cells[1],
+                   layout.begin[2] + layout.cells[2]};
+    wrong_owner += end == n && grid.owner(n[0], n[1], n[2]) != rank;
+    wrong_owner += end[1] == n[1] && grid.owner(layout.begin[0], n[1], layout.begin[2]) != rank;
+    for (int d = 0; d < 3; ++d) {
+      const int part = n[d] / grid.processors(d);
+      if (spec.cells[d] < 256 * grid.processors(d) || d > 0) {
+        EXPECT_TRUE(layout.cells[d] == part || layout.cells[d] == part + 1) << "uneven";
+      } else {
+        EXPECT_EQ(layout.begin[d] % 256, 0);
+        EXPECT_LT(std::abs(layout.cells[d] - double(n[d]) / grid.processors(d)), 256 + 1e-9);
+      }
+    }
+  }
+  EXPECT_EQ(wrong_owner, 0);
+  EXPECT_EQ(times, std::vector<int>(times.size(), 1));
+}
+
+TEST(Decomposition, CoversEveryCellOnceAndAgreesWithTheDmda) {
+  const int ranks = world_size();
+  int tried = 0, split_x = 0;
+  for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{1030, 3, 3}, Int3{1537, 4, 1}})
+    for (const Boundary y : {Boundary::periodic, Boundary::wall})
+      for (int px = 0; px <= ranks; ++px)
+        for (int py = 0; py <= ranks; ++py) {
+          GridSpec spec;
+          spec.cells = cells;
+          spec.boundary = {Boundary::periodic, y, Boundary::wall};
+          spec.processors = {px, py, 0};
+          if (!Grid::why_not(spec, ranks).empty()) continue;
+          check(spec);
+          ++tried;
+          split_x += px > 1;
+        }
+  EXPECT_GE(tried, 10);
+  EXPECT_GE(split_x, ranks > 1 ? 10 : 0);
+}
+
+}  // namespace
+}  // namespace eulastic

@@ -1,0 +1,199 @@
+// Ghost exchange: every ghost inside the domain and across periodic sides, at odd sizes, in every decomposition.
+#include "field/ghost_exchange.hpp"
+#include "field/walls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+constexpr double poison = std::numeric_limits<double>::quiet_NaN();
+
+double truth(int f, int i, int j, int k) { return 1 + i + 64 * j + 4096.0 * k + 262144.0 * f; }
+
+// Each sentinel is another negative number, so that a copy of one is noticed as well.
+double sentinel(std::ptrdiff_t offset) { return -1.0 - static_cast<double>(offset); }
+
+// Calls `visit` for each decomposition, boundary and size that fits on these ranks.
+void for_each_grid(const std::function<void(const Grid &)> &visit) {
+  int ranks = 0, visited = 0, split_x = 0;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 12, 3}, Int3{12, 3, 1}})
+    for (int sides = 0; sides < (cells[2] == 1 ? 4 : 8); ++sides)
+      for (int px = 1; px <= ranks; ++px)
+        for (int py = 1; py <= ranks; ++py) {
+          GridSpec spec;
+          spec.cells = cells;
+          for (int d = 0; d < 3; ++d) spec.boundary[d] = sides >> d & 1 ? Boundary::wall : Boundary::periodic;
+          spec.processors = {px, py, 0};
+          if (!Grid::why_not(spec, ranks).empty()) continue;
+          Grid grid;
+          ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+          SCOPED_TRACE(::testing::Message()
+                       << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << grid.processors(0) << " x "
+                       << grid.processors(1) << " x " << grid.processors(2) << ", walls " << sides);
+          visit(grid);
+          ++visited;
+          split_x += grid.processors(0) > 1;
+        }
+  EXPECT_GE(visited, 30);
+  EXPECT_GE(split_x, ranks > 1 ? 16 : 0);
+}
+
+template <class Visit>
+void for_each_point(const Layout &own, int fields, const Visit &visit) {
+  for (int f = 0; f < fields; ++f)
+    for (int k = -own.ghosts[2]; k < own.cells[2] + own.ghosts[2]; ++k)
+      for (int j = -own.ghosts[1]; j < own.cells[1] + own.ghosts[1]; ++j)
+        for (int i = -own.ghosts[0]; i < own.cells[0] + own.ghosts[0]; ++i) visit(f, Int3{i, j, k});
+}
+
+bool is_owned(const Grid &grid, const Int3 &local) {
+  for (int d = 0; d < 3; ++d)
+    if (local[d] < 0 || local[d] >= grid.points_end(d, true)) return false;
+  return true;
+}
+
+void prepare(const Grid &grid, FieldBlock &block) {
+  const Layout &own = grid.layout();
+  for (std::ptrdiff_t n = 0; n < own.size * block.count(); ++n) block.data()[n] = sentinel(n);
+  for_each_point(own, block.count(), [&](int f, const Int3 &p) {
+    if (is_owned(grid, p))
+      block[f](p[0], p[1], p[2]) = truth(f, own.begin[0] + p[0], own.begin[1] + p[1], own.begin[2] + p[2]);
+  });
+}
+
+// Wrong values anywhere in the memory of the block.
+int count_errors(const Grid &grid, const FieldBlock &block, int width) {
+  const Layout &own = grid.layout();
+  std::vector<double> expected(own.size * block.count());
+  for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = sentinel(n);
+  for_each_point(own, block.count(), [&](int f, const Int3 &p) {
+    Int3 global{};
+    for (int d = 0; d < 3; ++d) {
+      const int n = grid.cells()[d], g = own.begin[d] + p[d];
+      if (p[d] < -width || p[d] >= own.cells[d] + width) return;
+      if (grid.is_wall(d) && (g < 0 || g > n)) return;
+      global[d] = grid.is_wall(d) ? g : (g + n) % n;
+    }
+    expected[own.offset(p[0], p[1], p[2]) + f * own.size] = truth(f, global[0], global[1], global[2]);
+  });
+  int errors = 0;
+  for (std::size_t n = 0; n < expected.size(); ++n) errors += block.data()[n] != expected[n];
+  return errors;
+}
+
+// Ghosts get the right value; owned points, ghosts behind walls, outer ghosts and padding keep theirs.
+TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
+  for_each_grid([](const Grid &grid) {
+    GhostExchange exchange(grid);
+    for (const int fields : {1, 3, 7})
+      for (const int width : {1, 2, 3}) {
+        FieldBlock block(grid, fields);
+        prepare(grid, block);
+        ASSERT_EQ(exchange.update(block, width), 0);
+        EXPECT_EQ(count_errors(grid, block, width), 0) << fields << " fields, width " << width;
+      }
+  });
+}
+
+TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
+  for_each_grid([](const Grid &grid) {
+    GhostExchange exchange(grid);
+    FieldBlock a(grid, 3), b(grid, 3), c(grid, 1), d(grid, 3);
+    for (FieldBlock *block : {&a, &b, &c, &d}) prepare(grid, *block);
+    for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] *= 2;  // the twin of a must not get a's
+    ASSERT_EQ(exchange.begin(a, 3), 0);
+    ASSERT_EQ(exchange.begin(b, 3), 0);
+    ASSERT_EQ(exchange.begin(c, 1), 0);
+    ASSERT_EQ(exchange.begin(d, 1), 0);
+    ASSERT_EQ(exchange.end(d, 1), 0);
+    ASSERT_EQ(exchange.end(b, 3), 0);
+    ASSERT_EQ(exchange.end(a, 3), 0);
+    ASSERT_EQ(exchange.end(c, 1), 0);
+    for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] /= 2;
+    EXPECT_EQ(count_errors(grid, a, 3), 0);
+    EXPECT_EQ(count_errors(grid, b, 3), 0);
+    EXPECT_EQ(count_errors(grid, c, 1), 0);
+    EXPECT_EQ(count_errors(grid, d, 1), 0);
+  });
+}
+
+// An overlapped exchange sends what was there at begin() and leaves the inner cells free to be read.
+TEST(GhostExchange, CanBeRepeatedAfterSwap) {
+  for_each_grid([](const Grid &grid) {
+    GhostExchange exchange(grid);
+    FieldBlock now(grid, 3), next(grid, 3);
+    for (int round = 0; round < 3; ++round) {
+      prepare(grid, next);
+      ASSERT_EQ(exchange.update(next, 3), 0);
+      now.swap(next);
+      EXPECT_EQ(count_errors(grid, now, 3), 0);
+    }
+  });
+}
+
+// Exchange and walls together: each rank's ghosts are, bit for bit, those of the undivided grid.
+TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
+  for_each_grid([](const Grid &grid) {
+    GridSpec spec = grid.spec();
+    spec.processors = {0, 0, 0};
+    Grid whole;
+    ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
+    Walls walls;
+    for (int d = 0; d < 3; ++d)
+      for (int side = 0; side < 2; ++side) walls.motion[d][side] = {{.1 + d, .2 + side, .3 - d}, 1.7, .3 * side};
+    const int dimension = grid.dimension();
+    const int components = static_cast<int>(tensor_components(dimension).size());
+    for (const int width : {1, 3}) {
+      const auto fill = [&](const Grid &g, FieldBlock &velocity, FieldBlock &tensor) {
+        const Layout &own = g.layout();
+        for (FieldBlock *block : {&velocity, &tensor}) {
+          for (int f = 0; f < block->count(); ++f) block->fill(f, poison);
+          for_each_point(own, block->count(), [&](int f, const Int3 &p) {
+            if (is_owned(g, p))
+              (*block)[f](p[0], p[1], p[2]) =
+                  std::sin(truth(f, own.begin[0] + p[0], own.begin[1] + p[1], own.begin[2] + p[2]));
+          });
+        }
+        GhostExchange exchange(g);
+        ASSERT_EQ(exchange.update(velocity, width), 0);
+        ASSERT_EQ(exchange.update(tensor, width), 0);
+        fill_wall_ghosts_velocity(g, walls, .7, velocity, width);
+        fill_wall_ghosts_tensor(g, tensor, width);
+      };
+      FieldBlock velocity(grid, dimension), tensor(grid, components);
+      FieldBlock whole_velocity(whole, dimension), whole_tensor(whole, components);
+      fill(grid, velocity, tensor);
+      fill(whole, whole_velocity, whole_tensor);
+      int errors = 0, gaps = 0;
+      const Layout &own = grid.layout();
+      for_each_point(own, components, [&](int f, const Int3 &p) {
+        for (int d = 0; d < dimension; ++d)
+          if (p[d] < -width || p[d] >= own.cells[d] + width) return;
+        Int3 g{};
+        for (int d = 0; d < 3; ++d) {
+          g[d] = own.begin[d] + p[d];
+          if (!grid.is_wall(d)) g[d] = (g[d] + grid.cells()[d]) % grid.cells()[d];
+        }
+        const auto compare = [&](const FieldBlock &part, const FieldBlock &all) {
+          const double x = part[f](p[0], p[1], p[2]), y = all[f](g[0], g[1], g[2]);
+          errors += std::memcmp(&x, &y, sizeof x) != 0;
+          gaps += !std::isfinite(x);
+        };
+        if (f < dimension) compare(velocity, whole_velocity);
+        compare(tensor, whole_tensor);
+      });
+      EXPECT_EQ(errors, 0) << "width " << width;
+      EXPECT_EQ(gaps, 0) << "width " << width;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace eulastic

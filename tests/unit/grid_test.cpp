@@ -1,0 +1,160 @@
+// Decompositions, their refusals, and the memory layout of one rank.
+#include "field/field_block.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace eulastic {
+namespace {
+
+GridSpec box(const Int3 &cells, const Int3 &processors = {0, 0, 0}) {
+  GridSpec spec;
+  spec.cells = cells;
+  spec.processors = processors;
+  return spec;
+}
+
+TEST(GridDecomposition, TakesZThenYThenX) {
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 1), (Int3{1, 1, 1}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 4), (Int3{1, 1, 4}));  // 2 x 2 has as many ghosts, not contiguous
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 8), (Int3{1, 2, 4}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 64), (Int3{1, 8, 8}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 1}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 2), (Int3{1, 2, 1}));  // 7 ghosts per x rather than 9
+  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 3), (Int3{1, 3, 1}));  // 7 cells do not make three times 3
+  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 4), (Int3{1, 2, 2}));
+}
+
+TEST(GridDecomposition, SplitsXOnlyWhenItMust) {
+  EXPECT_EQ(Grid::decompose(box({20, 5, 1}), 4), (Int3{4, 1, 1}));
+  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 6), (Int3{2, 3, 1}));
+  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 5), (Int3{5, 1, 1}));
+}
+
+TEST(GridDecomposition, ObeysOrders) {
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {2, 0, 0}), 4), (Int3{2, 1, 2}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {0, 4, 0}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {0, 0, 2}), 4), (Int3{1, 2, 2}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {4, 1, 1}), 4), (Int3{4, 1, 1}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {2, 2, 0}), 3), (Int3{0, 0, 0}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 1}, {0, 0, 2}), 4), (Int3{0, 0, 0}));
+  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {-1, 0, 0}), 4), (Int3{0, 0, 0}));
+}
+
+// Whatever is answered multiplies to the number of ranks and leaves every rank its 3 cells; whatever is refused has
+// no product of ranks with 3 cells each.
+TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
+  for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 3, 3}, Int3{520, 4, 3}})
+    for (int ranks = 1; ranks <= 40; ++ranks) {
+      const GridSpec spec = box(cells);
+      const Int3 best = Grid::decompose(spec, ranks);
+      bool possible = false;
+      for (int px = 1; px <= ranks; ++px)
+        for (int py = 1; px * py <= ranks; ++py)
+          if (ranks % (px * py) == 0) {
+            const int pz = ranks / (px * py);
+            possible |= px <= cells[0] / 3 && py <= cells[1] / 3 && (cells[2] == 1 ? pz == 1 : pz <= cells[2] / 3);
+          }
+      EXPECT_EQ(best[0] > 0, possible) << cells[0] << " cells in x, " << ranks << " ranks";
+      EXPECT_EQ(Grid::why_not(spec, ranks).empty(), possible);
+      if (best[0] == 0) continue;
+      EXPECT_EQ(best[0] * best[1] * best[2], ranks);
+      for (int d = 0; d < 3; ++d) EXPECT_GE(cells[d] / best[d], d == 2 && cells[2] == 1 ? 1 : 3);
+    }
+}
+
+TEST(GridDecomposition, SaysWhyNot) {
+  EXPECT_EQ(Grid::why_not(box({64, 64, 64}), 4), "");
+  EXPECT_EQ(Grid::why_not(box({8, 2, 8}), 1), "2 cells in direction y, at least 3 are needed");
+  EXPECT_EQ(Grid::why_not(box({8, 8, 2}), 1), "2 cells in direction z, at least 3 are needed");
+  EXPECT_EQ(Grid::why_not(box({0, 8, 1}), 1), "0 cells in direction x, at least 3 are needed");
+  EXPECT_EQ(Grid::why_not(box({5, 5, 5}), 2),
+            "2 ranks cannot share 5 x 5 x 5 cells: each rank needs at least 3 cells in every direction");
+  EXPECT_EQ(Grid::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
+            "3 ranks cannot share 64 x 64 x 64 cells as 2 x 2 x 0 ranks (0 = free): the product must be 3 and each "
+            "rank needs at least 3 cells in every direction");
+}
+
+TEST(GridGeometry, SpacingVolumeAndWalls) {
+  GridSpec spec = box({8, 4, 5});
+  spec.length = {2, 3, 10};
+  spec.boundary = {Boundary::periodic, Boundary::wall, Boundary::wall};
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  EXPECT_EQ(grid.spacing(), (Real3{.25, .75, 2}));
+  EXPECT_EQ(grid.cell_volume(), .375);
+  EXPECT_EQ(grid.cell_count(), 160);
+  EXPECT_EQ(grid.dimension(), 3);
+  EXPECT_FALSE(grid.is_wall(0) || grid.touches_low(0) || grid.touches_high(0));
+  EXPECT_TRUE(grid.is_wall(1) && grid.touches_low(1) && grid.touches_high(1));
+  EXPECT_EQ(grid.points_end(0, true), 8);
+  EXPECT_EQ(grid.points_end(1, true), 5);
+  EXPECT_EQ(grid.points_end(1, false), 4);
+
+  spec.cells[2] = 1;  // 2-D: a wall in z means nothing
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  EXPECT_EQ(grid.dimension(), 2);
+  EXPECT_EQ(grid.cell_volume(), .1875);
+  EXPECT_FALSE(grid.is_wall(2) || grid.touches_low(2) || grid.touches_high(2));
+  EXPECT_EQ(grid.points_end(2, true), 1);
+  EXPECT_EQ(grid.layout().ghosts, (Int3{3, 3, 0}));
+}
+
+TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
+  std::vector<int> seen(60);
+  for (const Segment &row : grid.rows())
+    for (int i = row.i_begin; i < row.i_end; ++i) ++seen.at(i + 5 * (row.j + 4 * row.k));
+  EXPECT_EQ(seen, std::vector<int>(60, 1));
+}
+
+// Rows start on 64-byte lines, strides avoid large powers of two, and no two points of a block share memory.
+TEST(FieldBlockLayout, AlignedAndWithoutOverlap) {
+  for (const Int3 &cells :
+       {Int3{3, 3, 3}, Int3{5, 9, 7}, Int3{8, 4, 1}, Int3{58, 10, 4}, Int3{50, 58, 3}, Int3{250, 3, 1}}) {
+    Grid grid;
+    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells)), 0);
+    const Layout &own = grid.layout();
+    const int fields = 3;
+    FieldBlock block(grid, fields);
+    EXPECT_EQ(block.bytes(), sizeof(double) * own.size * fields);
+    EXPECT_NE(own.sy % 64, 0);
+    EXPECT_NE(own.sz % 512, 0);
+    std::vector<int> used(own.size * fields);
+    for (int f = 0; f < fields; ++f)
+      for (int k = -own.ghosts[2]; k < cells[2] + own.ghosts[2]; ++k)
+        for (int j = -own.ghosts[1]; j < cells[1] + own.ghosts[1]; ++j) {
+          EXPECT_EQ(reinterpret_cast<std::uintptr_t>(block[f].row(j, k)) % 64, 0u);
+          for (int i = -own.ghosts[0]; i < cells[0] + own.ghosts[0]; ++i) {
+            const std::ptrdiff_t at = &block[f](i, j, k) - block.data();
+            EXPECT_EQ(at, own.offset(i, j, k) + f * own.size);
+            ++used.at(at);
+          }
+        }
+    for (const int times : used) EXPECT_LE(times, 1);
+  }
+}
+
+TEST(FieldBlockLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
+  FieldBlock a(grid, 2), b(grid, 1);
+  const std::ptrdiff_t size = grid.layout().size;
+  for (std::ptrdiff_t n = 0; n < 2 * size; ++n) ASSERT_EQ(a.data()[n], 0);
+  a.fill(1, 7);
+  for (std::ptrdiff_t n = 0; n < 2 * size; ++n) ASSERT_EQ(a.data()[n], n < size ? 0 : 7);
+  a.swap(b);
+  EXPECT_EQ(a.count(), 1);
+  EXPECT_EQ(b.count(), 2);
+  EXPECT_EQ(b[1](-3, -3, -3), 7);
+  const FieldBlock c = std::move(b);
+  EXPECT_TRUE(c && a);
+  EXPECT_FALSE(b || FieldBlock());  // a block that was moved away is empty
+}
+
+}  // namespace
+}  // namespace eulastic
