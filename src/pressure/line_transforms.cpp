@@ -1,0 +1,75 @@
+#ifdef EULASTIC_HAVE_FFTW
+#include "pressure/line_transforms.hpp"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+
+void LineTransform::Destroy::operator()(fftw_plan_s *plan) const noexcept { fftw_destroy_plan(plan); }
+void LineTransform::Free::operator()(double *p) const noexcept { fftw_free(p); }
+
+PetscErrorCode LineTransform::create(Boundary boundary, int cells) {
+  PetscFunctionBeginUser;
+  boundary_ = boundary;
+  cells_ = cells;
+  pitch_ = (cells + 7) / 8 * 8;
+  if (pitch_ % 512 == 0) pitch_ += 8;  // eight lines 4 KiB apart would share their cache sets
+  const std::size_t size = std::size_t(batch) * pitch_;
+  in_.reset(fftw_alloc_real(size));
+  out_.reset(fftw_alloc_real(size));
+  PetscCheck(in_ && out_, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for transforms of %d cells", cells);
+  const bool periodic = boundary == Boundary::periodic;
+  const auto plan = [&](fftw_r2r_kind kind) {
+    return fftw_plan_many_r2r(1, &cells_, batch, in_.get(), nullptr, 1, pitch_, out_.get(), nullptr, 1, pitch_, &kind,
+                              FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+  };
+  forward_.reset(plan(periodic ? FFTW_R2HC : FFTW_REDFT10));
+  backward_.reset(plan(periodic ? FFTW_HC2R : FFTW_REDFT01));
+  PetscCheck(forward_ && backward_, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW has no plan for %d cells", cells);
+  double add, multiply, fused;
+  fftw_flops(forward_.get(), &add, &multiply, &fused);
+  flops_ = add + multiply + 2 * fused;
+  PetscFunctionReturn(0);
+}
+
+double LineTransform::stiffness(int m) const {
+  // Half-complex order keeps cosine m at m and sine m at N - m: the formula gives both the same.
+  const double sine = std::sin(M_PI * m / (boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_));
+  return 4 * sine * sine;
+}
+
+void LineTransform::forward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride) {
+  apply(forward_, data, lines, distance, stride);
+}
+
+void LineTransform::backward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride) {
+  apply(backward_, data, lines, distance, stride);
+}
+
+void LineTransform::apply(const Plan &plan, double *data, std::ptrdiff_t lines, std::ptrdiff_t distance,
+                          std::ptrdiff_t stride) {
+  for (std::ptrdiff_t first = 0; first < lines; first += batch) {
+    const int n = static_cast<int>(std::min<std::ptrdiff_t>(batch, lines - first));
+    double *block = data + first * distance;
+    // Unit stride on the side of the field, whichever way the lines run.
+    if (stride == 1)
+      for (int l = 0; l < n; ++l) std::copy_n(block + l * distance, cells_, in_.get() + l * pitch_);
+    else
+      for (int m = 0; m < cells_; ++m)
+        for (int l = 0; l < n; ++l) in_[l * pitch_ + m] = block[l * distance + m * stride];
+    // The input of the last batch is destroyed; transformed again and again it would overflow.
+    std::fill_n(in_.get() + n * pitch_, (batch - n) * pitch_, 0.0);
+    fftw_execute(plan.get());
+    if (stride == 1)
+      for (int l = 0; l < n; ++l) std::copy_n(out_.get() + l * pitch_, cells_, block + l * distance);
+    else
+      for (int m = 0; m < cells_; ++m)
+        for (int l = 0; l < n; ++l) block[l * distance + m * stride] = out_[l * pitch_ + m];
+  }
+}
+
+}  // namespace eulastic
+#endif

@@ -1,0 +1,48 @@
+// The real transforms that make the second difference along a line diagonal: R2HC (periodic), DCT-II and DCT-III
+// (walls, even reflection about the face), by FFTW (Frigo and Johnson, Proc. IEEE 93, 2005).
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <memory>
+
+struct fftw_plan_s;
+
+namespace eulastic {
+
+/// Transforms lines in batches of one fixed size through aligned scratch of its own. Plans are estimated, so that a
+/// line comes out with the same bits whatever its place in a batch and whichever rank transforms it.
+class LineTransform {
+public:
+  static constexpr int batch = 8;
+
+  PetscErrorCode create(Boundary boundary, int cells);
+  /// Value m of a transformed line belongs to the second difference q(i-1) - 2 q(i) + q(i+1) = -stiffness(m) q(i).
+  double stiffness(int m) const;
+  /// `backward` after `forward` multiplies by this.
+  double gain() const { return boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_; }
+  /// In place; value m of line l is data[l distance + m stride].
+  void forward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
+  void backward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
+  /// Of one transform of one line, forward or backward.
+  double flops_per_line() const { return flops_ / batch; }
+
+private:
+  struct Destroy {
+    void operator()(fftw_plan_s *plan) const noexcept;
+  };
+  struct Free {
+    void operator()(double *p) const noexcept;
+  };
+  using Plan = std::unique_ptr<fftw_plan_s, Destroy>;
+  void apply(const Plan &plan, double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
+
+  Boundary boundary_ = Boundary::periodic;
+  int cells_ = 0;
+  int pitch_ = 0;  ///< doubles between two lines in scratch, a multiple of 8
+  double flops_ = 0;
+  std::unique_ptr<double[], Free> in_, out_;
+  Plan forward_, backward_;
+};
+
+}  // namespace eulastic

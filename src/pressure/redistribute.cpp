@@ -1,0 +1,82 @@
+#include "pressure/redistribute.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace eulastic {
+
+Partition::Partition(const Grid &grid) : cells_(grid.cells()) {
+  for (int d = 0; d < 3; ++d) parts_[d] = grid.processors(d);
+  for (int rank = 0; rank < grid.ranks(); ++rank) {
+    const Layout layout = grid.layout_of(rank);
+    boxes_.push_back({layout.begin, layout.cells});
+    positions_.push_back({rank % parts_[0], rank / parts_[0] % parts_[1], rank / parts_[0] / parts_[1]});
+  }
+}
+
+Partition Partition::complete(int direction, int other) const {
+  Partition result = *this;
+  const std::int64_t parts = parts_[direction];
+  for (int rank = 0; rank < ranks(); ++rank) {
+    Box &box = result.boxes_[rank];
+    Int3 &position = result.positions_[rank];
+    const std::int64_t part = position[direction], cells = box.cells[other];
+    const int low = static_cast<int>(cells * part / parts), high = static_cast<int>(cells * (part + 1) / parts);
+    box.begin[other] += low;
+    box.cells[other] = high - low;
+    box.begin[direction] = 0;
+    box.cells[direction] = cells_[direction];
+    position[other] = static_cast<int>(position[other] * parts + part);
+    position[direction] = 0;
+  }
+  result.parts_[other] *= result.parts_[direction];
+  result.parts_[direction] = 1;
+  return result;
+}
+
+PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, const Partition &to, int direction) {
+  int me;
+  PetscFunctionBeginUser;
+  if (from.parts(direction) == 1) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_rank(comm, &me));
+  const Box &mine = to.box(me);
+  std::vector<PetscSFNode> roots(mine.size());
+  for (int rank = 0; rank < from.ranks(); ++rank) {
+    const Box &theirs = from.box(rank);
+    Int3 low, high;
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::max(mine.begin[d], theirs.begin[d]);
+      high[d] = std::min(mine.begin[d] + mine.cells[d], theirs.begin[d] + theirs.cells[d]);
+    }
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i)
+          roots[mine.offset(i, j, k)] = {rank, static_cast<PetscInt>(theirs.offset(i, j, k))};
+  }
+  PetscCall(PetscSFCreate(comm, forest_.put()));
+  PetscCall(PetscSFSetGraph(forest_.get(), static_cast<PetscInt>(from.box(me).size()),
+                            static_cast<PetscInt>(roots.size()), nullptr, PETSC_OWN_POINTER, roots.data(),
+                            PETSC_COPY_VALUES));
+  PetscCall(PetscSFSetUp(forest_.get()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Redistribution::forward(std::vector<double> &values, std::vector<double> &other) {
+  PetscFunctionBeginUser;
+  if (!forest_) PetscFunctionReturn(0);
+  PetscCall(PetscSFBcastBegin(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  values.swap(other);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Redistribution::backward(std::vector<double> &values, std::vector<double> &other) {
+  PetscFunctionBeginUser;
+  if (!forest_) PetscFunctionReturn(0);
+  PetscCall(PetscSFReduceBegin(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  values.swap(other);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

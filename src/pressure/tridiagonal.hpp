@@ -1,0 +1,29 @@
+// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between walls (q_{-1} = q_0).
+#pragma once
+
+#include <vector>
+
+namespace eulastic {
+
+class TridiagonalLines {
+public:
+  static constexpr int lanes = 8;
+  static constexpr int flops_per_value = 12;
+
+  TridiagonalLines() = default;
+  /// `cells` >= 3 per line.
+  TridiagonalLines(int cells, bool periodic) : cells_(cells), periodic_(periodic), work_(3 * lanes * cells) {}
+  /// g on entry to `solve`, q on return: the eight values of one j.
+  double *row(int j) { return work_.data() + lanes * j; }
+  /// `shift` >= 0, one per lane. A lane with shift 0 is singular: its g loses its mean, and so does its q.
+  void solve(const double *shift);
+
+private:
+  void remove_mean(int lane);
+
+  int cells_ = 0;
+  bool periodic_ = false;
+  std::vector<double> work_;
+};
+
+}  // namespace eulastic
