@@ -1,0 +1,85 @@
+#include "bodies/fill_phase.hpp"
+
+#include "base/events.hpp"
+#include "bodies/volume_fraction.hpp"
+#include "field/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// Owned cells of one direction that a body may touch, seen from one periodic image of the box.
+struct Range {
+  int begin, end, shift;
+};
+
+std::vector<Range> ranges(const Grid &grid, const PlacedBody &body, int d) {
+  const int first = grid.layout().begin[d], last = first + grid.owned()[d], images = body.has_images(d) ? 1 : 0;
+  std::vector<Range> result;
+  for (int image = -images; image <= images; ++image) {
+    const int shift = image * grid.cells()[d];
+    const int begin = std::max(body.begin(d), first + shift), end = std::min(body.end(d), last + shift);
+    if (begin < end) result.push_back({begin - shift - first, end - shift - first, shift + first});
+  }
+  return result;
+}
+
+// A quick refusal, so that far bodies cost nothing: the sphere around the body misses this rank's box.
+bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const double h = grid.spacing()[d], low = grid.layout().begin[d] * h, length = grid.spec().length[d];
+    const double half = grid.owned()[d] * h / 2;
+    double distance = std::abs(place.centre[d] - (low + half));
+    if (!grid.is_wall(d)) distance = std::min(distance, length - distance);
+    if (distance > half + radius + h) return true;
+  }
+  return false;
+}
+
+void add_body(const Grid &grid, const PlacedBody &body, double name, View fraction, View label) {
+  for (const Range &z : ranges(grid, body, 2))
+    for (const Range &y : ranges(grid, body, 1))
+      for (const Range &x : ranges(grid, body, 0))
+        for (int k = z.begin; k < z.end; ++k)
+          for (int j = y.begin; j < y.end; ++j)
+            for (int i = x.begin; i < x.end; ++i) {
+              const double phi = body.fraction({i + x.shift, j + y.shift, k + z.shift});
+              if (phi <= fraction(i, j, k)) continue;
+              fraction(i, j, k) = phi;
+              label(i, j, k) = name;
+            }
+}
+
+}  // namespace
+
+PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
+                          int first_label, Phase *phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  const auto &components = tensor_components(grid.dimension());
+  phase->species = spec.name;
+  phase->material.shear_modulus = spec.shear_modulus;
+  phase->fraction = FieldBlock(grid, 1);
+  phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
+  phase->label = FieldBlock(grid, 1);
+  const View fraction = phase->fraction[0], label = phase->label[0];
+  const Surface surface(spec, grid.dimension());
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    if (is_far(grid, places[b], surface.bounding_radius())) continue;
+    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), fraction, label);
+  }
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (components[c].a != components[c].b) continue;
+    const double stretch = spec.initial_stretch[components[c].a];
+    const View tensor = phase->tensor[static_cast<int>(c)];
+    phase->tensor.fill(static_cast<int>(c), 1.0);
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i)
+        if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,15 @@
+// A phase at the start: solid fraction, left Cauchy-Green tensor and labels of placed bodies.
+#pragma once
+
+#include "bodies/placement.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+/// Allocates `phase` and fills its owned cells; ghosts are the caller's. Fraction: of the fullest body of a cell.
+/// Tensor: B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere. Label: first_label + index in `places`
+/// (first_label >= 1) of the fullest body where phi > 0, the first of equals; else 0.
+PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
+                          int first_label, Phase *phase);
+
+}  // namespace eulastic

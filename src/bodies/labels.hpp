@@ -1,0 +1,20 @@
+// Labels follow the moving bodies.
+//
+// Cells with phi > 1/2 keep their label: they name the body. All others take the label of a named neighbour, layer
+// by layer, so that the labels between two bodies move with them. Synchronous, hence free of sweep order and ranks.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+inline constexpr double label_threshold = 1e-6;  ///< a cell with less phi has no label
+
+/// Updates phase->label on owned cells (and one ghost layer of fraction); to be called, on a schedule that is part of
+/// the run, before the interface has moved by more than half a cell since the last call. Layers taken anew: four. A
+/// cell takes the label of a face neighbour before that of an edge or corner neighbour, then of the one with the
+/// largest phi, then the smallest label; beyond four layers it keeps its own, if it has one.
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase);
+
+}  // namespace eulastic

@@ -1,0 +1,178 @@
+#include "bodies/measures.hpp"
+
+#include "base/events.hpp"
+#include "bodies/body_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+// Order of the sums of one body; second moments xx, yy, zz, yz, xz, xy.
+constexpr int first_moment = 1, second_moment = 4, momentum = 10;
+constexpr int all_sums = 13, position_sums = 4;
+
+// Calls visit(body index, phi, i, j, k) for every owned cell with a label.
+template <class Visit>
+void for_each_cell(const Grid &grid, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
+  for (const Phase &phase : phases) {
+    const ConstView fraction = phase.fraction[0], label = phase.label[0];
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
+        if (body >= 0 && body < bodies) visit(body, fraction(i, row.j, row.k), i, row.j, row.k);
+      }
+  }
+}
+
+// Cells from the reference to the nearest image of a local cell.
+Real3 offset(const Grid &grid, const Int3 &reference, const Int3 &cell) {
+  Real3 x{};
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const int n = grid.cells()[d];
+    int distance = grid.layout().begin[d] + cell[d] - reference[d];
+    if (!grid.is_wall(d)) {
+      distance = (distance + n / 2) % n;
+      distance += (distance < 0 ? n : 0) - n / 2;
+    }
+    x[d] = distance;
+  }
+  return x;
+}
+
+// Eigenvalues of the symmetric matrix xx, yy, zz, yz, xz, xy, descending, by cyclic Jacobi rotations.
+Real3 eigenvalues(const std::array<double, 6> &m) {
+  double a[3][3] = {{m[0], m[5], m[4]}, {m[5], m[1], m[3]}, {m[4], m[3], m[2]}};
+  for (int sweep = 0; sweep < 30; ++sweep)
+    for (int p = 0; p < 2; ++p)
+      for (int q = p + 1; q < 3; ++q) {
+        if (a[p][q] == 0) continue;
+        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c, apq = a[p][q];
+        const int r = 3 - p - q;
+        const double arp = a[r][p], arq = a[r][q];
+        a[p][p] -= t * apq;
+        a[q][q] += t * apq;
+        a[p][q] = a[q][p] = 0;
+        a[r][p] = a[p][r] = c * arp - s * arq;
+        a[r][q] = a[q][r] = s * arp + c * arq;
+      }
+  Real3 values{a[0][0], a[1][1], a[2][2]};
+  std::sort(values.begin(), values.end(), [](double x, double y) { return x > y; });
+  return values;
+}
+
+// Lengths, deformation and inclination from central second moments per volume.
+void set_lengths(const std::array<double, 6> &moments, int dimension, BodyMeasure *body) {
+  Real3 squares = eigenvalues(moments);
+  if (dimension == 2) {  // the xy block alone
+    const double mean = (moments[0] + moments[1]) / 2, half = (moments[0] - moments[1]) / 2;
+    const double radius = std::sqrt(half * half + moments[5] * moments[5]);
+    squares = {mean + radius, mean - radius, 0};
+  }
+  for (int d = 0; d < dimension; ++d) body->semi_axes[d] = std::sqrt((dimension + 2) * std::max(squares[d], 0.0));
+  const double a = body->semi_axes[0], c = body->semi_axes[dimension - 1];
+  body->taylor_deformation = a + c > 0 ? (a - c) / (a + c) : 0;
+  const double angle = std::atan2(2 * moments[5], moments[0] - moments[1]) / 2 * degrees;
+  body->inclination = angle > -90 ? angle : 90;
+}
+
+BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, double speed) {
+  BodyMeasure body;
+  const Real3 &h = grid.spacing();
+  const double cells = sums.value(b, 0);
+  body.volume = cells * grid.cell_volume();
+  Real3 mean{};
+  for (int d = 0; d < 3; ++d) {
+    mean[d] = cells > 0 ? sums.value(b, first_moment + d) / cells : 0;
+    body.centroid[d] = (reference[d] + 0.5 + mean[d]) * h[d];
+    body.velocity[d] = cells > 0 ? sums.value(b, momentum + d) / cells * speed : 0;
+  }
+  if (!(cells > 0)) return body;
+  std::array<double, 6> moments{};
+  constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  for (int c = 0; c < 6; ++c) {
+    const int p = pairs[c][0], q = pairs[c][1];
+    if (std::max(p, q) >= grid.dimension()) continue;
+    const double central = sums.value(b, second_moment + c) / cells - mean[p] * mean[q];
+    moments[c] = (central - (p == q ? 1.0 / 12 : 0.0)) * h[p] * h[q];
+  }
+  set_lengths(moments, grid.dimension(), &body);
+  return body;
+}
+
+}  // namespace
+
+void BodyTracker::add_phase(const Grid &grid, const std::vector<BodyPlace> &places) {
+  for (const BodyPlace &place : places) {
+    Int3 cell{};
+    for (int d = 0; d < grid.dimension(); ++d) {
+      const int at = static_cast<int>(std::floor(place.centre[d] / grid.spacing()[d]));
+      cell[d] = std::clamp(at, 0, grid.cells()[d] - 1);
+    }
+    references_.push_back(cell);
+    species_.push_back(phases_);
+  }
+  ++phases_;
+}
+
+PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &phases) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  BodySums sums(bodies(), position_sums);
+  for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+    const Real3 x = offset(grid, references_[b], {i, j, k});
+    sums.add(b, 0, phi);
+    for (int d = 0; d < grid.dimension(); ++d) sums.add(b, first_moment + d, phi * x[d]);
+  });
+  PetscCall(sums.reduce(grid.comm()));
+  for (int b = 0; b < bodies(); ++b)
+    for (int d = 0; d < grid.dimension(); ++d) {
+      const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
+      // A body that fills a periodic direction has a mean of -1/2 there and must stay.
+      if (std::abs(mean) > 0.75) references_[b][d] += static_cast<int>(std::lround(mean));
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+                                    std::vector<BodyMeasure> *result) const {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  const int dimension = grid.dimension();
+  const auto centred = [&](int d, int i, int j, int k) {
+    const double *face = &velocity[d](i, j, k);
+    return (face[0] + face[velocity[d].stride(d)]) / 2;
+  };
+  double speed = 0;  // scale of the fixed-point velocities
+  for_each_cell(grid, phases, bodies(), [&](int, double, int i, int j, int k) {
+    for (int d = 0; d < dimension; ++d) speed = std::max(speed, std::abs(centred(d, i, j, k)));
+  });
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &speed, 1, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  BodySums sums(bodies(), all_sums);
+  for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+    const Real3 x = offset(grid, references_[b], {i, j, k});
+    sums.add(b, 0, phi);
+    for (int d = 0; d < dimension; ++d) {
+      sums.add(b, first_moment + d, phi * x[d]);
+      sums.add(b, second_moment + d, phi * x[d] * x[d]);
+      if (speed > 0) sums.add(b, momentum + d, phi * (centred(d, i, j, k) / speed));
+    }
+    sums.add(b, second_moment + 3, phi * x[1] * x[2]);
+    sums.add(b, second_moment + 4, phi * x[0] * x[2]);
+    sums.add(b, second_moment + 5, phi * x[0] * x[1]);
+  });
+  PetscCall(sums.reduce(grid.comm()));
+  result->clear();
+  for (int b = 0; b < bodies(); ++b) {
+    result->push_back(evaluate(grid, sums, b, references_[b], speed));
+    result->back().label = b + 1;
+    result->back().species = species_[b];
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,48 @@
+// What is known of every body: volume, unwrapped centroid, velocity, lengths, deformation, inclination.
+//
+// From the sums of phi, phi x, phi x x and phi u over the cells of a label, x in whole cells from a reference cell
+// that follows the body. Sums are integers: the same bits on any ranks. sum phi x x holds h^2/12 per volume too much,
+// on average over the positions of a curved surface in its cells (phi is averaged over a cell): it is subtracted.
+#pragma once
+
+#include "bodies/placement.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+struct BodyMeasure {
+  int label = 0;                  ///< 1 + index of the body
+  int species = 0;                ///< index of its phase
+  double volume = 0;              ///< sum of phi; area in 2-D; 0 if the body is gone, then only the centroid is set
+  Real3 centroid{};               ///< not wrapped into the box: continuous in time
+  Real3 velocity{};               ///< phi-weighted mean
+  Real3 semi_axes{};              ///< of the ellipsoid (2-D: ellipse) with the same second moments, longest first
+  double taylor_deformation = 0;  ///< (a - c)/(a + c), longest and shortest of them
+  double inclination = 0;         ///< of the long axis in the xy plane (of the xy moments) from x; (-90, 90] degrees
+};
+
+class BodyTracker {
+public:
+  /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
+  void add_phase(const Grid &grid, const std::vector<BodyPlace> &places);
+  int bodies() const { return static_cast<int>(references_.size()); }
+
+  /// Moves the reference cells to the centroids. Call after carry_labels(), on its schedule and nowhere else: then
+  /// the unwrapping never depends on how often bodies are measured. One Allreduce.
+  PetscErrorCode follow(const Grid &grid, const std::vector<Phase> &phases);
+  /// Measures all bodies, changing nothing; every rank gets the result. `velocity`: u, v (, w) on faces with one
+  /// valid ghost layer. Two Allreduces.
+  PetscErrorCode measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+                         std::vector<BodyMeasure> *bodies) const;
+
+  /// Unwrapped reference cells, one per body: with the fields, all a restart needs.
+  const std::vector<Int3> &references() const { return references_; }
+  void set_references(const std::vector<Int3> &references) { references_ = references; }
+
+private:
+  std::vector<Int3> references_;
+  std::vector<int> species_;
+  int phases_ = 0;
+};
+
+}  // namespace eulastic

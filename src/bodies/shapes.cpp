@@ -1,0 +1,130 @@
+#include "bodies/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Real3 red_cell{0.207161, 2.002558, -1.122762};
+// Bound of |d/dq [(1-q) P(q)^2]| on 0 <= q <= 1, P the polynomial above; beyond, level() is linear in q.
+constexpr double red_cell_slope = 1.23;
+
+double profile(double q) noexcept { return red_cell[0] + q * (red_cell[1] + q * red_cell[2]); }
+
+struct Turn {
+  double c, s;
+};
+
+Turn turn(double degrees) {
+  const double angle = std::remainder(degrees, 360.0);
+  if (std::remainder(angle, 90.0) == 0) {
+    const int quarter = static_cast<int>(angle / 90.0);
+    return {quarter == 0 ? 1.0 : std::abs(quarter) == 2 ? -1.0 : 0.0, std::abs(quarter) == 1 ? double(quarter) : 0.0};
+  }
+  return {std::cos(angle * (pi / 180)), std::sin(angle * (pi / 180))};
+}
+
+}  // namespace
+
+Rotation rotation(const Real3 &degrees) {
+  const Turn x = turn(degrees[0]), y = turn(degrees[1]), z = turn(degrees[2]);
+  return {{{z.c * y.c, z.c * y.s * x.s - z.s * x.c, z.c * y.s * x.c + z.s * x.s},
+           {z.s * y.c, z.s * y.s * x.s + z.c * x.c, z.s * y.s * x.c - z.c * x.s},
+           {-y.s, y.c * x.s, y.c * x.c}}};
+}
+
+Surface::Surface(const SpeciesSpec &spec, int dimension)
+    : biconcave_(spec.shape == Shape::biconcave), axis_(spec.axis), radius_(infinity), inverse_{} {
+  for (int d = 0; d < dimension; ++d) {
+    double semi_axis = spec.radius;
+    if (spec.shape == Shape::ellipsoid) semi_axis = spec.semi_axes[d];
+    if (spec.shape == Shape::slab) semi_axis = d == axis_ ? (spec.interval[1] - spec.interval[0]) / 2 : infinity;
+    if (spec.shape == Shape::cylinder && d == axis_) semi_axis = infinity;
+    inverse_[d] = 1 / semi_axis;
+    radius_ = std::min(radius_, semi_axis);
+  }
+}
+
+double Surface::level(const Real3 &y) const noexcept {
+  if (biconcave_) {
+    // z^2 - h(r)^2/4: a polynomial, also at the rim where h has a vertical tangent; linear in q outside the rim.
+    const double z = y[axis_], b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
+    const double q = (b * b + c * c) / (radius_ * radius_), p = profile(std::min(q, 1.0));
+    return z * z - radius_ * radius_ * (1 - q) * p * p / 4;
+  }
+  const double a = y[0] * inverse_[0], b = y[1] * inverse_[1], c = y[2] * inverse_[2];
+  return (std::sqrt(a * a + b * b + c * c) - 1) * radius_;
+}
+
+double Surface::slope(const Real3 &y, double reach) const noexcept {
+  if (!biconcave_) return 1;  // |grad| <= radius_ / shortest semi-axis
+  const double b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
+  const double z = 2 * (std::abs(y[axis_]) + reach);
+  const double r = red_cell_slope / 2 * (std::sqrt(b * b + c * c) + reach);
+  return std::sqrt(z * z + r * r);
+}
+
+double Surface::support(const Real3 &n) const {
+  if (biconcave_) {
+    const double along = std::abs(n[axis_]), across = std::sqrt(std::max(0.0, 1 - along * along));
+    constexpr int samples = 512;
+    double best = 0;
+    for (int s = 0; s <= samples; ++s) {
+      const double sine = std::sin(pi / 2 * s / samples), cosine = std::cos(pi / 2 * s / samples);
+      best = std::max(best, across * sine + along * cosine * profile(sine * sine) / 2);
+    }
+    return radius_ * (best + 3e-6);
+  }
+  double square = 0;
+  for (int d = 0; d < 3; ++d)
+    if (n[d] != 0) square += n[d] * n[d] / (inverse_[d] * inverse_[d]);
+  return std::sqrt(square);
+}
+
+double Surface::bounding_radius() const {
+  if (biconcave_) return radius_;
+  double radius = 0;
+  for (int d = 0; d < 3; ++d) radius = std::max(radius, 1 / inverse_[d]);
+  return radius;
+}
+
+double shape_volume(const SpeciesSpec &spec, int dimension) {
+  const double r = spec.radius;
+  const Real3 &c = red_cell;
+  const bool flat = dimension == 2;
+  switch (spec.shape) {
+    case Shape::sphere:
+      return flat ? pi * r * r : 4 * pi / 3 * r * r * r;
+    case Shape::ellipsoid:
+      return flat ? pi * spec.semi_axes[0] * spec.semi_axes[1]
+                  : 4 * pi / 3 * spec.semi_axes[0] * spec.semi_axes[1] * spec.semi_axes[2];
+    case Shape::biconcave:
+      return flat ? pi * r * r * (c[0] / 2 + c[1] / 8 + c[2] / 16)
+                  : pi * r * r * r * (2 * c[0] / 3 + 4 * c[1] / 15 + 16 * c[2] / 105);
+    case Shape::cylinder:
+      return flat && spec.axis != 2 ? 2 * r : pi * r * r;
+    case Shape::slab:
+      return spec.interval[1] - spec.interval[0];
+  }
+  return 0;
+}
+
+std::string why_no_shape(const SpeciesSpec &spec, int dimension) {
+  const bool round = spec.shape == Shape::sphere || spec.shape == Shape::biconcave || spec.shape == Shape::cylinder;
+  if (round && !(spec.radius > 0)) return "its radius must be positive";
+  if (spec.shape == Shape::ellipsoid)
+    for (int d = 0; d < dimension; ++d)
+      if (!(spec.semi_axes[d] > 0)) return "its semi-axes must be positive";
+  if (spec.shape == Shape::slab && !(spec.interval[1] > spec.interval[0]))
+    return "its interval must be given as low,high with low < high";
+  if (spec.axis < 0 || spec.axis > 2) return "its axis must be x, y or z";
+  if (dimension == 2 && spec.axis == 2 && (spec.shape == Shape::biconcave || spec.shape == Shape::slab))
+    return "its axis must be x or y in 2-D";
+  return {};
+}
+
+}  // namespace eulastic

@@ -1,0 +1,45 @@
+// The volume fraction phi of a placed body in a cell.
+//
+// Cells the surface may pass are halved three times; the pieces are cut by a plane that has the piece's mean level
+// and gradient (Simpson), so that the error of curvature cancels on average: a sphere of 8 cells radius has its volume
+// to 1e-6. Volumes are added as integers and positions are multiples of 2^-36 cells from the middle of the box:
+// mirrored or shifted scenes give the same bits, and faces on cell faces give exactly 0 and 1.
+#pragma once
+
+#include "bodies/placement.hpp"
+#include "bodies/shapes.hpp"
+
+#include <cstdint>
+
+namespace eulastic {
+
+/// Part of a unit cube where level + slopes . x < 0, x from its centre; the cube's edges are scaled into `slopes`.
+double half_space_fraction(double level, const Real3 &slopes) noexcept;
+
+class PlacedBody {
+public:
+  PlacedBody(const Surface &surface, const GridSpec &grid, const BodyPlace &place);
+
+  /// Global cells begin <= i < end that the body may touch, not wrapped into a periodic box.
+  int begin(int d) const noexcept { return begin_[d]; }
+  int end(int d) const noexcept { return end_[d]; }
+  /// Whether cells of direction d must be looked for in the periodic images as well.
+  bool has_images(int d) const noexcept { return has_images_[d]; }
+  /// phi of a global, unwrapped cell, 0 ... 1.
+  double fraction(const Int3 &cell) const noexcept;
+
+private:
+  Real3 body_coordinates(const Real3 &r) const noexcept;
+  std::int64_t inside(const Real3 &r, int depth) const noexcept;
+
+  const Surface &surface_;
+  int dimension_;
+  Int3 cells_;
+  Real3 spacing_, middle_;  ///< middle_: body centre from box centre, in cells
+  double half_diagonal_;    ///< of a cell
+  Rotation rotation_;
+  Int3 begin_{}, end_{};
+  std::array<bool, 3> has_images_{};
+};
+
+}  // namespace eulastic
