@@ -6,6 +6,7 @@
 #include "grid/grid.hpp"
 #include "physics/fluid.hpp"
 #include "physics/initial_velocity.hpp"
+#include "solver/solver.hpp"
 
 #include <string>
 #include <vector>
@@ -13,7 +14,6 @@
 namespace eulastic {
 
 enum class MethodKind { classic };
-enum class PressureKind { acm, smac };
 
 struct Method {
   MethodKind kind = MethodKind::classic;

@@ -1,0 +1,97 @@
+#include "app/option_source.hpp"
+
+#include "app/option_table.hpp"
+#include "app/option_values.hpp"
+#include "app/petsc_options.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace eulastic {
+namespace {
+
+// -1, -.5, -inf and -nan are values: the last two to be refused as such.
+bool is_name(const std::string &word) {
+  if (word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) || word[1] == '.')
+    return false;
+  std::string start = word.substr(1, word.find(',') - 1);
+  std::transform(start.begin(), start.end(), start.begin(), [](unsigned char c) { return std::tolower(c); });
+  return start != "inf" && start != "infinity" && start != "nan";
+}
+
+bool is_boolean_option(const std::string &name) {
+  static const std::set<std::string> names = [] {
+    std::set<std::string> set;
+    Config config;
+    for (const Option &option : option_table(config))
+      if (option.bare) set.insert(option.name);
+    return set;
+  }();
+  return names.count(name) > 0;
+}
+
+// Whether the word after option `name` is its value. PETSc's own options and booleans may have none: an existing
+// file after them is the options file.
+bool takes(const std::string &name, const std::string &word) {
+  std::error_code ignored;
+  if (is_name(word)) return false;
+  if (is_boolean_option(name) && is_boolean_word(word)) return true;
+  return !(is_petsc_option(name) || is_boolean_option(name)) || !std::filesystem::is_regular_file(word, ignored);
+}
+
+}  // namespace
+
+std::string read_words_as_entries(const std::vector<std::string> &words, const std::string &where,
+                                  std::vector<Entry> *entries, std::string *options_file) {
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    if (is_name(words[w])) {
+      Entry entry{words[w].substr(1), {}, where};
+      if (w + 1 < words.size() && takes(entry.name, words[w + 1])) entry.value = words[++w];
+      entries->push_back(entry);
+    } else if (options_file && options_file->empty() && !words[w].empty()) {
+      *options_file = words[w];
+    } else {
+      return "stray word \"" + words[w] + "\"" + where +
+             "; accepted: " + (options_file ? "one options file and options -name value" : "-name value") +
+             ", lists without spaces; see -help";
+    }
+  }
+  return {};
+}
+
+std::string split_words(const std::string &line, std::vector<std::string> *words) {
+  bool inside = false, quoted = false;
+  for (char c : line) {
+    if (!quoted && (std::isspace(static_cast<unsigned char>(c)))) {
+      inside = false;
+      continue;
+    }
+    if (!inside && c == '#') break;
+    if (!inside) words->emplace_back();
+    inside = true;
+    if (c == '"')
+      quoted = !quoted;
+    else
+      words->back() += c;
+  }
+  return quoted ? "a quote is not closed" : "";
+}
+
+std::string read_options_file(const std::string &path, std::vector<Entry> *entries) {
+  std::error_code ignored;
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path, ignored)) return "options file " + path + " cannot be read";
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::string where = " (" + path + ":" + std::to_string(number) + ")";
+    std::vector<std::string> words;
+    if (const std::string wrong = split_words(line, &words); !wrong.empty()) return wrong + where;
+    if (const std::string wrong = read_words_as_entries(words, where, entries, nullptr); !wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+}  // namespace eulastic

@@ -1,0 +1,23 @@
+// Words of the command line, of an options file or of PETSC_OPTIONS as option entries, not yet understood.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+struct Entry {
+  std::string name;   ///< without the dash
+  std::string value;  ///< empty = none
+  std::string where;  ///< " (FILE:LINE)" or the like, for messages; empty on the command line
+};
+
+/// All return what is wrong, or nothing.
+/// `options_file`: set to the one positional word; null where there must be none.
+std::string read_words_as_entries(const std::vector<std::string> &words, const std::string &where,
+                                  std::vector<Entry> *entries, std::string *options_file);
+std::string read_options_file(const std::string &path, std::vector<Entry> *entries);
+/// Words of a line: separated by white space, "..." holds a word together, # before a word starts a comment.
+std::string split_words(const std::string &line, std::vector<std::string> *words);
+
+}  // namespace eulastic

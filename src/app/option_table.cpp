@@ -1,0 +1,186 @@
+#include "app/option_table.hpp"
+
+#include "app/option_rows.hpp"
+#include "app/petsc_options.hpp"
+
+#include <set>
+
+namespace eulastic {
+namespace {
+
+const Names boundary_names{"periodic", "wall"};
+const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab"};
+const Names placement_names{"one", "list", "lattice"};
+
+void add_grid(Rows &rows, Config &config) {
+  rows.group = "Grid";
+  rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
+                "cells in x, y, z; 1 in z is 2-D, shapes then ignore z");
+  rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
+  for (int d = 0; d < 3; ++d)
+    rows.choice(std::string("boundary_") + "xyz"[d], config.grid.boundary[d], boundary_names,
+                std::string("both sides in ") + "xyz"[d]);
+  for (int d = 0; d < 3; ++d)
+    rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
+                  std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
+}
+
+void add_walls(Rows &rows, Config &config) {
+  rows.group = "Moving walls: U cos(frequency t + phase)";
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const std::string wall = std::string("wall_") + "xyz"[d] + (side ? "max" : "min");
+      WallMotion &motion = config.walls.motion[d][side];
+      const std::size_t first = rows.rows.size();
+      rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
+                "velocity U; the component normal to the wall is 0");
+      rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
+      rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
+      rows.restrict(first, std::string("boundary_") + "xyz"[d], config.grid.boundary[d], boundary_names,
+                    {Boundary::wall});
+    }
+}
+
+void add_flow(Rows &rows, Config &config) {
+  rows.group = "Fluid";
+  Fluid &fluid = config.fluid;
+  rows.real("fluid_density", fluid.density, positive, "mass/volume", "density, of the bodies too");
+  rows.real("fluid_viscosity", fluid.viscosity, positive, "mass/length/time", "dynamic viscosity, of the bodies too");
+  rows.boolean("fluid_inertia", fluid.inertia, "false drops v.grad v");
+  rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
+            "force per mass, F cos(frequency t + phase)");
+  rows.real("body_force_frequency", fluid.body_force.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("body_force_phase", fluid.body_force.phase, any_number, "rad", "phase");
+
+  rows.group = "Initial flow";
+  InitialFlow &initial = config.initial;
+  rows.choice("initial_velocity", initial.kind, initial_velocity_names(),
+              "flow at t = 0; shear_wave_ab: component a varies along b");
+  Option &amplitude =
+      rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time", "amplitude of that flow");
+  amplitude.only_with = "-initial_velocity other than zero, uniform and couette";
+  amplitude.applies = [&initial] {
+    return initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
+           initial.kind != InitialVelocity::couette;
+  };
+  rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
+}
+
+// One species; its name is the prefix.
+void add_species(Rows &rows, SpeciesSpec &spec) {
+  rows.prefix = spec.name + "_";
+  const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
+  };
+  const auto for_placement = [&](Placement wanted) {
+    rows.restrict(rows.rows.size() - 1, rows.prefix + "placement", spec.placement, placement_names, {wanted});
+  };
+  rows.choice("shape", spec.shape, shape_names, "shape; in 2-D its cut at z = 0").required = true;
+  rows.real("radius", spec.radius, positive, "length", "radius").required = true;
+  Option &diameter = rows.real("diameter", spec.radius, positive, "length", "another way to give the radius");
+  diameter.alias_of = rows.prefix + "radius";
+  diameter.text = nullptr;
+  diameter.read = [read = diameter.read, &spec](const std::string &value) {
+    std::string wrong = read(value);
+    if (wrong.empty()) spec.radius /= 2;
+    return wrong;
+  };
+  for_shapes(2, {Shape::sphere, Shape::biconcave, Shape::cylinder});
+  rows.real("semi_axes", spec.semi_axes, positive, "length", "semi-axes along x, y, z").required = true;
+  for_shapes(1, {Shape::ellipsoid});
+  rows.choice("axis", spec.axis, {"x", "y", "z"}, "axis of symmetry, or normal of a slab");
+  for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab});
+  rows.real("interval", spec.interval, any_number, "length", "low and high side of the slab").required = true;
+  for_shapes(1, {Shape::slab});
+  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
+      .required = true;
+  rows.real("initial_stretch", spec.initial_stretch, positive, "",
+            "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
+  rows.choice("placement", spec.placement, placement_names,
+              "one body, a list of bodies, or a lattice that fills the box");
+  rows.real("centre", spec.centre, any_number, "length", "centre of the body").default_note = "centre of the box";
+  for_placement(Placement::one);
+  rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
+  for_placement(Placement::list);
+  rows.integers("count", spec.count.data(), 3, at_least_one, "bodies along x, y, z");
+  for_placement(Placement::lattice);
+  rows.real("orientation", spec.orientation, any_number, "degrees", "rotations about x, then y, then z");
+  rows.prefix.clear();
+}
+
+void add_bodies(Rows &rows, Config &config) {
+  rows.group = "Bodies";
+  Option &species = rows.add("species", "", "names of the species; each has the options of species NAME");
+  species.accepted = "a list without spaces of names made of letters, digits and _, beginning with a letter";
+  species.default_note = "none";
+  species.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
+  species.text = [&config] {
+    Names names;
+    for (const SpeciesSpec &spec : config.species) names.push_back(spec.name);
+    return join(names, ",");
+  };
+  for (SpeciesSpec &spec : config.species) {
+    rows.group = "Bodies: species " + spec.name;
+    add_species(rows, spec);
+  }
+}
+
+void add_method(Rows &rows, Config &config) {
+  rows.group = "Method";
+  rows.choice("method", config.method.kind, {"classic"}, "preset of the whole scheme");
+  rows.choice("pressure_solver", config.method.pressure, {"acm", "smac"},
+              "artificial compressibility, or the exact Poisson solution");
+}
+
+void add_running(Rows &rows, Config &config) {
+  rows.group = "Time";
+  rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
+  rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "stop after so many steps; 0 = no limit");
+
+  rows.group = "Output";
+  OutputControl &output = config.output;
+  rows.path("output_dir", output.directory, "directory of everything that is written");
+  rows.boolean("output_overwrite", output.overwrite, "replace the output of an earlier run");
+  rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
+            "time between snapshots, the start and the end included; 0 = none");
+  rows.words("snapshot_fields", output.snapshot_fields,
+             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green"}, "fields in snapshots");
+  rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
+  rows.real("series_interval", output.series_interval, not_negative, "time",
+            "time between lines of series.csv; 0 = default")
+      .default_note = "time_end/200";
+
+  rows.group = "Program";
+  rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
+  rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =
+      "only on the command line";
+  rows.add("version", "", "print the version and stop").accepted = "only on the command line";
+}
+
+}  // namespace
+
+std::vector<Option> option_table(Config &config) {
+  Rows rows;
+  add_grid(rows, config);
+  add_walls(rows, config);
+  add_flow(rows, config);
+  add_bodies(rows, config);
+  add_method(rows, config);
+  add_running(rows, config);
+  return std::move(rows.rows);
+}
+
+bool is_reserved_word(const std::string &word) {
+  static const std::set<std::string> words = [] {
+    const auto first = [](const std::string &name) { return name.substr(0, name.find('_')); };
+    std::set<std::string> set;
+    Config config;
+    for (const Option &option : option_table(config)) set.insert(first(option.name));
+    for (const std::string &name : petsc_option_names()) set.insert(first(name));
+    return set;
+  }();
+  return words.count(word) > 0;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,188 @@
+#include "app/parse_options.hpp"
+
+#include "app/help_text.hpp"
+#include "app/option_source.hpp"
+#include "app/option_table.hpp"
+#include "app/option_values.hpp"
+#include "app/petsc_options.hpp"
+#include "app/validate.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace eulastic {
+namespace {
+
+/// Entries of one source; a later source wins over an earlier one.
+using Source = std::vector<Entry>;
+
+// Levenshtein.
+std::size_t edit_distance(const std::string &a, const std::string &b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+std::string unknown(const std::string &name, const std::vector<Option> &table) {
+  const std::string plain = name.substr(0, name.find('='));
+  const auto nearest = std::min_element(table.begin(), table.end(), [&](const Option &a, const Option &b) {
+    return edit_distance(plain, a.name) < edit_distance(plain, b.name);
+  });
+  return "unknown option -" + name + "; nearest known: -" + nearest->name + " (" + nearest->accepted + "); see -help";
+}
+
+// Names of the species, from the highest source that gives any.
+std::string read_species(const std::vector<Source> &sources, Config *config) {
+  const Entry *given = nullptr;
+  for (const Source &source : sources)
+    for (const Entry &entry : source)
+      if (entry.name == "species") given = &entry;
+  if (!given || given->value.empty()) return {};  // the missing value is reported later
+  std::vector<std::string> names;
+  std::string wrong = read_words(given->value, {}, &names);
+  for (const std::string &name : names) {
+    std::string first = name.substr(0, name.find('_'));
+    std::transform(first.begin(), first.end(), first.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!std::isalpha(static_cast<unsigned char>(name[0])) ||
+        !std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; }))
+      wrong = "\"" + name + "\" is not a name of letters, digits and _ that begins with a letter";
+    else if (is_reserved_word(first))
+      wrong = "\"" + name + "\" collides with the options -" + first + "...; accepted: another name";
+    config->species.emplace_back().name = name;
+  }
+  return wrong.empty() ? wrong : "-species: " + wrong + given->where;
+}
+
+class Reader {
+public:
+  explicit Reader(std::vector<Option> &table) : table_(table) {
+    for (Option &option : table) {
+      if (!index_.emplace(option.name, &option).second && clash_.empty())
+        clash_ = "-species: two species would share the option -" + option.name;
+    }
+  }
+
+  /// Reads one source over what is there.
+  std::string read(const Source &source) {
+    std::set<std::string> here;
+    for (const Entry &entry : source) {
+      if (is_petsc_option(entry.name)) continue;
+      const auto found = index_.find(entry.name);
+      if (found == index_.end()) return unknown(entry.name, table_) + entry.where;
+      const Option &option = *found->second;
+      const std::string &name = option.alias_of.empty() ? option.name : option.alias_of;
+      const auto refuse = [&](const std::string &what) {
+        return "-" + entry.name + ": " + what + "; accepted: " + option.accepted + entry.where;
+      };
+      if (!here.insert(name).second)
+        return refuse(option.alias_of.empty() ? "given twice" : "given twice, also as -" + name);
+      if (entry.value.empty() && !option.bare) return refuse("a value is missing");
+      if (!option.read) return refuse("out of place");
+      const std::string wrong = option.read(entry.value.empty() ? "true" : entry.value);
+      if (!wrong.empty()) return refuse(wrong);
+      where_[name] = entry.where;
+    }
+    return clash_;
+  }
+
+  /// Options that are missing or have no meaning beside the others.
+  std::string check_given() const {
+    for (const Option &option : table_) {
+      const bool applies = !option.applies || option.applies();
+      const auto given = where_.find(option.name);
+      if (given != where_.end() && !applies)
+        return "-" + option.name + ": has a meaning only with " + option.only_with + given->second;
+      if (given == where_.end() && applies && option.required)
+        return "-" + option.name + ": must be given; accepted: " + option.accepted;
+    }
+    return {};
+  }
+  bool given(const std::string &name) const { return where_.count(name) > 0; }
+
+private:
+  const std::vector<Option> &table_;
+  std::map<std::string, const Option *> index_;
+  std::map<std::string, std::string> where_;  ///< of what was given
+  std::string clash_;
+};
+
+std::string read_sources(const std::vector<Source> &sources, Config *config) {
+  if (std::string wrong = read_species(sources, config); !wrong.empty()) return wrong;
+  std::vector<Option> table = option_table(*config);
+  Reader reader(table);
+  for (const Source &source : sources)
+    if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
+  if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
+  for (SpeciesSpec &spec : config->species) spec.centre_given = reader.given(spec.name + "_centre");
+  if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
+  return validate(*config);
+}
+
+std::string parse_into(const std::vector<std::string> &arguments, ParseResult *result) {
+  std::vector<Source> sources(3);  // file, environment, command line: the last wins
+  std::string file;
+  if (std::string wrong = read_words_as_entries(arguments, "", &sources[2], &file); !wrong.empty()) return wrong;
+  if (!file.empty())
+    if (std::string wrong = read_options_file(file, &sources[0]); !wrong.empty()) return wrong;
+  std::vector<std::string> words;
+  std::string wrong = split_words(result->petsc_options, &words);
+  if (wrong.empty()) wrong = read_words_as_entries(words, " (in PETSC_OPTIONS)", &sources[1], nullptr);
+  if (!wrong.empty()) return wrong;
+
+  result->petsc_arguments = {"-skip_petscrc"};
+  for (const Source &source : sources)
+    for (const Entry &entry : source)
+      if (is_petsc_option(entry.name)) {
+        result->petsc_arguments.push_back("-" + entry.name);
+        if (!entry.value.empty()) result->petsc_arguments.push_back(entry.value);
+      }
+  return read_sources(sources, &result->config);
+}
+
+}  // namespace
+
+ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options) {
+  ParseResult result;
+  result.petsc_options = petsc_options;
+  for (std::size_t a = 0; a < arguments.size(); ++a) {
+    if (arguments[a] == "-help")
+      result.message = a + 1 < arguments.size() && arguments[a + 1] == "markdown" ? help_markdown() : help_text();
+    if (arguments[a] == "-version") result.message = version_text();
+    if (!result.message.empty()) return result;
+  }
+  result.error = parse_into(arguments, &result);
+  for (char &c : result.error)
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';  // one line, whatever was typed
+  return result;
+}
+
+std::string options_text(const ParseResult &result) {
+  Config config = result.config;
+  std::string text = std::string("# ") + version_text();
+  text += "# PETSC_OPTIONS: ";
+  for (char c : result.petsc_options) text += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+  text += "\n";
+  std::string group;
+  for (const Option &option : option_table(config)) {
+    if (!option.text || (option.applies && !option.applies())) continue;
+    std::string value = option.text();
+    if (value.empty()) continue;
+    if (value.find_first_of(" #") != std::string::npos) value = '"' + value + '"';
+    if (option.group != group) text += "\n# " + (group = option.group) + "\n";
+    text += "-" + option.name + " " + value + "\n";
+  }
+  return text;
+}
+
+}  // namespace eulastic
