@@ -1,0 +1,69 @@
+#include "base/progress.hpp"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+std::string duration(double seconds) {
+  if (!(seconds < 3.6e8)) return "?";
+  const long s = std::lround(seconds);
+  char text[32];
+  if (s >= 3600)
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+  else
+    std::snprintf(text, sizeof text, "%ld:%02ld", s / 60, s % 60);
+  return text;
+}
+
+}  // namespace
+
+Progress::Style Progress::style_of(std::FILE *out, int rank) {
+  return rank != 0 ? Style::silent : ::isatty(::fileno(out)) ? Style::terminal : Style::log;
+}
+
+// The run ends when the first of the two goals is reached.
+double Progress::fraction(double time, long step) const {
+  double done = 0;
+  if (goal_.time_end > goal_.time_begin) done = (time - goal_.time_begin) / (goal_.time_end - goal_.time_begin);
+  if (goal_.steps_max > goal_.steps_begin)
+    done = std::max(done, double(step - goal_.steps_begin) / double(goal_.steps_max - goal_.steps_begin));
+  return std::clamp(done, 0.0, 1.0);
+}
+
+std::string Progress::line(double time, long step, double dt, double wall) const {
+  const double done = fraction(time, step);
+  const double rate = wall > 0 ? goal_.cells * double(step - goal_.steps_begin) / wall * 1e-6 : 0;
+  char text[160];
+  std::snprintf(text, sizeof text, "%5.1f %%  time %.6g of %.6g  step %ld  dt %.3g  %.3g Mcell/s  %s left", 100 * done,
+                time, goal_.time_end, step, dt, rate, duration(done > 0 ? wall * (1 - done) / done : INFINITY).c_str());
+  return text;
+}
+
+void Progress::print(const std::string &text, double wall) {
+  // \033[K clears what a longer line left behind.
+  std::fprintf(out_, style_ == Style::terminal ? "\r%s\033[K" : "%s\n", text.c_str());
+  std::fflush(out_);
+  last_wall_ = wall;
+}
+
+void Progress::update(double time, long step, double dt, double wall) {
+  if (style_ == Style::silent) return;
+  const double since = wall - last_wall_;
+  const int mark = static_cast<int>(20 * fraction(time, step) + 1e-9);
+  const bool due = style_ == Style::terminal ? since >= 0.2 : (mark > last_mark_ && since >= 10) || since >= 600;
+  if (!due) return;
+  print(line(time, step, dt, wall), wall);
+  last_mark_ = mark;
+}
+
+void Progress::finish(double time, long step, double dt, double wall) {
+  if (style_ == Style::silent) return;
+  print(line(time, step, dt, wall), wall);
+  if (style_ == Style::terminal) std::fputc('\n', out_);
+  std::fflush(out_);
+}
+
+}  // namespace eulastic

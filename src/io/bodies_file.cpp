@@ -1,0 +1,139 @@
+#include "io/bodies_file.hpp"
+
+#include "base/events.hpp"
+#include "io/checksum.hpp"
+#include "io/fail_together.hpp"
+#include "io/hdf5_handle.hpp"
+#include "io/text_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace eulastic {
+namespace {
+
+constexpr std::size_t waiting_bytes_max = 64u << 20;
+
+bool write_text_attribute(hid_t object, const char *name, const std::string &text) {
+  const Hdf5Type type = hdf5_string(text.size());
+  const Hdf5Space space(H5Screate(H5S_SCALAR));
+  const Hdf5Attribute attribute(H5Aexists(object, name) > 0
+                                    ? H5Aopen(object, name, H5P_DEFAULT)
+                                    : H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  return H5Awrite(attribute.get(), type.get(), text.c_str()) >= 0;
+}
+
+// `id` and `species`, which do not change.
+bool write_bodies(hid_t file, const std::vector<BodyRecord> &bodies) {
+  std::vector<long> ids;
+  std::size_t width = 1;
+  for (const BodyRecord &body : bodies) {
+    ids.push_back(body.id);
+    width = std::max(width, body.species.size());
+  }
+  std::string names;
+  for (const BodyRecord &body : bodies) names += body.species + std::string(width - body.species.size(), '\0');
+  const hsize_t count = bodies.size();
+  const Hdf5Space space(H5Screate_simple(1, &count, nullptr));
+  const Hdf5Type text = hdf5_string(width);
+  const Hdf5Dataset id(H5Dcreate2(file, "id", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  const Hdf5Dataset species(
+      H5Dcreate2(file, "species", text.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  return H5Dwrite(id.get(), H5T_NATIVE_LONG, H5S_ALL, H5S_ALL, H5P_DEFAULT, ids.data()) >= 0 &&
+         H5Dwrite(species.get(), text.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, names.data()) >= 0 &&
+         write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
+}
+
+// Rows [begin, begin + count) of a dataset of shape (rows), (rows, bodies) or (rows, bodies, width).
+bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsize_t bodies, hsize_t width,
+                 const std::vector<double> &values, const std::string &sum) {
+  const int rank = width == 0 ? 1 : width == 1 ? 2 : 3;
+  const hsize_t row = std::max<hsize_t>(1, bodies * width);
+  const hsize_t start[3] = {begin, 0, 0}, size[3] = {count, bodies, width}, total[3] = {begin + count, bodies, width};
+  Hdf5Dataset dataset;
+  if (begin == 0) {
+    const hsize_t limit[3] = {H5S_UNLIMITED, bodies, width};
+    const hsize_t chunk[3] = {std::clamp<hsize_t>(8192 / row, 1, 1024), bodies, width};  // 64 kB
+    const Hdf5Space space(H5Screate_simple(rank, total, limit));
+    const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
+    (void)H5Pset_chunk(creation.get(), rank, chunk);
+    dataset =
+        Hdf5Dataset(H5Dcreate2(file, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
+  } else {
+    dataset = Hdf5Dataset(H5Dopen2(file, name, H5P_DEFAULT));
+    if (H5Dset_extent(dataset.get(), total) < 0) return false;
+  }
+  const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(rank, size, nullptr));
+  return H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, size, nullptr) >= 0 &&
+         H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) >=
+             0 &&
+         write_text_attribute(dataset.get(), "checksum", sum) && dataset.close();
+}
+
+}  // namespace
+
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
+    : comm_(comm), path_(std::move(path)), columns_{{"time", 0, {}, 0},
+                                                    {"centroid", 3, {}, 0},
+                                                    {"velocity", 3, {}, 0},
+                                                    {"volume", 1, {}, 0},
+                                                    {"taylor_deformation", 1, {}, 0},
+                                                    {"inclination", 1, {}, 0}} {
+  (void)MPI_Comm_rank(comm, &rank_);
+}
+
+PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodies) {
+  std::string problem;
+  PetscFunctionBeginUser;
+  if (rank_ == 0 && !bodies.empty()) {
+    if (first_.empty()) first_ = bodies;
+    columns_[0].waiting.push_back(time);
+    for (const BodyRecord &body : bodies) {
+      columns_[1].waiting.insert(columns_[1].waiting.end(), body.centroid.begin(), body.centroid.end());
+      columns_[2].waiting.insert(columns_[2].waiting.end(), body.velocity.begin(), body.velocity.end());
+      columns_[3].waiting.push_back(body.volume);
+      columns_[4].waiting.push_back(body.taylor_deformation);
+      columns_[5].waiting.push_back(body.inclination);
+    }
+    ++waiting_;
+    const std::size_t bytes = waiting_ * (1 + 9 * bodies.size()) * sizeof(double);
+    if (bodies.size() != first_.size())
+      problem = path_ + ": the number of bodies has changed";
+    else if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max)
+      problem = write_waiting();
+  }
+  PetscCall(fail_together(comm_, problem));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesFile::flush() {
+  PetscFunctionBeginUser;
+  PetscCall(fail_together(comm_, rank_ == 0 && waiting_ > 0 ? write_waiting() : std::string()));
+  PetscFunctionReturn(0);
+}
+
+std::string BodiesFile::write_waiting() {
+  VerbScope scope(Verb::write);
+  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const std::string target = temporary_name(path_), problem = path_ + ": cannot be written (disk full?)";
+  std::error_code error;
+  if (written_ > 0) std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) return path_ + ": cannot be copied (" + error.message() + ")";
+  const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+  (void)H5Pset_file_locking(access.get(), false, true);  // the directory is locked, and not all file systems can
+  Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
+                                    : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
+  bool fine = file && (written_ > 0 || write_bodies(file.get(), first_));
+  for (Column &column : columns_) {
+    const std::size_t row = column.width == 0 ? 1 : column.width * first_.size();
+    column.checksum += checksum(column.waiting.data(), column.waiting.size(), written_ * row);
+    fine = fine && append_rows(file.get(), column.name, written_, waiting_, first_.size(), column.width, column.waiting,
+                               checksum_text(column.checksum));
+    column.waiting.clear();
+  }
+  if (!file.close() || !fine) return problem;
+  written_ += std::exchange(waiting_, 0);
+  return replace_file(path_);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,41 @@
+// bodies.h5: the history of every body, as extendible datasets.
+//
+// An HDF5 file that is open when its process is killed cannot be read. So rows wait in memory, and now and then the
+// file is copied, extended, synced and renamed: whenever the rows have grown by a quarter, or wait in 64 MB, and on
+// flush(). Cost: at most about five times the bytes of the final file; a kill loses at most a fifth of the rows.
+#pragma once
+
+#include "io/body_record.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace eulastic {
+
+class BodiesFile {
+public:
+  BodiesFile(MPI_Comm comm, std::string path);
+
+  /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
+  PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
+  /// Collective. All rows so far are on disk when this returns.
+  PetscErrorCode flush();
+
+private:
+  struct Column {
+    const char *name;
+    int width;  ///< values per body; 0 = one per row
+    std::vector<double> waiting;
+    std::uint64_t checksum;
+  };
+  std::string write_waiting();  ///< rank 0; empty, or what went wrong
+
+  MPI_Comm comm_;
+  int rank_ = 0;
+  std::string path_;
+  std::vector<BodyRecord> first_;  ///< who the bodies are
+  std::vector<Column> columns_;
+  std::size_t written_ = 0, waiting_ = 0;  ///< rows
+};
+
+}  // namespace eulastic

@@ -1,0 +1,20 @@
+// What summary.json and bodies.h5 say of one body.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <string>
+
+namespace eulastic {
+
+struct BodyRecord {
+  long id = 0;  ///< 1 + index over all bodies: the value in `body`
+  std::string species;
+  Real3 centroid{};               ///< unwrapped: counts the crossings of periodic sides
+  Real3 velocity{};               ///< mean over the body
+  double volume = 0;              ///< area in 2-D
+  double taylor_deformation = 0;  ///< (a - c) / (a + c), lengths from second moments
+  double inclination = 0;         ///< degrees of the long axis from x in the xy plane
+};
+
+}  // namespace eulastic

@@ -1,0 +1,92 @@
+#include "io/hdf5_file.hpp"
+
+#include "io/fail_together.hpp"
+#include "io/text_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
+
+namespace eulastic {
+namespace {
+
+Hdf5Property parallel_access(MPI_Comm comm) {
+  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
+  Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+  (void)H5Pset_fapl_mpio(access.get(), comm, MPI_INFO_NULL);
+  (void)H5Pset_all_coll_metadata_ops(access.get(), true);
+  (void)H5Pset_coll_metadata_write(access.get(), true);
+  return access;
+}
+
+// MPI-IO does not say why it cannot open a file; the system does.
+std::string try_to_open(const std::string &path, int flags) {
+  const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  if (file < 0) return "cannot open " + path + ": " + std::strerror(errno);
+  (void)::close(file);
+  return {};
+}
+
+}  // namespace
+
+PetscErrorCode Hdf5File::check(bool fine, const std::string &what) const {
+  PetscFunctionBeginUser;
+  PetscCall(fail_together(comm_, fine ? std::string() : path_ + ": " + what));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &mpi_rank_));
+  comm_ = comm;
+  path_ = path;
+  const std::string target = temporary_name(path);
+  PetscCall(fail_together(comm, mpi_rank_ == 0 ? try_to_open(target, O_WRONLY | O_CREAT | O_TRUNC) : std::string()));
+  writing_ = true;
+  const Hdf5Property access = parallel_access(comm);
+  file_ = Hdf5FileHandle(H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+  PetscCall(check(bool(file_), "cannot create this HDF5 file"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::open(MPI_Comm comm, const std::string &path) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &mpi_rank_));
+  comm_ = comm;
+  path_ = path;
+  PetscCall(fail_together(comm, mpi_rank_ == 0 ? try_to_open(path, O_RDONLY) : std::string()));
+  const Hdf5Property access = parallel_access(comm);
+  file_ = Hdf5FileHandle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
+  PetscCall(check(bool(file_), "not an HDF5 file, or a damaged or truncated one"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::commit() {
+  PetscFunctionBeginUser;
+  // The flush syncs every rank's part, which rank 0 could not do for other nodes.
+  const bool flushed = H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0;
+  PetscCall(check(file_.close() && flushed, "cannot be completed (disk full?)"));
+  PetscCall(fail_together(comm_, mpi_rank_ == 0 ? replace_file(path_) : std::string()));
+  writing_ = false;
+  PetscFunctionReturn(0);
+}
+
+Hdf5File::~Hdf5File() {
+  (void)file_.close();
+  if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
+}
+
+bool Hdf5File::has(const std::string &dataset) const {
+  return H5Lexists(file_.get(), dataset.c_str(), H5P_DEFAULT) > 0;
+}
+
+PetscErrorCode Hdf5File::open_dataset(const std::string &name, Hdf5Dataset *dataset) const {
+  PetscFunctionBeginUser;
+  PetscCall(check(has(name), "there is no dataset " + name));
+  *dataset = Hdf5Dataset(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT));
+  PetscCall(check(bool(*dataset), name + " is not a dataset"));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

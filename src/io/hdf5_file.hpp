@@ -1,0 +1,93 @@
+// One HDF5 file written or read by all ranks together (MPI-IO, collective): fields, small arrays, attributes.
+//
+// A file is written as NAME.tmp, synced and renamed by commit(); without it nothing remains. Every dataset has an
+// attribute `checksum` that does not depend on the ranks and is verified on read. Errors are the same on all ranks.
+#pragma once
+
+#include "field/walls.hpp"
+#include "io/hdf5_handle.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+/// How values are stored: 4- or 8-byte reals, or 4-byte integers (labels).
+enum class Stored { float32, float64, int32 };
+
+struct FieldFormat {
+  std::string name;
+  Staggering staggering = at_centre;
+  Stored stored = Stored::float64;
+  bool high_wall = false;  ///< also index N (the high wall) where the field is staggered
+};
+
+/// "centre", "face_x", "edge_xy", ...: the attribute `location`.
+std::string location_name(const Staggering &staggering);
+
+class Hdf5File {
+public:
+  Hdf5File() = default;
+  Hdf5File(const Hdf5File &) = delete;
+  Hdf5File &operator=(const Hdf5File &) = delete;
+  ~Hdf5File();
+
+  // All members are collective over the communicator given here.
+  PetscErrorCode create(MPI_Comm comm, const std::string &path);
+  PetscErrorCode open(MPI_Comm comm, const std::string &path);
+  /// Completes a file that was created.
+  PetscErrorCode commit();
+
+  /// Owned points in natural order: (nz,ny,nx), or (nz,ny,nx,components) of more than one component.
+  PetscErrorCode write_field(const Grid &grid, const FieldFormat &format, const std::vector<ConstView> &components);
+  /// Reads a scalar (nz,ny,nx), any numeric type, into the owned points. Where the field is staggered towards a
+  /// wall the dataset may have N + 1 points; if it has N, the high wall is left as it is. Ghosts are untouched.
+  PetscErrorCode read_field(const Grid &grid, const std::string &name, const Staggering &staggering, View field);
+
+  /// Small arrays, the same on every rank; T = double or long.
+  template <class T>
+  PetscErrorCode write_array(const std::string &name, const std::vector<hsize_t> &shape, const std::vector<T> &values);
+  template <class T>
+  PetscErrorCode read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values);
+
+  /// Attributes of `object`: a dataset, or "/" for the file.
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<double> &value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
+  PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);
+  PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::vector<double> *value);
+  PetscErrorCode read_attribute(const std::string &object, const std::string &name, double *value);
+
+  bool has(const std::string &dataset) const;
+
+private:
+  struct Box {
+    int rank = 3;
+    hsize_t total[4], begin[4], count[4];  ///< slowest dimension first
+  };
+  static Box owned_box(const Grid &grid, const Int3 &extra, std::size_t components);
+  template <class T>
+  PetscErrorCode write_values(const std::string &name, const Box &box, hid_t file_type, const std::vector<T> &values);
+  template <class T>
+  PetscErrorCode write_field_as(const Grid &grid, const FieldFormat &format, hid_t file_type,
+                                const std::vector<ConstView> &components);
+  template <class T>
+  PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Box &box, View field);
+  PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
+                                     const Hdf5Space &space, const void *value);
+  PetscErrorCode open_dataset(const std::string &name, Hdf5Dataset *dataset) const;
+  PetscErrorCode open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute);
+  /// Compares with the stored checksum, if there is one; `sum` is this rank's share.
+  PetscErrorCode verify(const std::string &name, std::uint64_t sum);
+  PetscErrorCode check(bool fine, const std::string &what) const;
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int mpi_rank_ = 0;
+  bool writing_ = false;
+  std::string path_;
+  Hdf5FileHandle file_;
+};
+
+}  // namespace eulastic

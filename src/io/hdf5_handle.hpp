@@ -1,0 +1,88 @@
+// HDF5 identifiers that close themselves.
+#pragma once
+
+#include <hdf5.h>
+
+#include <utility>
+#include <vector>
+
+namespace eulastic {
+
+template <herr_t (*Close)(hid_t)>
+class Hdf5Handle {
+public:
+  Hdf5Handle() = default;
+  explicit Hdf5Handle(hid_t id) : id_(id) {}
+  Hdf5Handle(const Hdf5Handle &) = delete;
+  Hdf5Handle &operator=(const Hdf5Handle &) = delete;
+  Hdf5Handle(Hdf5Handle &&other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+  Hdf5Handle &operator=(Hdf5Handle &&other) noexcept {
+    if (this != &other) {
+      (void)close();
+      id_ = std::exchange(other.id_, H5I_INVALID_HID);
+    }
+    return *this;
+  }
+  ~Hdf5Handle() { (void)close(); }
+
+  hid_t get() const noexcept { return id_; }
+  explicit operator bool() const noexcept { return id_ >= 0; }
+  /// False if HDF5 could not: a file's last bytes may fail to reach the disk here.
+  bool close() noexcept { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
+
+private:
+  hid_t id_ = H5I_INVALID_HID;
+};
+
+using Hdf5FileHandle = Hdf5Handle<H5Fclose>;
+using Hdf5Dataset = Hdf5Handle<H5Dclose>;
+using Hdf5Object = Hdf5Handle<H5Oclose>;
+using Hdf5Space = Hdf5Handle<H5Sclose>;
+using Hdf5Type = Hdf5Handle<H5Tclose>;
+using Hdf5Attribute = Hdf5Handle<H5Aclose>;
+using Hdf5Property = Hdf5Handle<H5Pclose>;
+
+/// The HDF5 type of T, in memory.
+template <class T>
+hid_t hdf5_type();
+template <>
+inline hid_t hdf5_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+inline hid_t hdf5_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+inline hid_t hdf5_type<int>() {
+  return H5T_NATIVE_INT;
+}
+template <>
+inline hid_t hdf5_type<long>() {
+  return H5T_NATIVE_LONG;
+}
+
+/// A string of fixed length (parallel HDF5 has no others).
+inline Hdf5Type hdf5_string(std::size_t length) {
+  Hdf5Type type(H5Tcopy(H5T_C_S1));
+  (void)H5Tset_size(type.get(), length > 0 ? length : 1);
+  (void)H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  return type;
+}
+
+inline std::vector<hsize_t> hdf5_shape(hid_t dataset) {
+  const Hdf5Space space(H5Dget_space(dataset));
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  std::vector<hsize_t> shape(rank > 0 ? rank : 0);
+  if (rank > 0) (void)H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  return shape;
+}
+
+/// All ranks move data together.
+inline Hdf5Property hdf5_collective() {
+  Hdf5Property transfer(H5Pcreate(H5P_DATASET_XFER));
+  (void)H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE);
+  return transfer;
+}
+
+}  // namespace eulastic

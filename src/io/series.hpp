@@ -1,0 +1,32 @@
+// A table that grows by a row now and then: series.csv.
+#pragma once
+
+#include "base/petsc.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+class Series {
+public:
+  /// Collective. Opens `path` for appending on rank 0; a new file gets the header, an old one must have the same.
+  PetscErrorCode open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns);
+  /// Collective. One value per column, rank 0's count; 17 digits, and in the file when this returns.
+  PetscErrorCode write(const std::vector<double> &values);
+
+private:
+  struct Close {
+    void operator()(std::FILE *file) const { (void)std::fclose(file); }
+  };
+  std::string append(const std::string &line);  ///< empty, or what went wrong
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  std::string path_;
+  std::size_t columns_ = 0;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,30 @@
+// snapshot_NNNNNN.h5, a picture of the fields at one time, and snapshots.xdmf, which shows them all to ParaView.
+#pragma once
+
+#include "io/hdf5_file.hpp"
+
+namespace eulastic {
+
+struct SnapshotField {
+  FieldFormat format;                 ///< dataset name, place, precision
+  std::vector<ConstView> components;  ///< one, or three for a vector
+};
+
+/// Numbers snapshots from 0 and remembers them for the index.
+class SnapshotWriter {
+public:
+  SnapshotWriter(const Grid &grid, std::string directory) : grid_(&grid), directory_(std::move(directory)) {}
+
+  /// Collective. Writes one file with its attributes, then the index anew.
+  PetscErrorCode write(double time, long step, const std::vector<SnapshotField> &fields);
+
+private:
+  std::string index_entry(const std::string &name, double time, const std::vector<SnapshotField> &fields) const;
+
+  const Grid *grid_;
+  std::string directory_;
+  int count_ = 0;
+  std::string index_;  ///< one XDMF grid per snapshot
+};
+
+}  // namespace eulastic

@@ -1,0 +1,113 @@
+#include "io/snapshot_fields.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+constexpr const char *axes = "xyz";
+
+template <class Body>
+void for_each_point(const Grid &grid, Body body) {
+  for (const Segment &row : grid.rows())
+    for (int i = row.i_begin; i < row.i_end; ++i) body(i, row.j, row.k);
+}
+
+// A centred field where component (a, b) of a tensor lives.
+double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) {
+  const double *p = &q.row(j, k)[i];
+  if (c.a == c.b) return p[0];
+  const std::ptrdiff_t a = q.stride(c.a), b = q.stride(c.b);
+  return 0.25 * ((p[0] + p[-a - b]) + (p[-a] + p[-b]));
+}
+
+}  // namespace
+
+void SnapshotFields::centre_velocity(const FieldBlock &velocity) {
+  if (!velocity_) velocity_ = FieldBlock(*grid_, 3);
+  for (int c = 0; c < velocity.count(); ++c) {
+    const ConstView from = velocity[c];
+    const View to = velocity_[c];
+    const std::ptrdiff_t s = from.stride(c);
+    for_each_point(*grid_, [&](int i, int j, int k) {
+      const double *p = &from.row(j, k)[i];
+      to(i, j, k) = 0.5 * (p[0] + p[s]);
+    });
+  }
+}
+
+void SnapshotFields::mix_fractions(const std::vector<Phase> &phases) {
+  if (!fraction_) fraction_ = FieldBlock(*grid_, 1);
+  for_each_point(*grid_, [&](int i, int j, int k) {
+    double sum = 0;
+    for (const Phase &phase : phases) sum += phase.fraction[0](i, j, k);
+    fraction_[0](i, j, k) = std::min(sum, 1.0);
+  });
+}
+
+// The label of the phase that fills most of the cell.
+void SnapshotFields::mix_labels(const std::vector<Phase> &phases) {
+  if (!label_) label_ = FieldBlock(*grid_, 1);
+  for_each_point(*grid_, [&](int i, int j, int k) {
+    const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase &p, const Phase &q) {
+      return p.fraction[0](i, j, k) < q.fraction[0](i, j, k);
+    });
+    label_[0](i, j, k) = most->label[0](i, j, k);
+  });
+}
+
+// I + sum of phi (B - I) over the phases, phi averaged to where the component lives.
+void SnapshotFields::mix_tensors(const std::vector<Phase> &phases) {
+  const auto &components = tensor_components(grid_->dimension());
+  if (!tensor_) tensor_ = FieldBlock(*grid_, static_cast<int>(components.size()));
+  for (int c = 0; c < tensor_.count(); ++c) {
+    const double identity = components[c].a == components[c].b ? 1 : 0;
+    for_each_point(*grid_, [&](int i, int j, int k) {
+      double sum = identity;
+      for (const Phase &phase : phases)
+        sum += at_component(phase.fraction[0], components[c], i, j, k) * (phase.tensor[c](i, j, k) - identity);
+      tensor_[c](i, j, k) = sum;
+    });
+  }
+}
+
+std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &selection, const FieldBlock &velocity,
+                                                   const FieldBlock &pressure, const std::vector<Phase> &phases) {
+  std::vector<SnapshotField> fields;
+  const auto add = [&](const std::string &name, ConstView view, const Staggering &staggering, Stored stored) {
+    fields.push_back({{name, staggering, stored}, {view}});
+  };
+  const auto add_tensor = [&](const FieldBlock &tensor, const std::string &suffix) {
+    const auto &components = tensor_components(grid_->dimension());
+    for (int c = 0; c < tensor.count(); ++c)
+      add(std::string("left_cauchy_green_") + axes[components[c].a] + axes[components[c].b] + suffix, tensor[c],
+          components[c].staggering(), selection.precision);
+  };
+  const FieldBlock &flow = velocity_;
+  if (selection.velocity) {
+    for (int c = 0; c < velocity.count(); ++c)
+      add(std::string("velocity_") + axes[c], velocity[c], at_face[c], selection.precision);
+    centre_velocity(velocity);
+    fields.push_back({{"velocity", at_centre, selection.precision}, {flow[0], flow[1], flow[2]}});
+  }
+  if (selection.pressure) add("pressure", pressure[0], at_centre, selection.precision);
+  if (phases.empty()) return fields;
+  const bool several = phases.size() > 1;
+  if (several) {
+    if (selection.solid_fraction) mix_fractions(phases);
+    if (selection.left_cauchy_green) mix_tensors(phases);
+    if (selection.body) mix_labels(phases);
+  }
+  const auto add_phase = [&](const FieldBlock &fraction, const FieldBlock &tensor, const FieldBlock &label,
+                             const std::string &suffix) {
+    if (selection.solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, selection.precision);
+    if (selection.left_cauchy_green) add_tensor(tensor, suffix);
+    if (selection.body) add("body" + suffix, label[0], at_centre, Stored::int32);
+  };
+  if (several) add_phase(fraction_, tensor_, label_, "");
+  for (const Phase &phase : phases)
+    add_phase(phase.fraction, phase.tensor, phase.label, several ? "_" + phase.species : "");
+  return fields;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,36 @@
+// Which datasets a snapshot holds, from the state: names as -initial_state reads them, each at its own place.
+#pragma once
+
+#include "field/phase.hpp"
+#include "io/snapshot.hpp"
+
+namespace eulastic {
+
+/// Groups of datasets (docs/outputs.md).
+struct SnapshotSelection {
+  bool velocity = true, pressure = true, solid_fraction = true, left_cauchy_green = false, body = true;
+  Stored precision = Stored::float32;
+};
+
+/// Views of the state, and the fields that are made for the file: the velocity at centres and, with several phases,
+/// what they have in common.
+class SnapshotFields {
+public:
+  explicit SnapshotFields(const Grid &grid) : grid_(&grid) {}
+
+  /// One ghost layer must be valid in `velocity` and, with several phases, in their fractions. The result holds
+  /// views: it is good until the state or this object changes.
+  std::vector<SnapshotField> collect(const SnapshotSelection &selection, const FieldBlock &velocity,
+                                     const FieldBlock &pressure, const std::vector<Phase> &phases);
+
+private:
+  void centre_velocity(const FieldBlock &velocity);
+  void mix_fractions(const std::vector<Phase> &phases);
+  void mix_labels(const std::vector<Phase> &phases);
+  void mix_tensors(const std::vector<Phase> &phases);
+
+  const Grid *grid_;
+  FieldBlock velocity_, fraction_, label_, tensor_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,58 @@
+#include "io/summary.hpp"
+
+#include "io/checksum.hpp"
+#include "io/json.hpp"
+#include "io/text_file.hpp"
+
+namespace eulastic {
+
+std::string summary_text(const Summary &s) {
+  std::vector<Json> bodies;
+  for (const BodyRecord &b : s.bodies)
+    bodies.push_back(Json()
+                         .add("id", b.id)
+                         .add("species", b.species)
+                         .add("centroid", b.centroid)
+                         .add("velocity", b.velocity)
+                         .add("volume", b.volume)
+                         .add("taylor_deformation", b.taylor_deformation)
+                         .add("inclination", b.inclination));
+  const double updates = double(s.cells) * double(s.steps);
+  return Json()
+      .add("version", std::string(EULASTIC_VERSION))
+      .add("method", s.method)
+      .add("pressure_solver", s.pressure_solver)
+      .add("exit_reason", s.exit_reason)
+      .add("cells", s.cells)
+      .add("ranks", s.ranks)
+      .add("threads", s.threads)
+      .add("steps", s.steps)
+      .add("time", s.time)
+      .add("dt_mean", s.dt_mean)
+      .add("wall_seconds", s.wall_seconds)
+      .add("wall_seconds_total", s.wall_seconds_total)
+      .add("cell_updates_per_second", updates / s.wall_seconds)
+      .add("ns_per_cell_step", 1e9 * s.wall_seconds / updates)
+      .add("bytes_per_cell", s.bytes_per_cell)
+      .add("active_fraction", s.active_fraction)
+      .add("acm_sweeps_per_step", s.acm_sweeps_per_step)
+      .add("rkl_stages_per_step", s.rkl_stages_per_step)
+      .add("divergence_rms", s.divergence_rms)
+      .add("divergence_max", s.divergence_max)
+      .add("mach_max", s.mach_max)
+      .add("volume_drift", s.volume_drift)
+      .add("kinetic_energy", s.kinetic_energy)
+      .add("elastic_energy", s.elastic_energy)
+      .add("bulk_velocity", s.bulk_velocity)
+      .add("state_hash", checksum_text(s.state_hash))
+      .add("bodies", bodies)
+      .text();
+}
+
+PetscErrorCode write_summary(MPI_Comm comm, const std::string &path, const Summary &summary) {
+  PetscFunctionBeginUser;
+  PetscCall(write_text_file(comm, path, summary_text(summary)));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

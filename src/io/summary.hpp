@@ -1,0 +1,31 @@
+// summary.json: what a run was and what came out of it, for scripts.
+#pragma once
+
+#include "io/body_record.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace eulastic {
+
+/// See docs/outputs.md for every key. Rates are derived on writing.
+struct Summary {
+  std::string method, pressure_solver;
+  std::string exit_reason;  ///< time_end, steps, signal, wall_limit, nonfinite, guard
+  long cells = 0, ranks = 1, threads = 1, steps = 0;
+  double time = 0, dt_mean = 0;
+  double wall_seconds = 0;  ///< time loop without output
+  double wall_seconds_total = 0;
+  double bytes_per_cell = 0, active_fraction = 1;
+  double acm_sweeps_per_step = 0, rkl_stages_per_step = 0;
+  double divergence_rms = 0, divergence_max = 0, mach_max = 0, volume_drift = 0;
+  double kinetic_energy = 0, elastic_energy = 0, bulk_velocity = 0;
+  std::uint64_t state_hash = 0;
+  std::vector<BodyRecord> bodies;
+};
+
+std::string summary_text(const Summary &summary);
+/// Collective; rank 0's summary counts.
+PetscErrorCode write_summary(MPI_Comm comm, const std::string &path, const Summary &summary);
+
+}  // namespace eulastic

@@ -1,0 +1,62 @@
+#include "io/text_file.hpp"
+
+#include "io/fail_together.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace eulastic {
+namespace {
+
+std::string complain(const std::string &path, const char *what) {
+  return std::string("cannot ") + what + " " + path + ": " + std::strerror(errno);
+}
+
+bool sync_path(const std::string &path, int flags) {
+  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool synced = ::fsync(file) == 0;
+  return ::close(file) == 0 && synced;
+}
+
+std::string write_locally(const std::string &path, const std::string &text) {
+  std::FILE *file = std::fopen(temporary_name(path).c_str(), "we");
+  if (!file) return complain(path, "create");
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  if (std::fclose(file) == 0 && written) return replace_file(path);
+  const std::string problem = complain(path, "write");
+  ::unlink(temporary_name(path).c_str());
+  return problem;
+}
+
+}  // namespace
+
+std::string format_double(double value) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr};
+}
+
+std::string temporary_name(const std::string &path) { return path + ".tmp"; }
+
+std::string replace_file(const std::string &path) {
+  if (!sync_path(temporary_name(path), O_RDWR)) return complain(path, "sync");
+  if (std::rename(temporary_name(path).c_str(), path.c_str()) != 0) return complain(path, "rename to");
+  const std::string folder = std::filesystem::path(path).parent_path();
+  (void)sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);  // the file is whole without it
+  return {};
+}
+
+PetscErrorCode write_text_file(MPI_Comm comm, const std::string &path, const std::string &text) {
+  int rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(fail_together(comm, rank == 0 ? write_locally(path, text) : std::string()));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
