@@ -40,7 +40,7 @@ class Snapshot:
     def __init__(self, path, run):
         self.path, self.run = path, run
         with h5py.File(path) as file:
-            self.time = float(file.attrs["time"])
+            self.time = float(numpy.ravel(file.attrs["time"])[0])
             self.fields = sorted(name for name, item in file.items() if isinstance(item, h5py.Dataset) and item.ndim == 3)
 
     def __contains__(self, name):
@@ -62,6 +62,13 @@ class Snapshot:
                     high[(slice(None),) * (2 - d) + (-1,)] = 0
                 result[d] = (low + high) / 2
         return result
+
+    def plane(self, z=None):
+        """Index k of the plane at height z; by default the one that cuts the most solid, without any the middle."""
+        if z is not None:
+            return int(numpy.clip(z / self.run.spacing[2], 0, self.run.cells[2] - 1))
+        solid = self["solid_fraction"].sum(axis=(1, 2)) if "solid_fraction" in self else numpy.zeros(1)
+        return int(solid.argmax()) if solid.any() else self.run.cells[2] // 2
 
 
 class Run:
@@ -122,6 +129,26 @@ def read_bodies(path):
         arrays = {name: item[...] for name, item in file.items() if isinstance(item, h5py.Dataset)}
     arrays["species"] = numpy.array([s.decode() if isinstance(s, bytes) else s for s in arrays["species"]])
     return types.SimpleNamespace(**arrays)
+
+
+class Units:
+    """Names of units for labels; the solver itself takes any consistent set."""
+
+    def __init__(self, text):
+        length, time = text.split(",") if text else ("", "")
+        self.names = {"length": length, "time": time, "velocity": f"{length}/{time}",
+                      "pressure": f"ρ {length}²/{time}²", "volume": f"{length}³"} if text else {}
+
+    def label(self, words, quantity):
+        return f"{words} ({self.names[quantity]})" if quantity in self.names else words
+
+    def after(self, quantity):
+        return " " + self.names[quantity] if quantity in self.names else ""
+
+    @staticmethod
+    def add_option(parser):
+        parser.add_argument("--units", type=Units, default="µm,µs", metavar="LENGTH,TIME",
+                            help='for labels (default "µm,µs"; "" for none)')
 
 
 def main():
