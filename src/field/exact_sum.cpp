@@ -96,6 +96,7 @@ PetscErrorCode ExactSums::reduce(MPI_Comm comm, double *result) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums_.data(), static_cast<int>(sums_.size()) * Superaccumulator::words,
                              MPI_INT64_T, MPI_SUM, comm));
   for (std::size_t s = 0; s < sums_.size(); ++s) result[s] = sums_[s].value();
+  clear();
   PetscFunctionReturn(0);
 }
 

@@ -7,8 +7,10 @@
 
 #include "field/field_block.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace eulastic {
 
@@ -40,15 +42,15 @@ public:
   /// Adds values[0..n), a piece of a row that starts at absolute x index `first`. Pieces of one block on one rank
   /// must be added together (a whole block or all of the row) for the same bits.
   void add_row(int s, const double *values, int n, std::int64_t first) noexcept;
-  /// Sums over all ranks with one Allreduce; returns `count` doubles.
+  /// Sums over all ranks with one Allreduce, returns `count` doubles and starts again from zero.
   PetscErrorCode reduce(MPI_Comm comm, double *result);
 
 private:
   std::vector<Superaccumulator> sums_;
 };
 
-/// Rank-independent hash of the owned points of `block` (each field with its own staggering), to be added up over
-/// blocks and then over ranks (MPI_SUM on uint64). `salt` tells blocks apart.
+/// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks
+/// (MPI_SUM on uint64). `salt` tells fields apart.
 std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
 
 }  // namespace eulastic

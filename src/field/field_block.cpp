@@ -11,6 +11,8 @@ FieldBlock::FieldBlock(const Grid &grid, int count) : layout_(grid.layout()), co
   std::fill_n(data_.get(), layout_.size * count_, 0.0);
 }
 
-void FieldBlock::fill(int f, double value) noexcept { std::fill_n(data_.get() + f * layout_.size, layout_.size, value); }
+void FieldBlock::fill(int f, double value) noexcept {
+  std::fill_n(data_.get() + f * layout_.size, layout_.size, value);
+}
 
 }  // namespace eulastic

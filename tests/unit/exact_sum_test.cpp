@@ -1,0 +1,227 @@
+// The superaccumulator against hand values and against Shewchuk's exact expansions; lane sums; blocks of a row.
+#include "field/exact_sum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace eulastic {
+namespace {
+
+using Limits = std::numeric_limits<double>;
+constexpr double largest = Limits::max(), smallest = Limits::denorm_min(), inf = Limits::infinity();
+
+double exact(const std::vector<double> &terms) {
+  Superaccumulator sum;
+  for (const double term : terms) sum.add(term);
+  return sum.value();
+}
+
+std::uint64_t bits(double value) {
+  std::uint64_t word;
+  std::memcpy(&word, &value, sizeof word);
+  return word;
+}
+
+// Correctly rounded sum by non-overlapping partial sums (Shewchuk 1997, as in Python's math.fsum); no overflow.
+double shewchuk(const std::vector<double> &terms) {
+  std::vector<double> parts;
+  for (double x : terms) {
+    std::size_t kept = 0;
+    for (double y : parts) {
+      if (std::abs(x) < std::abs(y)) std::swap(x, y);
+      const double high = x + y, low = y - (high - x);
+      if (low != 0) parts[kept++] = low;
+      x = high;
+    }
+    parts.resize(kept);
+    parts.push_back(x);
+  }
+  double high = 0, low = 0;
+  while (!parts.empty() && low == 0) {
+    const double x = high, y = parts.back();
+    parts.pop_back();
+    high = x + y;
+    low = y - (high - x);
+  }
+  // Half-way cases look at the sign of the next part.
+  if (!parts.empty() && ((low < 0 && parts.back() < 0) || (low > 0 && parts.back() > 0))) {
+    const double twice = 2 * low, next = high + twice;
+    if (twice == next - high) high = next;
+  }
+  return high;
+}
+
+TEST(Superaccumulator, HandValues) {
+  EXPECT_EQ(bits(exact({})), bits(0.0));
+  EXPECT_EQ(bits(exact({-0.0, -0.0})), bits(0.0));
+  EXPECT_EQ(exact({1e300, 1, -1e300}), 1);
+  EXPECT_EQ(exact({1, 1e100, 1, -1e100}), 2);
+  EXPECT_EQ(exact({-1e300, -1, 1e300}), -1);
+  EXPECT_EQ(exact({1e300, smallest, -1e300}), smallest);
+  EXPECT_EQ(exact({.1, .2, -.3}), 0x1p-55);  // 0.1 + 0.2 - 0.3 of the nearest doubles
+  EXPECT_EQ(exact({-2.5}), -2.5);
+  EXPECT_EQ(exact({-1, 0x1p-60}), -1);
+  EXPECT_EQ(exact({-1, 0x1p-54}), -1);              // half-way: to even
+  EXPECT_EQ(exact({-1, 0x1.8p-54}), -1 + 0x1p-53);  // beyond half-way
+  for (int e = -1074; e < 1024; ++e) {
+    EXPECT_EQ(exact({std::ldexp(1, e)}), std::ldexp(1, e));
+    EXPECT_EQ(exact({-std::ldexp(1, e)}), -std::ldexp(1, e));
+  }
+}
+
+TEST(Superaccumulator, Denormals) {
+  EXPECT_EQ(exact({smallest, smallest, smallest}), 3 * smallest);
+  EXPECT_EQ(exact({Limits::min(), -smallest}), Limits::min() - smallest);
+  EXPECT_EQ(exact({-smallest, -smallest}), -2 * smallest);
+  EXPECT_EQ(exact(std::vector<double>(1 << 12, 0x1p-1062)), 0x1p-1050);
+}
+
+TEST(Superaccumulator, OverflowOnlyWhereTheTotalDoes) {
+  EXPECT_EQ(exact({largest, largest, -largest}), largest);
+  EXPECT_EQ(exact({-largest, -largest, largest, 1}), -largest);
+  EXPECT_EQ(exact({largest, largest, largest, -largest, -largest, -largest, 2}), 2);
+  EXPECT_EQ(exact({largest, largest}), inf);
+  EXPECT_EQ(exact({-largest, -largest}), -inf);
+  EXPECT_EQ(exact({largest, 0x1p969}), largest);  // below half an ulp
+  EXPECT_EQ(exact({largest, 0x1p970}), inf);      // half an ulp: IEEE rounds up to infinity
+}
+
+TEST(Superaccumulator, NonFiniteGivesNan) {
+  EXPECT_TRUE(std::isnan(exact({1, Limits::quiet_NaN(), 2})));
+  EXPECT_TRUE(std::isnan(exact({1, inf, 2})));
+  EXPECT_TRUE(std::isnan(exact({-inf, inf})));
+  EXPECT_TRUE(std::isnan(exact({-Limits::quiet_NaN()})));
+}
+
+// A tie, and a hair on either side of it, at every parity and far apart.
+TEST(Superaccumulator, RoundsTiesToEven) {
+  std::mt19937_64 random(5);
+  for (int n = 0; n < 4000; ++n) {
+    const double base = 0x1p52 + static_cast<double>(random() >> 12), half = .5;  // ulp 1
+    const double hair = std::ldexp(1, -10 - static_cast<int>(random() % 1000));
+    const double sign = random() & 1 ? 1 : -1, even = std::fmod(base, 2) == 0 ? base : base + 1;
+    EXPECT_EQ(exact({sign * half, sign * base}), sign * even);
+    EXPECT_EQ(exact({sign * half, sign * base, -sign * hair}), sign * base);
+    EXPECT_EQ(exact({sign * hair, sign * base, sign * half}), sign * (base + 1));
+  }
+}
+
+TEST(Superaccumulator, RoundsThousandsOfRandomSetsCorrectlyInAnyOrder) {
+  std::mt19937_64 random(1);
+  int wrong = 0, order_dependent = 0, negative = 0, naive_is_wrong = 0;
+  for (int set = 0; set < 6000; ++set) {
+    const int count = 1 + static_cast<int>(random() % 60);
+    const int spread = set % 3 == 0 ? 8 : set % 3 == 1 ? 120 : 1900;  // of exponents
+    const int lowest = set % 3 == 2 ? -1074 : -60;
+    std::vector<double> terms;
+    for (int n = 0; n < count; ++n) {
+      const double mantissa = 1 + std::ldexp(static_cast<double>(random() >> 12), -52);
+      const double term = std::ldexp(mantissa, lowest + static_cast<int>(random() % spread));
+      terms.push_back(random() & 1 ? term : -term);
+      if (random() % 3 == 0) terms.push_back(-terms[random() % terms.size()]);  // cancellation
+    }
+    const double sum = exact(terms);
+    double naive = 0;
+    for (const double term : terms) naive += term;
+    wrong += bits(sum) != bits(shewchuk(terms) + 0.0);
+    negative += sum < 0;
+    naive_is_wrong += naive != sum;
+    for (int n = 0; n < 3; ++n) {
+      std::shuffle(terms.begin(), terms.end(), random);
+      order_dependent += bits(exact(terms)) != bits(sum);
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(order_dependent, 0);
+  EXPECT_GT(negative, 1000);
+  EXPECT_GT(naive_is_wrong, 1000);  // the sets are hard enough
+}
+
+// The carries of many additions: 2^22 terms of 53 bits and a total known exactly.
+TEST(Superaccumulator, ManyAdditions) {
+  const double term = 0x1.fffffffffffffp+10;
+  Superaccumulator up, down;
+  for (int n = 0; n < 1 << 22; ++n) {
+    up.add(term);
+    down.add(-term);
+  }
+  EXPECT_EQ(up.value(), std::ldexp(term, 22));
+  EXPECT_EQ(down.value(), -std::ldexp(term, 22));
+}
+
+// Its definition: element i goes into lane i mod 8 in ascending order, then a fixed tree.
+double defined_lane_sum(const double *values, int n, std::int64_t first) {
+  double lane[8] = {};
+  for (int i = 0; i < n; ++i) lane[(first + i) % 8] += values[i];
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+std::vector<double> random_row(int n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> row(n);
+  for (double &value : row) value = normal(random) * std::exp(3 * normal(random));
+  return row;
+}
+
+TEST(LaneSum, IsItsDefinitionAtAnyOffsetAndLength) {
+  const std::vector<double> row = random_row(600, 2);
+  int another_order = 0;
+  for (int first = 0; first < 17; ++first)
+    for (int n = 0; n <= 256; ++n)
+      for (const int shift : {0, 3}) {  // memory alignment must not matter
+        const double *values = row.data() + first + shift;
+        EXPECT_EQ(bits(lane_sum(values, n, first)), bits(defined_lane_sum(values, n, first)));
+        another_order += std::accumulate(values, values + n, 0.0) != lane_sum(values, n, first);
+      }
+  EXPECT_GT(another_order, 1000);  // the rows tell one order from another
+}
+
+TEST(ExactSums, SumsRowsInBlocksOfTheAbsoluteIndex) {
+  for (const int first : {0, 1, 200, 255, 256, 1000})
+    for (const int n : {1, 7, 56, 57, 256, 257, 700}) {
+      const std::vector<double> row = random_row(n, 100 * first + n);
+      ExactSums sums(2);
+      sums.add_row(1, row.data(), n, first);
+      sums.add(0, 5);
+      std::vector<double> blocks;
+      for (int b = 0; b < (first + n + 255) / 256; ++b) {
+        const int begin = std::max(256 * b, first) - first, end = std::min(256 * (b + 1), first + n) - first;
+        if (begin < end) blocks.push_back(defined_lane_sum(row.data() + begin, end - begin, first + begin));
+      }
+      double result[2];
+      ASSERT_EQ(sums.reduce(PETSC_COMM_SELF, result), 0);
+      EXPECT_EQ(result[0], 5);
+      EXPECT_EQ(bits(result[1]), bits(shewchuk(blocks)));
+    }
+}
+
+TEST(ExactSums, ANonFiniteValueSpoilsItsSumAlone) {
+  for (const double bad : {Limits::quiet_NaN(), inf, -inf})
+    for (const int at : {0, 9, 299}) {
+      std::vector<double> row(300, 1);
+      ExactSums sums(3);
+      sums.add_row(0, row.data(), 300, 4);
+      row[at] = bad;
+      sums.add_row(1, row.data(), 300, 4);
+      sums.add_row(2, row.data(), at, 4);
+      double result[3];
+      ASSERT_EQ(sums.reduce(PETSC_COMM_SELF, result), 0);
+      EXPECT_EQ(result[0], 300);
+      EXPECT_TRUE(std::isnan(result[1]));
+      EXPECT_EQ(result[2], at);
+      sums.clear();
+      sums.add_row(1, row.data(), at, 4);
+      ASSERT_EQ(sums.reduce(PETSC_COMM_SELF, result), 0);
+      EXPECT_EQ(result[1], at) << "clear() forgets";
+    }
+}
+
+}  // namespace
+}  // namespace eulastic

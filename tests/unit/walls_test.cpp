@@ -1,0 +1,243 @@
+// Ghosts behind walls: every boundary combination, every staggering, edges and corners, moving walls.
+#include "field/walls.hpp"
+
+#include "field/ghost_exchange.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+constexpr double poison = std::numeric_limits<double>::quiet_NaN();
+using Point = std::function<double(const Int3 &)>;
+
+GridSpec box(const Int3 &cells, int walls) {
+  GridSpec spec;
+  spec.cells = cells;
+  for (int d = 0; d < 3; ++d) spec.boundary[d] = walls >> d & 1 ? Boundary::wall : Boundary::periodic;
+  return spec;
+}
+
+void for_each_grid(const std::function<void(const Grid &)> &visit) {
+  for (const Int3 &cells : {Int3{5, 9, 7}, Int3{3, 3, 3}, Int3{6, 4, 1}, Int3{3, 3, 1}})
+    for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8); ++walls) {
+      SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << ", walls " << walls);
+      Grid grid;
+      ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells, walls)), 0);
+      visit(grid);
+    }
+}
+
+template <class Visit>
+void for_each_point(const Grid &grid, int width, const Visit &visit) {
+  Int3 w{};
+  for (int d = 0; d < 3; ++d) w[d] = std::min(width, grid.layout().ghosts[d]);
+  for (int k = -w[2]; k < grid.cells()[2] + w[2]; ++k)
+    for (int j = -w[1]; j < grid.cells()[1] + w[1]; ++j)
+      for (int i = -w[0]; i < grid.cells()[0] + w[0]; ++i) visit(Int3{i, j, k});
+}
+
+bool is_owned(const Grid &grid, const Int3 &p, const Staggering &staggering) {
+  for (int d = 0; d < 3; ++d)
+    if (p[d] < 0 || p[d] >= grid.points_end(d, staggering[d])) return false;
+  return true;
+}
+
+// Some value of field f at a point inside the box.
+double inner(int f, const Int3 &p) { return std::sin(1 + f + 1.3 * p[0] + 2.7 * p[1] + 4.1 * p[2]); }
+
+// Poison everywhere, then the points the field has, then the exchange.
+void prepare(const Grid &grid, FieldBlock &block, const std::function<Staggering(int)> &staggering, int width) {
+  for (int f = 0; f < block.count(); ++f) {
+    block.fill(f, poison);
+    for_each_point(grid, 3, [&](const Int3 &p) {
+      if (is_owned(grid, p, staggering(f))) block[f](p[0], p[1], p[2]) = inner(f, p);
+    });
+  }
+  GhostExchange exchange(grid);
+  ASSERT_EQ(exchange.update(block, width), 0);
+}
+
+// What a ghost must be: unfold the point direction by direction, the last reflection first. `odd(d, side)` is twice
+// the velocity the wall holds, `sign` -1 for velocity and +1 for everything even.
+double unfolded(const Grid &grid, Int3 p, const Staggering &staggering, double sign, const std::vector<int> &order,
+                const std::function<double(int, int)> &twice_wall, const Point &inside) {
+  for (auto d = order.rbegin(); d != order.rend(); ++d) {
+    const int n = grid.cells()[*d], last = n - (staggering[*d] ? 0 : 1);
+    if (!grid.is_wall(*d) || (p[*d] >= 0 && p[*d] <= last)) continue;
+    const int side = p[*d] > last;
+    p[*d] = side ? 2 * n - p[*d] - (staggering[*d] ? 0 : 1) : -p[*d] - (staggering[*d] ? 0 : 1);
+    const std::vector<int> before(order.begin(), d.base() - 1);
+    return twice_wall(*d, side) + sign * unfolded(grid, p, staggering, sign, before, twice_wall, inside);
+  }
+  for (int d = 0; d < 3; ++d)
+    if (!grid.is_wall(d)) p[d] = (p[d] + grid.cells()[d]) % grid.cells()[d];
+  return inside(p);
+}
+
+TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
+  Walls walls;
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) walls.motion[d][side] = {{.1 + d, .2 - side, .3 * d}, 1.5 + d, .4 * side};
+  const double time = .7;
+  for_each_grid([&](const Grid &grid) {
+    for (const int width : {1, 2, 3}) {
+      FieldBlock velocity(grid, grid.dimension());
+      prepare(
+          grid, velocity, [](int c) { return at_face[c]; }, width);
+      fill_wall_ghosts_velocity(grid, walls, time, velocity, width);
+      int wrong = 0, faces = 0;
+      for (int c = 0; c < grid.dimension(); ++c) {
+        std::vector<int> order;
+        for (int e = 0; e < grid.dimension(); ++e) order.push_back((c + e) % grid.dimension());
+        const auto twice_wall = [&](int d, int side) {
+          const WallMotion &motion = walls.motion[d][side];
+          return c == d ? 0 : 2 * (motion.velocity[c] * std::cos(motion.frequency * time + motion.phase));
+        };
+        const auto inside = [&](const Int3 &p) {
+          const bool on_face = grid.is_wall(c) && (p[c] == 0 || p[c] == grid.cells()[c]);
+          faces += on_face;
+          return on_face ? 0.0 : inner(c, p);
+        };
+        for_each_point(grid, width, [&](const Int3 &p) {
+          wrong += velocity[c](p[0], p[1], p[2]) != unfolded(grid, p, at_face[c], -1, order, twice_wall, inside);
+        });
+      }
+      EXPECT_EQ(wrong, 0) << "width " << width;
+      EXPECT_EQ(faces > 0, grid.is_wall(0) || grid.is_wall(1) || grid.is_wall(2));
+    }
+  });
+}
+
+TEST(WallGhosts, EveryStaggeringIsEvenAndKeepsItsPoints) {
+  for_each_grid([](const Grid &grid) {
+    for (int s = 0; s < (grid.dimension() == 2 ? 4 : 8); ++s)
+      for (const int width : {1, 2, 3}) {
+        const Staggering staggering{bool(s & 1), bool(s & 2), bool(s & 4)};
+        FieldBlock block(grid, 1);
+        prepare(
+            grid, block, [&](int) { return staggering; }, width);
+        fill_wall_ghosts_even(grid, staggering, block[0], width);
+        int wrong = 0;
+        for_each_point(grid, width, [&](const Int3 &p) {
+          wrong += block[0](p[0], p[1], p[2]) != unfolded(
+                                                     grid, p, staggering, 1, {0, 1, 2}, [](int, int) { return 0.; },
+                                                     [](const Int3 &q) { return inner(0, q); });
+        });
+        EXPECT_EQ(wrong, 0) << "staggering " << s << ", width " << width;
+      }
+  });
+}
+
+TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
+  for_each_grid([](const Grid &grid) {
+    const auto &components = tensor_components(grid.dimension());
+    FieldBlock tensor(grid, static_cast<int>(components.size()));
+    prepare(
+        grid, tensor, [&](int f) { return components[f].staggering(); }, 3);
+    fill_wall_ghosts_tensor(grid, tensor, 3);
+    int wrong = 0;
+    for (int f = 0; f < tensor.count(); ++f)
+      for_each_point(grid, 3, [&](const Int3 &p) {
+        wrong +=
+            tensor[f](p[0], p[1], p[2]) != unfolded(
+                                               grid, p, components[f].staggering(), 1, {0, 1, 2},
+                                               [](int, int) { return 0.; }, [&](const Int3 &q) { return inner(f, q); });
+      });
+    EXPECT_EQ(wrong, 0);
+  });
+}
+
+TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
+  const auto &full = tensor_components(3);
+  ASSERT_EQ(full.size(), 6u);
+  for (int d = 0; d < 3; ++d) EXPECT_EQ(full[d].staggering(), at_centre);
+  EXPECT_EQ(full[3].staggering(), (Staggering{false, true, true}));  // yz
+  EXPECT_EQ(full[4].staggering(), (Staggering{true, false, true}));  // xz
+  EXPECT_EQ(full[5].staggering(), (Staggering{true, true, false}));  // xy
+  const auto &flat = tensor_components(2);
+  ASSERT_EQ(flat.size(), 3u);
+  EXPECT_EQ(flat[2].staggering(), (Staggering{true, true, false}));
+}
+
+// Hand values: Couette flow between walls at -1 and 3 over four cells is linear through the ghosts; u_i is -0.5,
+// 0.5, 1.5, 2.5. The normal velocity y (4 - y) continues oddly, -5 at y = -1.
+TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
+  Walls walls;
+  walls.motion[1][0].velocity = {-1, 9, 0};  // the normal component is ignored
+  walls.motion[1][1].velocity = {3, 9, 0};
+  FieldBlock velocity(grid, 2);
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 3; ++i) {
+      velocity[0](i, j, 0) = j - .5;
+      velocity[1](i, j, 0) = j * (4 - j);
+    }
+  GhostExchange exchange(grid);
+  ASSERT_EQ(exchange.update(velocity, 3), 0);
+  fill_wall_ghosts_velocity(grid, walls, 0, velocity, 3);
+  for (int i = -3; i < 6; ++i) {
+    for (int j = -3; j < 7; ++j) EXPECT_EQ(velocity[0](i, j, 0), j - .5);
+    const double v[10] = {-3, -4, -3, 0, 3, 4, 3, 0, -3, -4};
+    for (int j = -3; j < 7; ++j) EXPECT_EQ(velocity[1](i, j, 0), v[j + 3]);
+  }
+}
+
+// x -> y -> z -> x, of the walls and of the flow: the ghosts turn with them, corners included.
+TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
+  for (int dimension = 2; dimension <= 3; ++dimension) {
+    Int3 cells{4, 5, dimension == 3 ? 6 : 1}, turned_cells = cells;
+    const auto turn = [&](auto vector) {  // component c becomes component c + 1
+      auto result = vector;
+      for (int c = 0; c < dimension; ++c) result[(c + 1) % dimension] = vector[c];
+      return result;
+    };
+    turned_cells = turn(cells);
+    Grid grid, turned;
+    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells, 7)), 0);
+    ASSERT_EQ(turned.create(PETSC_COMM_SELF, box(turned_cells, 7)), 0);
+    Walls walls, turned_walls;
+    for (int d = 0; d < dimension; ++d)
+      for (int side = 0; side < 2; ++side) {
+        WallMotion motion{{.7 + d, 1.1 - d + side, dimension == 3 ? 1.9 + side : 0}, .3, .1 * d};
+        walls.motion[d][side] = motion;
+        motion.velocity = turn(motion.velocity);
+        turned_walls.motion[(d + 1) % dimension][side] = motion;
+      }
+    FieldBlock velocity(grid, dimension), turned_velocity(turned, dimension);
+    for (int c = 0; c < dimension; ++c)
+      for_each_point(grid, 3, [&](const Int3 &p) {
+        if (!is_owned(grid, p, at_face[c])) return;
+        const Int3 q = turn(p);
+        velocity[c](p[0], p[1], p[2]) = turned_velocity[(c + 1) % dimension](q[0], q[1], q[2]) = inner(c, p);
+      });
+    fill_wall_ghosts_velocity(grid, walls, .5, velocity, 3);
+    fill_wall_ghosts_velocity(turned, turned_walls, .5, turned_velocity, 3);
+    int wrong = 0;
+    for (int c = 0; c < dimension; ++c)
+      for_each_point(grid, 3, [&](const Int3 &p) {
+        const Int3 q = turn(p);
+        wrong += velocity[c](p[0], p[1], p[2]) != turned_velocity[(c + 1) % dimension](q[0], q[1], q[2]);
+      });
+    EXPECT_EQ(wrong, 0) << dimension << "-D";
+  }
+}
+
+TEST(WallMotion, OscillatesAsACosine) {
+  const WallMotion motion{{3, 0, -4}, 2, .5};
+  const Real3 now = motion.at(.25);
+  EXPECT_DOUBLE_EQ(now[0], 3 * 0.54030230586813972);  // cos 1
+  EXPECT_EQ(now[1], 0);
+  EXPECT_DOUBLE_EQ(now[2], -4 * 0.54030230586813972);
+  EXPECT_EQ(motion.speed(), 5);
+  const WallMotion steady{{1, 0, 0}, 0, 0};
+  EXPECT_EQ(steady.at(1e9)[0], 1);
+}
+
+}  // namespace
+}  // namespace eulastic
