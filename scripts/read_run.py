@@ -35,13 +35,13 @@ def read_options(path):
 
 
 class Snapshot:
-    """One snapshot file. Fields are read when asked for: arrays (nz, ny, nx), each at its own staggered place."""
+    """One snapshot file. Fields are read when asked for: arrays (nz, ny, nx), or (nz, ny, nx, 3) of a vector."""
 
     def __init__(self, path, run):
         self.path, self.run = path, run
         with h5py.File(path) as file:
-            self.time = float(numpy.ravel(file.attrs["time"])[0])
-            self.fields = sorted(name for name, item in file.items() if isinstance(item, h5py.Dataset) and item.ndim == 3)
+            self.time = float(numpy.squeeze(file.attrs["time"]))
+            self.fields = sorted(file)
 
     def __contains__(self, name):
         return name in self.fields
@@ -51,17 +51,8 @@ class Snapshot:
             return file[name][...]
 
     def velocity(self):
-        """Velocity at cell centres, (3, nz, ny, nx): the mean of the two faces, the high wall's face being 0."""
-        result = numpy.zeros((3,) + self.run.shape)
-        for d, axis in enumerate("xyz"):
-            name = "velocity_" + axis
-            if name in self:
-                low = self[name].astype(float)
-                high = numpy.roll(low, -1, axis=2 - d)
-                if self.run.is_wall(d):
-                    high[(slice(None),) * (2 - d) + (-1,)] = 0
-                result[d] = (low + high) / 2
-        return result
+        """Velocity at cell centres, (3, nz, ny, nx); velocity_x, _y, _z are the staggered ones."""
+        return numpy.moveaxis(self["velocity"].astype(float), -1, 0)
 
     def plane(self, z=None):
         """Index k of the plane at height z; by default the one that cuts the most solid, without any the middle."""
@@ -101,10 +92,6 @@ class Run:
         return tuple(int(n) for n in self.options["grid_cells"].split(","))
 
     @property
-    def shape(self):
-        return self.cells[::-1]
-
-    @property
     def length(self):
         return numpy.array([float(x) for x in self.options["grid_length"].split(",")])
 
@@ -126,7 +113,7 @@ def read_series(path):
 
 def read_bodies(path):
     with h5py.File(path) as file:
-        arrays = {name: item[...] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+        arrays = {name: item[...] for name, item in file.items()}
     arrays["species"] = numpy.array([s.decode() if isinstance(s, bytes) else s for s in arrays["species"]])
     return types.SimpleNamespace(**arrays)
 

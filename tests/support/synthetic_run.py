@@ -29,10 +29,11 @@ def write_snapshot(path, time, cells, pressure_offset=0.0):
         fraction += inside
         body[inside > 0] = label
     with h5py.File(path, "w") as file:
-        file.attrs["time"] = time
-        file["velocity_x"] = (y * (LENGTH[1] - y) / 9 * SPEED).astype("f4")
-        file["velocity_y"] = numpy.zeros(x.shape, "f4")
-        file["velocity_z"] = numpy.zeros(x.shape, "f4")
+        file.attrs["time"] = [time]
+        velocity = numpy.stack([y * (LENGTH[1] - y) / 9 * SPEED, 0 * y, 0 * y], axis=-1).astype("f4")
+        file["velocity"] = velocity
+        for d, axis in enumerate("xyz"):
+            file["velocity_" + axis] = velocity[..., d]  # the same on the faces: uniform along x
         file["pressure"] = (numpy.sin(2 * numpy.pi * x / LENGTH[0]) + pressure_offset).astype("f4")
         file["solid_fraction"] = fraction.astype("f4")
         file["body"] = body.astype("i4")
