@@ -51,7 +51,7 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
     for (int j = begin[1]; j < end[1]; ++j) {
       double *row = q.row(j, k) + wall;
       const int first = staggered ? 1 : 0;
-      for (int m = first; m < first + width && !(high && staggered && m == width); ++m)
+      for (int m = first; m < first + width; ++m)
         for (int i = begin[0]; i < end[0]; ++i)
           row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
     }

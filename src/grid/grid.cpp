@@ -84,12 +84,12 @@ Layout Grid::make_layout(const Int3 &position) const {
     layout.ghosts[d] = d < dimension() ? ghost_width : 0;
   }
   // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets.
-  layout.sy = round_up(layout.cells[0] + 2 * ghost_width, 8);
+  layout.sy = round_up(layout.cells[0] + 2 * ghost_width + is_wall(0), 8);
   if (layout.sy % 64 == 0) layout.sy += 8;
-  layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1]);
+  layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1] + is_wall(1));
   if (layout.sz % 512 == 0) layout.sz += 8;
   layout.origin = 8 + layout.sy * layout.ghosts[1] + layout.sz * layout.ghosts[2];
-  layout.size = 8 + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2]);
+  layout.size = 8 + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2] + is_wall(2));
   if (layout.size % 512 == 0) layout.size += 8;
   return layout;
 }

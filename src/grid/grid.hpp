@@ -26,7 +26,8 @@ struct GridSpec {
 };
 
 /// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the
-/// row before. Computed by anybody for any rank, without communication.
+/// row before. In wall directions there is room for one high layer more: fields on the wall (index N) have three
+/// ghosts behind it as well. Computed by anybody for any rank, without communication.
 struct Layout {
   Int3 begin{};   ///< global index of the first owned cell
   Int3 cells{};   ///< owned cells

@@ -6,6 +6,7 @@
 #include "pressure/smac.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 
@@ -49,8 +50,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   double scale = extremes->max_speed();
   for (const auto &pair : spec_.walls.motion)
     for (const WallMotion &wall : pair) scale = std::max(scale, wall.speed());
-  const Real3 &f = spec_.fluid.body_force.force;
-  now_.speed_scale = std::max(scale, now_.dt * std::hypot(f[0], f[1], f[2]));
+  now_.speed_scale = scale;
   PetscFunctionReturn(0);
 }
 
@@ -62,7 +62,7 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
-  PetscCall(predict_velocity(*grid_, spec_.fluid, now_.time, dt, now_.speed_scale, now_.velocity, now_.pressure,
+  PetscCall(predict_velocity(*grid_, spec_.fluid, now_.time, dt, speed_scale(dt), now_.velocity, now_.pressure,
                              now_.phases, velocity_star_));                                           // (7)
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));                                                                             // (8)-(13)
@@ -72,6 +72,12 @@ PetscErrorCode Solver::step(double dt) {
   now_.dt = dt;
   ++now_.step;
   PetscFunctionReturn(0);
+}
+
+// At rest: what the force makes in a step, and never less than a Courant number of 1e-6.
+double Solver::speed_scale(double dt) const {
+  const Real3 &f = spec_.fluid.body_force.force, &h = grid_->spacing();
+  return std::max({now_.speed_scale, dt * std::hypot(f[0], f[1], f[2]), 1e-6 * std::min(h[0], h[1]) / dt});
 }
 
 PetscErrorCode Solver::project(double dt) {

@@ -42,6 +42,7 @@ private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width);
+  double speed_scale(double dt) const;
   PetscErrorCode project(double dt);
   PetscErrorCode transport(Phase &phase, double dt);
 

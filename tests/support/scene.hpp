@@ -1,0 +1,85 @@
+// A solver set up from functions of position, for tests of the whole step.
+#pragma once
+
+#include "solver/solver.hpp"
+
+#include <cmath>
+#include <functional>
+
+namespace eulastic::test {
+
+using Function = std::function<double(double x, double y, double z)>;
+
+/// Position of point i of a field along direction d.
+inline double position(const Grid &grid, int d, bool staggered, int i) {
+  return (grid.layout().begin[d] + i + (staggered ? 0.0 : 0.5)) * grid.spacing()[d];
+}
+
+/// Calls f(value, x, y, z) at every owned point of a field, the high wall of staggered fields included.
+template <class View, class F>
+void for_points(const Grid &grid, View view, const Staggering &at, F &&f) {
+  for (int k = 0; k < grid.points_end(2, at[2]); ++k)
+    for (int j = 0; j < grid.points_end(1, at[1]); ++j)
+      for (int i = 0; i < grid.points_end(0, at[0]); ++i)
+        f(view(i, j, k), position(grid, 0, at[0], i), position(grid, 1, at[1], j), position(grid, 2, at[2], k));
+}
+
+inline void set(const Grid &grid, View view, const Staggering &at, const Function &value) {
+  for_points(grid, view, at, [&](double &q, double x, double y, double z) { q = value(x, y, z); });
+}
+
+/// Root mean square of field - exact over the owned points (one rank).
+inline double rms_error(const Grid &grid, ConstView view, const Staggering &at, const Function &exact) {
+  double sum = 0;
+  int n = 0;
+  for_points(grid, view, at, [&](const double &q, double x, double y, double z) {
+    const double e = q - exact(x, y, z);
+    sum += e * e;
+    ++n;
+  });
+  return std::sqrt(sum / n);
+}
+
+struct Scene {
+  Grid grid;
+  Solver solver;
+
+  PetscErrorCode create(MPI_Comm comm, const GridSpec &grid_spec, const SolverSpec &spec) {
+    PetscFunctionBeginUser;
+    PetscCall(grid.create(comm, grid_spec));
+    PetscCall(solver.create(grid, spec));
+    PetscFunctionReturn(0);
+  }
+
+  /// Adds a phase with the given solid fraction and B = I.
+  Phase &add_phase(double shear_modulus, const Function &fraction) {
+    Phase phase;
+    phase.species = "solid";
+    phase.material.shear_modulus = shear_modulus;
+    phase.fraction = FieldBlock(grid, 1);
+    const auto &components = tensor_components(grid.dimension());
+    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
+    for (int c = 0; c < phase.tensor.count(); ++c)
+      phase.tensor.fill(c, components[c].a == components[c].b ? 1.0 : 0.0);
+    set(grid, phase.fraction[0], at_centre, fraction);
+    solver.state().phases.push_back(std::move(phase));
+    return solver.state().phases.back();
+  }
+
+  /// `steps` equal steps to time `end`.
+  PetscErrorCode run(double end, int steps) {
+    PetscFunctionBeginUser;
+    const double begin = solver.state().time, dt = (end - begin) / steps;
+    FlowExtremes extremes;
+    for (int n = 0; n < steps; ++n) {
+      if (n % 10 == 0) PetscCall(solver.measure(&extremes));
+      PetscCall(solver.step(dt));
+    }
+    PetscFunctionReturn(0);
+  }
+};
+
+/// log2 of the error ratio of a grid and the next finer one.
+inline double order(double coarse, double fine) { return std::log2(coarse / fine); }
+
+}  // namespace eulastic::test
