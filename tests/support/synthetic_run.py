@@ -1,4 +1,4 @@
-"""Writes an output directory as a run of 2 x 2 cells in a channel would, from closed formulas: what the scripts read."""
+"""Writes an output directory as a run with two spheres in a channel would, from closed formulas."""
 import json
 import pathlib
 
@@ -11,9 +11,9 @@ START = numpy.array([[0.25, 1.5, 2.0], [4.0, 4.5, 2.0]])  # the first one crosse
 SPEED = 0.02
 
 
-def centroids(time):
+def centroids(time, speed=SPEED):
     """Unwrapped, (nb, 3): both bodies move along x, the second one twice as fast."""
-    return START + numpy.outer([1, 2], [SPEED * time, 0, 0])
+    return START + numpy.outer([1, 2], [speed * time, 0, 0])
 
 
 def write_snapshot(path, time, cells, pressure_offset=0.0):
@@ -39,21 +39,22 @@ def write_snapshot(path, time, cells, pressure_offset=0.0):
         file["body"] = body.astype("i4")
 
 
-def write_run(directory, cells=(32, 24, 16), times=(0.0, 50.0, 100.0), pressure_offset=0.0):
+def write_run(directory, cells=(32, 24, 16), times=(0.0, 50.0, 100.0), speed=SPEED, pressure_offset=0.0):
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     cells = numpy.array(cells)
     (directory / "options.txt").write_text(
         "# eulastic\n"
         f"-grid_cells {','.join(map(str, cells))}\n-grid_length {','.join(map(str, LENGTH))}\n"
-        "-boundary_x periodic\n-boundary_y wall\n-boundary_z periodic   # comment\n-body_force 1e-3,0,-1e-5\n-check_only false\n")
+        "-boundary_x periodic\n-boundary_y wall\n-boundary_z periodic   # comment\n"
+        "-body_force 1e-3,0,-1e-5\n-check_only false\n")
     for n, time in enumerate(times):
         write_snapshot(directory / f"snapshot_{n:06}.h5", time, cells, pressure_offset)
     with open(directory / "series.csv", "w") as file:
         file.write("step,time,dt,kinetic_energy,bulk_velocity\n")
         for n, time in enumerate(times):
             file.write(f"{n},{time!r},0.5,{time * 1e-4!r},{SPEED * 2 / 3!r}\n")
-    positions = numpy.array([centroids(t) for t in times])
+    positions = numpy.array([centroids(t, speed) for t in times])
     with h5py.File(directory / "bodies.h5", "w") as file:
         file["time"], file["id"], file["species"] = list(times), [1, 2], ["rbc", "rbc"]
         file["centroid"], file["velocity"] = positions, numpy.gradient(positions, times, axis=0)

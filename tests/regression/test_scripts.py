@@ -1,0 +1,237 @@
+"""The scripts: help, counting of tests, the reader, plots, pictures and comparison on data of known content, and a
+small real run that is reused."""
+import importlib.machinery
+import importlib.util
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib.colors
+import matplotlib.image
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPTS = ROOT / "scripts"
+sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
+sys.dont_write_bytecode = True
+import synthetic_run  # noqa: E402
+from read_run import Run, Units, parse_options  # noqa: E402
+
+
+def load(script):
+    """A script without suffix as a module."""
+    loader = importlib.machinery.SourceFileLoader(script, str(SCRIPTS / script))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(script, loader))
+    loader.exec_module(module)
+    return module
+
+
+def start(*command, **keywords):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, **keywords)
+
+
+class WithFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+
+class Shell(WithFolder):
+    def shell_scripts(self):
+        return [path for path in [*SCRIPTS.iterdir(), ROOT / ".ci/run"]
+                if path.is_file() and (path.name == "environment" or path.read_text().startswith("#!/bin/bash"))]
+
+    def test_syntax(self):
+        self.assertGreaterEqual(len(self.shell_scripts()), 6)
+        for path in self.shell_scripts():
+            self.assertEqual(start("bash", "-n", path).returncode, 0, path)
+
+    def test_help_from_anywhere(self):
+        for script in ("install", "build", "test", "quickstart", "run", "plot", "render", "compare_pressure_solvers"):
+            done = start(SCRIPTS / script, "--help", cwd=self.folder)
+            self.assertEqual(done.returncode, 0, script)
+            self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
+
+    def test_unknown_option_of_test_is_refused(self):
+        done = start(SCRIPTS / "test", "--quik")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--quik", done.stderr)
+
+    def count(self, cmake, *arguments):
+        """scripts/test on a project of its own: exit status and last line."""
+        shutil.copytree(SCRIPTS, self.folder / "scripts", dirs_exist_ok=True)
+        shutil.copy(ROOT / "CMakePresets.json", self.folder)
+        (self.folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.22)\nproject(toy LANGUAGES NONE)\nenable_testing()\n" + cmake)
+        done = start(self.folder / "scripts/test", *arguments, cwd="/")
+        return done.returncode, done.stdout.splitlines()[-1], done.stdout
+
+    TOY = """
+add_test(NAME a COMMAND true)
+add_test(NAME b COMMAND true)
+add_test(NAME c COMMAND {})
+add_test(NAME d COMMAND true)
+add_test(NAME e COMMAND true)
+set_tests_properties(a PROPERTIES LABELS "unit;quick")
+set_tests_properties(b PROPERTIES LABELS "mpi;quick")
+set_tests_properties(c PROPERTIES LABELS "convergence")
+set_tests_properties(d PROPERTIES LABELS "convergence;full")
+"""
+
+    def test_every_test_is_counted_once(self):
+        status, last, out = self.count(self.TOY.format("true"))
+        self.assertEqual((status, last), (0, "4 passed, 0 failed"))
+        self.assertRegex(out, r"(?m)^unit\+mpi +\d+:\d\d +5$")
+        self.assertNotIn("regression", out)  # no such test, no such part
+        self.assertEqual(self.count(self.TOY.format("true"), "--quick")[:2], (0, "2 passed, 0 failed"))
+        self.assertEqual(self.count(self.TOY.format("true"), "--full")[:2], (0, "5 passed, 0 failed"))
+
+    def test_failures_count(self):
+        self.assertEqual(self.count(self.TOY.format("false"))[:2], (1, "3 passed, 1 failed"))
+
+    def test_no_test_is_a_failure(self):
+        self.assertEqual(self.count("")[:2], (1, "0 passed, 0 failed"))
+
+    def test_a_broken_build_is_a_failure(self):
+        broken = self.TOY.format("true") + "add_custom_target(broken ALL COMMAND false)\n"
+        self.assertEqual(self.count(broken)[:2], (1, "0 passed, 1 failed"))
+
+
+class Reader(WithFolder):
+    def setUp(self):
+        super().setUp()
+        self.run_ = Run(synthetic_run.write_run(self.folder / "run"))
+
+    def test_options(self):
+        self.assertEqual(parse_options(["-a", "-1e-3,2", "-b", "-c", "x"]), {"a": "-1e-3,2", "b": "", "c": "x"})
+        self.assertEqual(self.run_.options["boundary_z"], "periodic")
+        self.assertEqual(self.run_.options["body_force"], "1e-3,0,-1e-5")
+        self.assertEqual(self.run_.cells, (32, 24, 16))
+        numpy.testing.assert_allclose(self.run_.spacing, 0.25)
+        self.assertEqual([self.run_.is_wall(d) for d in range(3)], [False, True, False])
+
+    def test_series_bodies_summary(self):
+        run = self.run_
+        numpy.testing.assert_array_equal(run.series.time, [0, 50, 100])
+        numpy.testing.assert_allclose(run.series.kinetic_energy, [0, 5e-3, 1e-2])
+        self.assertEqual(list(run.bodies.species), ["rbc", "rbc"])
+        numpy.testing.assert_allclose(run.bodies.centroid[-1] - run.bodies.centroid[0], [[2, 0, 0], [4, 0, 0]])
+        self.assertEqual(run.summary["steps"], 10)
+
+    def test_snapshots(self):
+        run = self.run_
+        self.assertEqual([s.time for s in run.snapshots], [0, 50, 100])
+        snapshot = run.snapshots[-1]
+        self.assertEqual(snapshot["solid_fraction"].shape, (16, 24, 32))
+        self.assertEqual(snapshot.velocity().shape, (3, 16, 24, 32))
+        numpy.testing.assert_allclose(snapshot.velocity()[0, 0, :, 0].max(), 0.02, rtol=0.01)
+        self.assertTrue("pressure" in snapshot and "left_cauchy_green_xx" not in snapshot)
+        self.assertIn(snapshot.plane(), (7, 8))  # the bodies' centres are at z = 2, between these planes
+        self.assertEqual(snapshot.plane(z=0.3), 1)
+
+    def test_an_unfinished_run_and_none(self):
+        for name in ("summary.json", "bodies.h5", "series.csv"):
+            (self.folder / "run" / name).unlink()
+        run = Run(self.folder / "run")
+        self.assertEqual((run.summary, run.series, run.bodies), ({}, None, None))
+        with self.assertRaises(FileNotFoundError):
+            Run(self.folder)
+
+    def test_as_a_program(self):
+        done = start(SCRIPTS / "read_run.py", self.folder / "run")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("32 x 24 x 16 cells", done.stdout)
+
+    def test_units(self):
+        self.assertEqual(Units("m,s").label("u", "velocity"), "u (m/s)")
+        self.assertEqual(Units("").label("u", "velocity"), "u")
+
+
+class Pictures(WithFolder):
+    def setUp(self):
+        super().setUp()
+        self.directory = synthetic_run.write_run(self.folder / "run")
+
+    def test_plot(self):
+        done = start(SCRIPTS / "plot", self.directory, "--output", self.folder / "plots")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("series", "bodies", "slices"):
+            picture = matplotlib.image.imread(self.folder / "plots" / f"plot_{name}.png")[..., :3]
+            self.assertGreater((picture < 0.5).any(axis=2).sum(), 1000, name)  # ink
+
+    def test_bodies_are_whole(self):
+        snapshot = Run(self.directory).snapshots[0]
+        fraction = snapshot["solid_fraction"].astype(float)
+        pieces = {body: (piece, begin) for body, piece, begin in
+                  load("render").body_pieces(fraction, snapshot["body"], [True, False, True])}
+        self.assertEqual(set(pieces), {1, 2})
+        self.assertAlmostEqual(sum(piece.sum() for piece, _ in pieces.values()), fraction.sum(), places=3)
+        for body, (piece, begin) in pieces.items():  # the first one crosses x = 0: its box starts on the far side
+            k, j, i = numpy.indices(piece.shape)
+            for axis, first, place in zip((i, j, k), begin[::-1], synthetic_run.START[body - 1]):
+                self.assertAlmostEqual((piece * (axis + first + 0.5)).sum() / piece.sum() * 0.25, place, delta=0.02)
+
+    def test_render_shows_every_body_in_its_colour(self):
+        picture = self.folder / "bodies.png"
+        done = start(SCRIPTS / "render", self.directory, "--output", picture, "--size", 400, 320)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        pixels = matplotlib.image.imread(picture)[..., :3]
+        self.assertEqual(pixels.shape, (320, 400, 3))
+        self.assertTrue((pixels[0, -1] == 1).all())  # white background
+        hue = matplotlib.colors.rgb_to_hsv(pixels)
+        for body in (1, 2):
+            wanted = matplotlib.colors.rgb_to_hsv(load("render").colour(body))[0]
+            near = (abs(hue[..., 0] - wanted) < 0.03) & (hue[..., 1] > 0.4)
+            self.assertGreater(near.sum(), 500, f"body {body}")
+
+    def test_movie(self):
+        done = start(SCRIPTS / "render", self.directory, "--movie", self.folder / "movie", "--size", 200, 160)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        frames = sorted((self.folder / "movie").iterdir())
+        self.assertEqual([frame.name for frame in frames], [f"frame_{n:04}.png" for n in range(3)])
+        self.assertNotEqual(frames[0].read_bytes(), frames[2].read_bytes())
+
+    def test_comparison(self):
+        faster = synthetic_run.write_run(self.folder / "faster", speed=1.01 * synthetic_run.SPEED, pressure_offset=3.0)
+        other = Run(faster)
+        compare = load("compare_pressure_solvers")
+        run = Run(self.directory)
+        self.assertIn("travelled: 1.00e-02", compare.body_table(other, run)[-1])
+        pressure = compare.field_table(other, run)[-1]
+        self.assertIn("pressure", pressure)
+        self.assertLess(float(pressure.split()[-1]), 1e-6)  # a constant is no difference
+        compare.draw(other, run, [None, None], Units("")).savefig(self.folder / "comparison.png")
+
+
+class RealRun(WithFolder):
+    def test_a_finished_run_is_used_again(self):
+        case = self.folder / "case.opts"
+        case.write_text("# a disc in a periodic box\n-grid_cells 16,16,1\n-grid_length 1,1,1\n-fluid_viscosity 0.1\n"
+                        "-body_force 1,0,0\n-species disc\n-disc_shape sphere\n-disc_radius 0.25\n"
+                        "-disc_shear_modulus 1\n"
+                        "-time_end 0.02\n-series_interval 0.005\n-snapshot_interval 0.01\n")
+
+        def run(*options):
+            done = start(SCRIPTS / "run", case, self.folder / "out", *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            return "already" in done.stdout
+
+        self.assertFalse(run())
+        self.assertTrue(run())
+        self.assertFalse(run("-pressure_solver", "smac"))
+        results = Run(self.folder / "out")
+        self.assertEqual(results.options["pressure_solver"], "smac")
+        self.assertEqual(results.summary["exit_reason"], "time_end")
+        self.assertEqual(results.snapshots[-1].time, results.summary["time"])
+        self.assertEqual(results.series.time[-1], results.summary["time"])
+        self.assertEqual(results.snapshots[-1].velocity().shape, (3, 1, 16, 16))
+        numpy.testing.assert_allclose(results.bodies.centroid[0, :, :2], [[0.5, 0.5]], atol=1e-6)
+        done = start(SCRIPTS / "plot", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,119 @@
+"""The house rules that a machine can check: include arrows, file sizes, headers of cases, scripts, paths, links."""
+import os
+import pathlib
+import re
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LEVELS = [{"base"}, {"grid"}, {"kernels", "field"}, {"physics", "pressure", "bodies", "diagnostics", "io"},
+          {"solver"}, {"app"}]
+LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
+ROOMS = ["src", "tests", "options", "scripts", "docs", "cmake", ".ci"]
+LINES_MAX = 350
+
+
+def files(*rooms):
+    found = [path for room in rooms for path in sorted((ROOT / room).rglob("*")) if path.is_file()]
+    return [path for path in found if "__pycache__" not in path.parts]
+
+
+def text_files():
+    tops = [path for suffix in ("md", "txt", "json", "cff") for path in sorted(ROOT.glob("*." + suffix))]
+    return [path for path in tops + files(*ROOMS) if path.suffix not in (".png", ".h5", ".stl", ".nrrd")]
+
+
+def includes(path):
+    return re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE)
+
+
+def may_include(room, other):
+    return room == other or LEVEL[other] < LEVEL[room]
+
+
+def name(path):
+    return str(path.relative_to(ROOT))
+
+
+class Structure(unittest.TestCase):
+    def test_arrows_of_the_rule_itself(self):
+        self.assertTrue(may_include("app", "base") and may_include("physics", "field") and may_include("io", "io"))
+        for pair in (("physics", "pressure"), ("kernels", "field"), ("grid", "field"), ("io", "solver")):
+            self.assertFalse(may_include(*pair), pair)
+
+    def test_rooms_are_known(self):
+        self.assertEqual({path.name for path in (ROOT / "src").iterdir()} - set(LEVEL), set())
+
+    def test_includes_point_one_way(self):
+        wrong = []
+        for path in files("src"):
+            room = path.relative_to(ROOT / "src").parts[0]
+            for target in includes(path):
+                other = target.split("/")[0]
+                if "/" in target and other in LEVEL and not may_include(room, other):
+                    wrong.append(f"{name(path)} includes {target}")
+        self.assertEqual(wrong, [])
+
+    def test_own_includes_exist_and_name_their_room(self):
+        wrong = []
+        for path in files("src"):
+            quoted = re.findall(r'^\s*#\s*include\s*"([^"]+)"', path.read_text(), re.MULTILINE)
+            wrong += [f"{name(path)} includes {target}" for target in quoted if not (ROOT / "src" / target).is_file()]
+        self.assertEqual(wrong, [])
+
+    def test_kernels_are_free_of_petsc(self):
+        kernels = files("src/kernels")
+        self.assertTrue(kernels)
+        wrong = []
+        for path in kernels + [ROOT / "src/grid/segment.hpp"]:
+            for target in includes(path):
+                own = "/" in target and target.split("/")[0] in LEVEL
+                plain = target.startswith("kernels/") or target == "grid/segment.hpp"
+                if target.startswith(("petsc", "mpi")) or own and not plain:
+                    wrong.append(f"{name(path)} includes {target}")
+        self.assertEqual(wrong, [])
+
+    def test_files_are_short(self):
+        counts = {name(path): path.read_text().count("\n") for path in files("src", "tests", "scripts")
+                  if path.suffix != ".csv"}
+        self.assertTrue(counts)
+        self.assertEqual({path: lines for path, lines in counts.items() if lines > LINES_MAX}, {})
+
+    def test_sources_begin_with_what_they_are(self):
+        headers = [path for path in files("src") if path.suffix == ".hpp"]
+        self.assertEqual([name(path) for path in headers if not path.read_text().startswith("// ")], [])
+        self.assertEqual([name(path) for path in headers if "#pragma once" not in path.read_text()], [])
+
+    def test_cases_say_what_they_show(self):
+        cases = sorted((ROOT / "options").glob("*.opts"))
+        self.assertTrue(cases)
+        self.assertEqual([name(path) for path in cases if not re.match(r"# \w.{20,}\n#", path.read_text())], [])
+
+    def test_scripts_can_be_started(self):
+        for path in files("scripts", ".ci"):
+            with self.subTest(script=name(path)):
+                if path.name == "environment":  # sourced
+                    self.assertFalse(os.access(path, os.X_OK))
+                    continue
+                self.assertTrue(os.access(path, os.X_OK))
+                self.assertIn(path.read_text().splitlines()[0], ("#!/bin/bash", "#!/usr/bin/python3"))
+
+    def test_no_path_of_one_machine(self):
+        private = re.compile(r"(?<![\w.}])/(%s)/" % "|".join(["home", "root", "work", "Users", "mnt"]))
+        self.assertTrue(private.search("see /" + "home/me"))
+        wrong = [f"{name(path)}: {line.strip()}" for path in text_files()
+                 for line in path.read_text(errors="replace").splitlines() if private.search(line)]
+        self.assertEqual(wrong, [])
+
+    def test_links_lead_somewhere(self):
+        pages = [path for path in [*ROOT.glob("*.md"), *files("docs")] if path.suffix == ".md"]
+        self.assertIn(ROOT / "README.md", pages)
+        wrong = []
+        for path in pages:
+            for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", path.read_text()):
+                if "://" not in target and not (path.parent / target).exists():
+                    wrong.append(f"{name(path)}: {target}")
+        self.assertEqual(wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
