@@ -75,7 +75,9 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
                                                    const FieldBlock &pressure, const std::vector<Phase> &phases) {
   std::vector<SnapshotField> fields;
   const auto add = [&](const std::string &name, ConstView view, const Staggering &staggering, Stored stored) {
-    fields.push_back({{name, staggering, stored}, {view}});
+    SnapshotField &field = fields.emplace_back();
+    field.format = {name, staggering, stored};
+    field.components = {view};
   };
   const auto add_tensor = [&](const FieldBlock &tensor, const std::string &suffix) {
     const auto &components = tensor_components(grid_->dimension());
@@ -88,7 +90,8 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     for (int c = 0; c < velocity.count(); ++c)
       add(std::string("velocity_") + axes[c], velocity[c], at_face[c], selection.precision);
     centre_velocity(velocity);
-    fields.push_back({{"velocity", at_centre, selection.precision}, {flow[0], flow[1], flow[2]}});
+    add("velocity", flow[0], at_centre, selection.precision);
+    fields.back().components = {flow[0], flow[1], flow[2]};
   }
   if (selection.pressure) add("pressure", pressure[0], at_centre, selection.precision);
   if (phases.empty()) return fields;

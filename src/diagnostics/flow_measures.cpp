@@ -1,0 +1,167 @@
+#include "diagnostics/flow_measures.hpp"
+
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+enum Sum { speed_squared, momentum_x, momentum_y, momentum_z, divergence_squared, gradient_squared, first_of_phases };
+enum Maximum { max_x, max_y, max_z, max_speed_squared, max_divergence, maxima };
+
+double square(double x) { return x * x; }
+
+// One row at a time: each measure of its cells, ready to be added up.
+class RowMeasures {
+public:
+  RowMeasures(const Grid &grid, const FieldBlock &velocity)
+      : grid_(grid), velocity_(velocity), dimension_(grid.dimension()), n_(grid.owned()[0]), values_(n_) {}
+
+  const double *squared_speed(const Segment &row) {
+    start();
+    for (int c = 0; c < dimension_; ++c) {
+      const double *q = velocity_[c].row(row.j, row.k);
+      for (int i = 0; i < n_; ++i) values_[i] += q[i] * q[i];
+    }
+    return values_.data();
+  }
+
+  const double *divergence(const Segment &row) {
+    start();
+    for (int c = 0; c < dimension_; ++c) {
+      const ConstView view = velocity_[c];
+      const double *q = view.row(row.j, row.k), *next = q + view.stride(c), inverse_h = 1 / grid_.spacing()[c];
+      for (int i = 0; i < n_; ++i) values_[i] += (next[i] - q[i]) * inverse_h;
+    }
+    return values_.data();
+  }
+
+  /// |v|^2 at the centres.
+  const double *squared_speed_at_centre(const Segment &row) {
+    start();
+    for (int c = 0; c < dimension_; ++c) {
+      const ConstView view = velocity_[c];
+      const double *q = view.row(row.j, row.k), *next = q + view.stride(c);
+      for (int i = 0; i < n_; ++i) values_[i] += square(0.5 * (q[i] + next[i]));
+    }
+    return values_.data();
+  }
+
+  /// Sum of (dv_a/dx_b)^2, each where it is compact: dv_a/dx_a at the centre, the others on the cell's low edges.
+  const double *squared_gradient(const Segment &row) {
+    start();
+    for (int a = 0; a < dimension_; ++a)
+      for (int b = 0; b < dimension_; ++b)
+        if (a == b)
+          add_difference(row, a, b, +1, 0, n_, 1);
+        else
+          add_cross_differences(row, a, b);
+    return values_.data();
+  }
+
+  const double *squared(const double *from) {
+    for (int i = 0; i < n_; ++i) values_[i] = square(from[i]);
+    return values_.data();
+  }
+
+private:
+  void start() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+  void add_difference(const Segment &row, int a, int b, int side, int begin, int end, double weight) {
+    const ConstView view = velocity_[a];
+    const double *q = view.row(row.j, row.k), *other = q + side * view.stride(b), inverse_h = 1 / grid_.spacing()[b];
+    for (int i = begin; i < end; ++i) values_[i] += weight * square((other[i] - q[i]) * inverse_h);
+  }
+
+  // The edges on a wall normal to b own half a cell; those on the high wall count with the last cell.
+  void add_cross_differences(const Segment &row, int a, int b) {
+    const int last = grid_.owned()[b] - 1, index = b == 1 ? row.j : row.k;
+    const bool low = grid_.touches_low(b), high = grid_.touches_high(b);
+    if (b == 0) {
+      if (low) add_difference(row, a, b, -1, 0, 1, 0.5);
+      add_difference(row, a, b, -1, low ? 1 : 0, n_, 1);
+      if (high) add_difference(row, a, b, +1, last, last + 1, 0.5);
+    } else {
+      add_difference(row, a, b, -1, 0, n_, low && index == 0 ? 0.5 : 1);
+      if (high && index == last) add_difference(row, a, b, +1, 0, n_, 0.5);
+    }
+  }
+
+  const Grid &grid_;
+  const FieldBlock &velocity_;
+  int dimension_, n_;
+  std::vector<double> values_;
+};
+
+double largest(const double *values, int n, double so_far) {
+  for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
+  return so_far;
+}
+
+}  // namespace
+
+PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+                            const FlowNumbers &numbers, FlowMeasures *measures) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::sums);
+  const int dimension = grid.dimension(), n = grid.owned()[0], first = grid.layout().begin[0];
+  ExactSums sums(first_of_phases + 2 * static_cast<int>(phases.size()));
+  double maximum[maxima] = {};
+  RowMeasures measure(grid, velocity);
+  std::vector<double> energy(n);
+  for (const Segment &row : grid.rows()) {
+    for (int c = 0; c < dimension; ++c) {
+      const double *q = velocity[c].row(row.j, row.k);
+      sums.add_row(momentum_x + c, q, n, first);
+      maximum[c] = largest(q, n, maximum[c]);
+    }
+    sums.add_row(speed_squared, measure.squared_speed(row), n, first);
+    maximum[max_speed_squared] = largest(measure.squared_speed_at_centre(row), n, maximum[max_speed_squared]);
+    const double *divergence = measure.divergence(row);
+    maximum[max_divergence] = largest(divergence, n, maximum[max_divergence]);
+    sums.add_row(divergence_squared, measure.squared(divergence), n, first);
+    sums.add_row(gradient_squared, measure.squared_gradient(row), n, first);
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+      const double *phi = phases[p].fraction[0].row(row.j, row.k);
+      for (int i = 0; i < n; ++i) energy[i] = 0;
+      for (int c = 0; c < dimension; ++c) {  // the diagonal comes first
+        const double *b = phases[p].tensor[c].row(row.j, row.k);
+        for (int i = 0; i < n; ++i) energy[i] += b[i] - 1;
+      }
+      for (int i = 0; i < n; ++i) energy[i] *= phi[i];
+      sums.add_row(first_of_phases + 2 * static_cast<int>(p), phi, n, first);
+      sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
+    }
+  }
+  scope.flops(grid.owned_count() * (dimension * (10 + 4 * dimension) + phases.size() * (2 * dimension + 3)));
+  std::vector<double> sum(first_of_phases + 2 * phases.size());
+  PetscCall(sums.reduce(grid.comm(), sum.data()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maximum, maxima, MPI_DOUBLE, MPI_MAX, grid.comm()));
+
+  FlowMeasures &m = *measures;
+  const double volume = grid.cell_volume(), cells = grid.cell_count();
+  m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
+  for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
+  // Maxima drop NaN; 0 * sum brings it back.
+  for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
+  m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
+  const Real3 &h = grid.spacing();
+  const double smallest = *std::min_element(h.begin(), h.begin() + dimension);
+  const double speed = std::max(m.speed_max, numbers.force * numbers.dt);
+  const double scale = speed > 0 ? smallest / speed : 0;
+  m.divergence_rms = std::sqrt(sum[divergence_squared] / cells) * scale;
+  m.divergence_max = maximum[max_divergence] * scale + 0 * sum[divergence_squared];
+  m.viscous_dissipation = numbers.viscosity * sum[gradient_squared] * volume;
+  m.elastic_energy = 0;
+  m.phase_volume.clear();
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    m.phase_volume.push_back(sum[first_of_phases + 2 * p] * volume);
+    m.elastic_energy += 0.5 * phases[p].material.shear_modulus * sum[first_of_phases + 2 * p + 1] * volume;
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,33 @@
+// The numbers of a flow: energies, means, divergence, dissipation, volumes, from one pass and two Allreduces.
+//
+// Every value is an exact sum or a maximum: the same bits on any number of ranks. In 2-D integrals are per unit
+// depth. Control volumes are the points' own: half a cell for velocity gradients on a wall.
+#pragma once
+
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+struct FlowNumbers {
+  double density = 1, viscosity = 1;  ///< rho and mu (dynamic)
+  double dt = 0;                      ///< time step
+  double force = 0;                   ///< |f|, per mass
+};
+
+struct FlowMeasures {
+  double kinetic_energy = 0;  ///< integral of rho |v|^2 / 2
+  Real3 bulk_velocity{};      ///< means of u, v, w over the box
+  Real3 velocity_max{};       ///< max |u|, |v|, |w|
+  double speed_max = 0;       ///< max |v| at cell centres
+  double divergence_rms = 0;  ///< of div v h / U: h the smallest spacing, U = max(speed_max, |f| dt); 0/0 = 0
+  double divergence_max = 0;
+  double viscous_dissipation = 0;    ///< integral of mu grad v : grad v, energy / time
+  double elastic_energy = 0;         ///< sum over phases of the integral of G/2 phi (tr B - 3)
+  std::vector<double> phase_volume;  ///< integral of phi, per phase
+};
+
+/// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
+PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+                            const FlowNumbers &numbers, FlowMeasures *measures);
+
+}  // namespace eulastic
