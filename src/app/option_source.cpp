@@ -83,7 +83,9 @@ std::string split_words(const std::string &line, std::vector<std::string> *words
 std::string read_options_file(const std::string &path, std::vector<Entry> *entries) {
   std::error_code ignored;
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path, ignored)) return "options file " + path + " cannot be read";
+  if (!file || std::filesystem::is_directory(path, ignored))
+    return "options file " + path +
+           " cannot be read; accepted: one options file and options -name value, lists without spaces";
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string where = " (" + path + ":" + std::to_string(number) + ")";

@@ -45,7 +45,8 @@ void add_flow(Rows &rows, Config &config) {
   rows.group = "Fluid";
   Fluid &fluid = config.fluid;
   rows.real("fluid_density", fluid.density, positive, "mass/volume", "density, of the bodies too");
-  rows.real("fluid_viscosity", fluid.viscosity, positive, "mass/length/time", "dynamic viscosity, of the bodies too");
+  rows.real("fluid_viscosity", fluid.viscosity, not_negative, "mass/length/time",
+            "dynamic viscosity, of the bodies too");
   rows.boolean("fluid_inertia", fluid.inertia, "false drops v.grad v");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
             "force per mass, F cos(frequency t + phase)");
@@ -98,13 +99,16 @@ void add_species(Rows &rows, SpeciesSpec &spec) {
             "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
   rows.choice("placement", spec.placement, placement_names,
               "one body, a list of bodies, or a lattice that fills the box");
-  rows.real("centre", spec.centre, any_number, "length", "centre of the body").default_note = "centre of the box";
-  for_placement(Placement::one);
+  Option &centre = rows.real("centre", spec.centre, any_number, "length", "centre of the body");
+  centre.default_note = "centre of the box";
+  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab";
+  centre.applies = [&spec] { return spec.placement == Placement::one && spec.shape != Shape::slab; };
   rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
   for_placement(Placement::list);
   rows.integers("count", spec.count.data(), 3, at_least_one, "bodies along x, y, z");
   for_placement(Placement::lattice);
   rows.real("orientation", spec.orientation, any_number, "degrees", "rotations about x, then y, then z");
+  for_shapes(1, {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
   rows.prefix.clear();
 }
 

@@ -124,7 +124,11 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   for (const Source &source : sources)
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
-  for (SpeciesSpec &spec : config->species) spec.centre_given = reader.given(spec.name + "_centre");
+  for (SpeciesSpec &spec : config->species) {
+    spec.centre_given = reader.given(spec.name + "_centre");
+    const Real3 &length = config->grid.length;
+    if (!spec.centre_given) spec.centre = {length[0] / 2, length[1] / 2, length[2] / 2};
+  }
   if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
   return validate(*config);
 }
@@ -170,9 +174,11 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
 std::string options_text(const ParseResult &result) {
   Config config = result.config;
   std::string text = std::string("# ") + version_text();
-  text += "# PETSC_OPTIONS: ";
-  for (char c : result.petsc_options) text += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
-  text += "\n";
+  if (!result.petsc_options.empty()) {
+    text += "# PETSC_OPTIONS: ";
+    for (char c : result.petsc_options) text += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+    text += "\n";
+  }
   std::string group;
   for (const Option &option : option_table(config)) {
     if (!option.text || (option.applies && !option.applies())) continue;

@@ -1,0 +1,212 @@
+#include "app/check_only.hpp"
+
+#include "bodies/placement.hpp"
+#include "bodies/shapes.hpp"
+#include "physics/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+class Report {
+public:
+  std::string text;
+  __attribute__((format(printf, 3, 4))) void line(const std::string &name, const char *format, ...) {
+    char value[256];
+    va_list list;
+    va_start(list, format);
+    std::vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    text += name + ": " + value + "\n";
+  }
+};
+
+struct FlowScale {
+  Real3 speed{};          // largest expected |u|, |v|, |w|
+  double length = 0;      // between the nearest walls, or the shortest side of the box
+  double shear_rate = 0;  // largest expected
+  double largest_speed() const { return std::max({speed[0], speed[1], speed[2]}); }
+};
+
+class Check {
+public:
+  explicit Check(const Config &config) : config_(config), dimension_(config.grid.cells[2] == 1 ? 2 : 3) {
+    for (int d = 0; d < dimension_; ++d) spacing_[d] = config.grid.length[d] / config.grid.cells[d];
+  }
+
+  void grid(Report &report, int ranks) const {
+    const Int3 &n = config_.grid.cells, parts = Grid::decompose(config_.grid, ranks);
+    const double cells = double(n[0]) * n[1] * n[2];
+    report.line("cells", "%d x %d x %d = %.0f", n[0], n[1], n[2], cells);
+    if (dimension_ == 2)
+      report.line("spacing", "%g x %g", spacing_[0], spacing_[1]);
+    else
+      report.line("spacing", "%g x %g x %g", spacing_[0], spacing_[1], spacing_[2]);
+    report.line("ranks", "%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks,
+                cells / ranks);
+    if (cells > std::numeric_limits<PetscInt>::max())
+      report.line("warning", "needs a PETSc with 64-bit indices: this one counts to %.0f cells",
+                  double(std::numeric_limits<PetscInt>::max()));
+    report.line("memory", "%.4g GB for fields, %.4g GB per rank", 1e-9 * bytes_per_rank(parts) * ranks,
+                1e-9 * bytes_per_rank(parts));
+  }
+
+  void bodies(Report &report) const {
+    double box = 1, solid = 0;
+    for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
+    for (const SpeciesSpec &spec : config_.species) {
+      const double count = body_count(spec), volume = volume_in_box(spec);
+      solid += count * volume;
+      report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g", count,
+                  dimension_ == 2 ? "area" : "volume", volume, count * volume / box);
+    }
+    report.line("hematocrit", "%.6g", solid / box);
+  }
+
+  void flow(Report &report) const {
+    const FlowScale scale = flow_scale();
+    const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
+    report.line("velocity scale (estimate)", "%.6g", speed);
+    report.line("shear rate (estimate)", "%.6g", scale.shear_rate);
+    report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
+    for (const SpeciesSpec &spec : config_.species)
+      if (spec.shear_modulus > 0)
+        report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
+                    config_.fluid.viscosity * scale.shear_rate / spec.shear_modulus);
+  }
+
+  void time_step(Report &report) const {
+    FlowExtremes extremes;
+    extremes.speed = flow_scale().speed;
+    double modulus = 0;
+    for (const SpeciesSpec &spec : config_.species) {
+      const Real3 &l = spec.initial_stretch;
+      modulus = std::max(modulus, spec.shear_modulus);
+      extremes.trace = std::max(extremes.trace, l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
+    }
+    const TimeStepLimits limits = euler_limits(spacing_, dimension_, config_.fluid, modulus, extremes);
+    report.line("dt limit, viscous", "%.6g", limits.viscous);
+    report.line("dt limit, elastic wave", "%.6g", limits.elastic);
+    report.line("dt limit, viscous and elastic", "%.6g", limits.combined);
+    report.line("dt limit, advective", "%.6g", limits.advective);
+    report.line("dt limit, Euler 2 nu/U^2", "%.6g", limits.inertial);
+    const char *name = "-time_step";
+    double dt = limits.automatic(&name);
+    if (config_.time.step > 0) {
+      dt = config_.time.step;
+      name = "-time_step";
+      if (const char *broken = limits.broken(dt))
+        report.line("warning", "-time_step %g breaks the %s limit", dt, broken);
+    }
+    double steps = std::ceil(config_.time.end / dt);
+    if (config_.time.steps_max > 0) steps = std::min(steps, double(config_.time.steps_max));
+    report.line("time step (estimate)", "%.6g (%s)", dt, name);
+    report.line("steps (estimate)", "%.0f", steps);
+  }
+
+private:
+  /// Doubles per cell: velocity and predictor, pressure, divergence, increment (SMAC: two copies to transform);
+  /// per phase fraction, label and B; one fraction and B being computed.
+  double fields() const {
+    const double tensor = dimension_ == 2 ? 3 : 6;
+    const double phases = config_.species.size();
+    return 2 * dimension_ + 3 + (config_.method.pressure == PressureKind::smac ? 2 : 0) + phases * (2 + tensor) +
+           (phases > 0 ? 1 + tensor : 0);
+  }
+  double bytes_per_rank(const Int3 &parts) const {
+    double ghosted = sizeof(double);
+    for (int d = 0; d < 3; ++d)
+      ghosted *= std::ceil(double(config_.grid.cells[d]) / parts[d]) + (d < dimension_ ? 2 * Grid::ghost_width : 0);
+    return fields() * ghosted;
+  }
+  double body_count(const SpeciesSpec &spec) const {
+    if (spec.placement == Placement::lattice) return double(spec.count[0]) * spec.count[1] * spec.count[2];
+    std::vector<BodyPlace> places;
+    (void)place_bodies(spec, config_.grid, &places);  // parsing has tried it
+    return double(places.size());
+  }
+  /// shape_volume times the sides of the box along which cylinder and slab are infinite; a slab is cut to the box.
+  double volume_in_box(SpeciesSpec spec) const {
+    const Real3 &length = config_.grid.length;
+    double factor = 1;
+    if (spec.shape == Shape::cylinder && spec.axis < dimension_) factor = length[spec.axis];
+    if (spec.shape == Shape::slab) {
+      spec.interval = {std::max(0.0, spec.interval[0]), std::min(length[spec.axis], spec.interval[1])};
+      for (int d = 0; d < dimension_; ++d) factor *= d == spec.axis ? 1 : length[d];
+    }
+    return factor * shape_volume(spec, dimension_);
+  }
+
+  bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
+
+  FlowScale flow_scale() const {
+    FlowScale scale;
+    const Real3 &length = config_.grid.length;
+    double gap = std::numeric_limits<double>::infinity();
+    for (int d = 0; d < dimension_; ++d)
+      if (is_wall(d)) gap = std::min(gap, length[d]);
+    scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
+    driven_by_walls(scale);
+    driven_by_force(scale);
+    const InitialFlow &initial = config_.initial;
+    const bool moves = initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
+                       initial.kind != InitialVelocity::couette;
+    for (int d = 0; d < dimension_; ++d)
+      scale.speed[d] =
+          std::max(scale.speed[d], std::fabs(initial.mean[d]) + (moves ? std::fabs(initial.amplitude) : 0));
+    if (moves) scale.shear_rate = std::max(scale.shear_rate, 2 * M_PI * std::fabs(initial.amplitude) / scale.length);
+    return scale;
+  }
+  void driven_by_walls(FlowScale &scale) const {
+    for (int d = 0; d < dimension_; ++d) {
+      if (!is_wall(d)) continue;
+      const WallMotion &low = config_.walls.motion[d][0], &high = config_.walls.motion[d][1];
+      for (int c = 0; c < dimension_; ++c) {
+        scale.speed[c] = std::max({scale.speed[c], std::fabs(low.velocity[c]), std::fabs(high.velocity[c])});
+        scale.shear_rate =
+            std::max(scale.shear_rate, std::fabs(high.velocity[c] - low.velocity[c]) / config_.grid.length[d]);
+      }
+    }
+  }
+  /// A channel of height H reaches f H^2/(8 nu) with the shear rate f H/(2 nu) at its walls; what is free
+  /// accelerates to the end.
+  void driven_by_force(FlowScale &scale) const {
+    const BodyForce &force = config_.fluid.body_force;
+    const double nu = config_.fluid.kinematic_viscosity();
+    for (int c = 0; c < dimension_; ++c) {
+      const double f = std::fabs(force.force[c]);
+      double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
+      if (is_wall(c)) speed = 0;  // pressure takes it
+      for (int d = 0; d < dimension_; ++d) {
+        if (!is_wall(d) || d == c || is_wall(c) || nu == 0) continue;
+        const double height = config_.grid.length[d];
+        speed = std::min(speed, f * height * height / (8 * nu));
+        scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));
+      }
+      scale.speed[c] = std::max(scale.speed[c], speed);
+    }
+  }
+
+  const Config &config_;
+  int dimension_;
+  Real3 spacing_{};
+};
+
+}  // namespace
+
+std::string check_report(const Config &config, int ranks) {
+  const Check check(config);
+  Report report;
+  check.grid(report, ranks);
+  check.bodies(report);
+  check.flow(report);
+  check.time_step(report);
+  return report.text;
+}
+
+}  // namespace eulastic
