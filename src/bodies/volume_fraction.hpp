@@ -2,7 +2,7 @@
 //
 // Cells the surface may pass are halved three times; the pieces are cut by a plane that has the piece's mean level
 // and gradient (Simpson), so that the error of curvature cancels on average: a sphere of 8 cells radius has its volume
-// to 1e-6. Volumes are added as integers and positions are multiples of 2^-36 cells from the middle of the box:
+// to 3e-7. Volumes are added as integers and positions are multiples of 2^-36 cells from the middle of the box:
 // mirrored or shifted scenes give the same bits, and faces on cell faces give exactly 0 and 1.
 #pragma once
 
