@@ -1,5 +1,6 @@
 #include "solver/solver.hpp"
 
+#include "bodies/labels.hpp"
 #include "physics/momentum.hpp"
 #include "physics/transport.hpp"
 #include "pressure/acm.hpp"
@@ -51,6 +52,9 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   for (const auto &pair : spec_.walls.motion)
     for (const WallMotion &wall : pair) scale = std::max(scale, wall.speed());
   now_.speed_scale = scale;
+  now_.crossing_rate = 0;
+  for (int d = 0; d < grid_->dimension(); ++d)
+    now_.crossing_rate = std::max(now_.crossing_rate, extremes->speed[d] / grid_->spacing()[d]);
   PetscFunctionReturn(0);
 }
 
@@ -58,6 +62,13 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
   double modulus = 0;
   for (const Phase &phase : now_.phases) modulus = std::max(modulus, phase.material.shear_modulus);
   return euler_limits(*grid_, spec_.fluid, modulus, extremes);
+}
+
+std::size_t Solver::bytes() const {
+  std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
+                    increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes();
+  for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
+  return sum;
 }
 
 PetscErrorCode Solver::step(double dt) {
@@ -68,6 +79,7 @@ PetscErrorCode Solver::step(double dt) {
   PetscCall(project(dt));                                                                             // (8)-(13)
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::ghost_width));
   for (Phase &phase : now_.phases) PetscCall(transport(phase, dt));                                   // (4)(5)
+  PetscCall(follow_bodies(dt));
   now_.time += dt;
   now_.dt = dt;
   ++now_.step;
@@ -100,6 +112,18 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscCall(transport_tensor(*grid_, dt, now_.velocity, phase, next_tensor_));                        // (5)
   phase.tensor.swap(next_tensor_);
   PetscCall(update_tensor_ghosts(phase.tensor, Grid::ghost_width));
+  PetscFunctionReturn(0);
+}
+
+// Labels are carried on a schedule that is part of the run, never because somebody looks.
+PetscErrorCode Solver::follow_bodies(double dt) {
+  constexpr double allowed = 0.3;  // cells; below the half that carry_labels() bears, as the speed is some steps old
+  PetscFunctionBeginUser;
+  now_.travel += now_.crossing_rate * dt;
+  if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
+  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
+  PetscCall(bodies_.follow(*grid_, now_.phases));
+  now_.travel = 0;
   PetscFunctionReturn(0);
 }
 

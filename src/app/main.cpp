@@ -1,0 +1,69 @@
+// eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
+#include "app/check_only.hpp"
+#include "app/run.hpp"
+#include "base/events.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+using namespace eulastic;
+
+namespace {
+
+// Keeps PETSc's first message for our one line and prints no traceback.
+PetscErrorCode keep_message(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
+                            const char *message, void *text) {
+  if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+  return code;
+}
+
+void print_error(const std::string &message) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
+}
+
+int act(ParseResult &parsed) {
+  int ranks = 1, code = exit_usage;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
+  if (!parsed.error.empty()) {
+    print_error(parsed.error);
+    return exit_usage;
+  }
+  if (!parsed.message.empty() || parsed.config.check_only) {
+    const std::string text = parsed.message.empty() ? check_report(parsed.config, ranks) : parsed.message;
+    (void)PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str());
+    return exit_fine;
+  }
+  std::string kept, refusal;
+  (void)PetscPushErrorHandler(keep_message, &kept);
+  (void)register_events();
+  const PetscErrorCode failed = run(parsed, &code, &refusal);
+  (void)PetscPopErrorHandler();
+  if (failed) {
+    // A rank that fails alone must not leave the others waiting in a collective call.
+    std::fprintf(stderr, "eulastic: error: %s\n", kept.empty() ? "internal error" : kept.c_str());
+    std::fflush(stderr);
+    MPI_Abort(PETSC_COMM_WORLD, exit_failed);
+  }
+  if (!refusal.empty()) print_error(refusal);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+  const char *environment = std::getenv("PETSC_OPTIONS");
+  ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
+  unsetenv("PETSC_OPTIONS");
+  std::vector<char *> petsc{argv[0]};
+  for (std::string &argument : parsed.petsc_arguments) petsc.push_back(argument.data());
+  petsc.push_back(nullptr);
+  int petsc_count = static_cast<int>(petsc.size()) - 1;
+  char **petsc_arguments = petsc.data();
+  if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
+  const int code = act(parsed);
+  if (PetscFinalize() && code == exit_fine) return exit_failed;
+  return code;
+}

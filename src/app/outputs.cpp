@@ -1,0 +1,150 @@
+#include "app/outputs.hpp"
+
+#include "base/events.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+const std::vector<std::string> series_columns{
+    "time",           "step",         "dt",           "kinetic_energy", "elastic_energy", "viscous_dissipation",
+    "bulk_velocity_x", "bulk_velocity_y", "bulk_velocity_z", "speed_max", "divergence_rms", "divergence_max",
+    "solid_volume",   "volume_drift"};
+
+SnapshotSelection selection(const OutputControl &output) {
+  const auto wanted = [&](const char *name) {
+    return std::find(output.snapshot_fields.begin(), output.snapshot_fields.end(), name) !=
+           output.snapshot_fields.end();
+  };
+  SnapshotSelection s;
+  s.velocity = wanted("velocity");
+  s.pressure = wanted("pressure");
+  s.solid_fraction = wanted("solid_fraction");
+  s.left_cauchy_green = wanted("left_cauchy_green");
+  s.body = wanted("body");
+  s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
+  return s;
+}
+
+}  // namespace
+
+bool Outputs::Due::now(double time, bool last) {
+  if (interval <= 0 || time == last_time) return false;
+  // Times that are meant to hit a multiple miss it by round-off.
+  if (time < next - 1e-9 * interval && !last) return false;
+  next = interval * (std::floor(time / interval + 1e-9) + 1);
+  last_time = time;
+  return true;
+}
+
+PetscErrorCode Outputs::open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory) {
+  PetscFunctionBeginUser;
+  config_ = config;
+  grid_ = &grid;
+  solver_ = solver;
+  directory_ = directory;
+  series_due_.interval = config.output.series_interval;
+  snapshot_due_.interval = config.output.snapshot_interval;
+  PetscCall(series_.open(grid.comm(), directory + "/series.csv", series_columns));
+  if (solver->bodies().bodies() > 0) bodies_file_ = std::make_unique<BodiesFile>(grid.comm(), directory + "/bodies.h5");
+  if (snapshot_due_.interval > 0) {
+    snapshots_ = std::make_unique<SnapshotWriter>(grid, directory);
+    snapshot_fields_ = std::make_unique<SnapshotFields>(grid);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::measure() {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  if (measured_time_ == state.time) PetscFunctionReturn(0);
+  const Fluid &fluid = config_.fluid;
+  const Real3 &f = fluid.body_force.force;
+  PetscCall(measure_flow(*grid_, state.velocity, state.phases,
+                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &flow_));
+  if (solver_->bodies().bodies() > 0)
+    PetscCall(solver_->bodies().measure(*grid_, state.phases, state.velocity, &bodies_));
+  if (first_volume_.empty())
+    for (const BodyMeasure &body : bodies_) first_volume_.push_back(body.volume);
+  volume_drift_ = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (first_volume_[b] > 0)
+      volume_drift_ = std::max(volume_drift_, std::fabs(bodies_[b].volume / first_volume_[b] - 1));
+  measured_time_ = state.time;
+  PetscFunctionReturn(0);
+}
+
+std::vector<BodyRecord> Outputs::records() const {
+  std::vector<BodyRecord> records;
+  for (const BodyMeasure &body : bodies_) {
+    BodyRecord record;
+    record.id = body.label;
+    record.species = config_.species[body.species].name;
+    record.centroid = body.centroid;
+    record.velocity = body.velocity;
+    record.volume = body.volume;
+    record.taylor_deformation = body.taylor_deformation;
+    record.inclination = body.inclination;
+    records.push_back(record);
+  }
+  return records;
+}
+
+PetscErrorCode Outputs::write_due(bool last) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  const bool series = series_due_.now(state.time, last), snapshot = snapshot_due_.now(state.time, last);
+  if (!series && !snapshot) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  if (series) {
+    PetscCall(measure());
+    double solid = 0;
+    for (const double volume : flow_.phase_volume) solid += volume;
+    PetscCall(series_.write({state.time, double(state.step), state.dt, flow_.kinetic_energy, flow_.elastic_energy,
+                             flow_.viscous_dissipation, flow_.bulk_velocity[0], flow_.bulk_velocity[1],
+                             flow_.bulk_velocity[2], flow_.speed_max, flow_.divergence_rms, flow_.divergence_max, solid,
+                             volume_drift_}));
+    if (bodies_file_) PetscCall(bodies_file_->add(state.time, records()));
+  }
+  if (snapshot)
+    PetscCall(snapshots_->write(state.time, static_cast<long>(state.step),
+                                snapshot_fields_->collect(selection(config_.output), state.velocity, state.pressure,
+                                                          state.phases)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_summary(Summary summary) {
+  PetscFunctionBeginUser;
+  StageScope stage(Stage::output);
+  const State &state = solver_->state();
+  PetscCall(measure());
+  if (bodies_file_) PetscCall(bodies_file_->flush());
+  summary.method = "classic";
+  summary.pressure_solver = config_.method.pressure == PressureKind::smac ? "smac" : "acm";
+  summary.cells = static_cast<long>(grid_->cell_count());
+  summary.ranks = grid_->ranks();
+  summary.steps = static_cast<long>(state.step);
+  summary.time = state.time;
+  summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;
+  summary.divergence_rms = flow_.divergence_rms;
+  summary.divergence_max = flow_.divergence_max;
+  summary.volume_drift = volume_drift_;
+  summary.kinetic_energy = flow_.kinetic_energy;
+  summary.elastic_energy = flow_.elastic_energy;
+  summary.bulk_velocity = flow_.bulk_velocity[0];
+  summary.bodies = records();
+  double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
+  counted[0] = double(solver_->bytes());
+  for (const Phase &phase : state.phases) counted[1] += phase.solid.points();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 2, MPI_DOUBLE, MPI_SUM, grid_->comm()));
+  summary.bytes_per_cell = counted[0] / grid_->cell_count();
+  summary.active_fraction = counted[1] / grid_->cell_count();
+  PetscCall(state_hash(*grid_, state, &summary.state_hash));
+  PetscCall(eulastic::write_summary(grid_->comm(), directory_ + "/summary.json", summary));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,12 @@
+// The initial scene of a validated Config.
+#pragma once
+
+#include "app/config.hpp"
+
+namespace eulastic {
+
+/// Makes the solver on `grid` and sets its initial velocity and bodies. A species that cannot be placed makes
+/// `reason` one line.
+PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason);
+
+}  // namespace eulastic

@@ -1,0 +1,22 @@
+// Chooses dt: measured every ten steps, changed smoothly, never shortened except to end on time.
+#pragma once
+
+#include "app/config.hpp"
+
+namespace eulastic {
+
+class TimeStepControl {
+public:
+  explicit TimeStepControl(const TimeControl &time) : time_(time) {}
+
+  /// The dt of the next step. Stops the run (`stop`: time, place, cause) when a field is not finite. A dt that the
+  /// user forces beyond a limit makes `warning` one line, once.
+  PetscErrorCode choose(Solver *solver, double *dt, std::string *stop, std::string *warning);
+
+private:
+  TimeControl time_;
+  double dt_ = 0;  ///< since the last measurement
+  bool warned_ = false;
+};
+
+}  // namespace eulastic
