@@ -124,7 +124,7 @@ TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
   });
 }
 
-// An overlapped exchange sends what was there at begin() and leaves the inner cells free to be read.
+// The exchange belongs to the grid, not to a block: state now and next take turns.
 TEST(GhostExchange, CanBeRepeatedAfterSwap) {
   for_each_grid([](const Grid &grid) {
     GhostExchange exchange(grid);

@@ -62,8 +62,8 @@ void prepare(const Grid &grid, FieldBlock &block, const std::function<Staggering
   ASSERT_EQ(exchange.update(block, width), 0);
 }
 
-// What a ghost must be: unfold the point direction by direction, the last reflection first. `odd(d, side)` is twice
-// the velocity the wall holds, `sign` -1 for velocity and +1 for everything even.
+// What a ghost must be: unfold the point direction by direction, the last reflection first. `sign` is -1 for velocity
+// and +1 for everything even.
 double unfolded(const Grid &grid, Int3 p, const Staggering &staggering, double sign, const std::vector<int> &order,
                 const std::function<double(int, int)> &twice_wall, const Point &inside) {
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
