@@ -144,7 +144,6 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
   if (wrong.empty()) wrong = read_words_as_entries(words, " (in PETSC_OPTIONS)", &sources[1], nullptr);
   if (!wrong.empty()) return wrong;
 
-  result->petsc_arguments = {"-skip_petscrc"};
   for (const Source &source : sources)
     for (const Entry &entry : source)
       if (is_petsc_option(entry.name)) {
@@ -159,6 +158,7 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options) {
   ParseResult result;
   result.petsc_options = petsc_options;
+  result.petsc_arguments = {"-skip_petscrc"};
   for (std::size_t a = 0; a < arguments.size(); ++a) {
     if (arguments[a] == "-help")
       result.message = a + 1 < arguments.size() && arguments[a + 1] == "markdown" ? help_markdown() : help_text();
@@ -166,6 +166,7 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
     if (!result.message.empty()) return result;
   }
   result.error = parse_into(arguments, &result);
+  if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
   for (char &c : result.error)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';  // one line, whatever was typed
   return result;

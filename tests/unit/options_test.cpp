@@ -171,6 +171,11 @@ TEST(Options, PetscOptionsPassThrough) {
                                            "-pressure_ksp_type", "cg", "-info", "-malloc_debug", "-memory_view"}));
 }
 
+TEST(Options, PetscIsSilentAfterAnError) {
+  EXPECT_EQ(parse_line("-log_view -nonsense").petsc_arguments, (Words{"-skip_petscrc"}));
+  EXPECT_EQ(parse_line("-log_view -help").petsc_arguments, (Words{"-skip_petscrc"}));
+}
+
 TEST(Options, Duplicates) {
   expect_refusals({{"-time_end 2", {"-time_end", "given twice"}},
                    {"-cell_diameter 4", {"-cell_diameter", "given twice, also as -cell_radius"}},

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""The program from outside: exit codes, one line on stderr, nothing written after wrong input, -help, -version.
+
+Needs EULASTIC=path of the binary; EULASTIC_MPIEXEC for the runs on several ranks.
+"""
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BINARY = os.environ["EULASTIC"]
+MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENE = ("-grid_cells 8,8,8 -boundary_y wall -time_end 1e-3 -time_step 1e-3 -species cell -cell_shape sphere "
+         "-cell_radius .25 -cell_shear_modulus 1").split()
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        room = tempfile.TemporaryDirectory()
+        self.addCleanup(room.cleanup)
+        self.room = pathlib.Path(room.name)
+
+    def run_program(self, *arguments, ranks=0, environment=None):
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks else []
+        variables = {k: v for k, v in os.environ.items() if k != "PETSC_OPTIONS"}
+        variables.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+        variables.update(environment or {})
+        return subprocess.run([*command, BINARY, *arguments], cwd=self.room, env=variables, capture_output=True,
+                              text=True, timeout=120)
+
+    def refused(self, *arguments, says=(), environment=None):
+        before = sorted(self.room.rglob("*"))
+        result = self.run_program(*arguments, environment=environment)
+        self.assertEqual(result.returncode, 2, arguments)
+        self.assertEqual(result.stdout, "", arguments)
+        self.assertRegex(result.stderr, r"\Aeulastic: error: [^\n]+\n\Z", arguments)
+        for piece in says:
+            self.assertIn(piece, result.stderr)
+        self.assertEqual(sorted(self.room.rglob("*")), before, "something was written")
+
+    def test_refusals(self):
+        for added, says in [
+                ("-grid_cels 8,8,8", ["-grid_cels", "-grid_cells"]),
+                ("-series_interval", ["-series_interval", "missing"]),
+                ("-body_force 1,,0", ["-body_force", "empty item"]),
+                ("-body_force 1,0", ["-body_force", "3 numbers"]),
+                ("-fluid_density 1x", ["-fluid_density", "1x", "a number > 0"]),
+                ("-fluid_density nan", ["-fluid_density", "not finite"]),
+                ("-fluid_density inf", ["-fluid_density", "not finite"]),
+                ("-body_force -inf,0,0", ["-body_force", "not finite"]),
+                ("-fluid_density -1", ["-fluid_density", "out of range"]),
+                ("-time_end 1", ["-time_end", "given twice"]),
+                ("-method slow", ["-method", "classic"]),
+                ("-fluid_inertia maybe", ["-fluid_inertia", "true or false"]),
+                ("missing.opts", ["missing.opts"]),
+                ("word another", ["another"]),
+                ("-cell_radius", ["-cell_radius"]),
+                ("-cell_colour red", ["-cell_colour"]),
+                ("-wall_ymin_velocity 0,1,0", ["-wall_ymin_velocity", "normal"]),
+                ("-wall_xmin_velocity 0,1,0", ["-wall_xmin_velocity", "-boundary_x wall"]),
+                ("-cell_placement list -cell_positions no.csv", ["-cell_positions", "no.csv"]),
+                ("-da_processors_y 3", ["rank"])]:
+            with self.subTest(added):
+                self.refused(*SCENE, *added.split(), says=says)
+        self.refused(says=["-time_end", "must be given"])
+        self.refused("-time_end", "1", "-species", "wall", says=["-species", "wall"])
+        self.refused("-time_end", "1", "-species", "a,a", says=["-species", "twice"])
+        self.refused(*SCENE, environment={"PETSC_OPTIONS": "-nonsense 1"}, says=["-nonsense", "PETSC_OPTIONS"])
+
+    def test_check_only_refuses_too(self):
+        self.refused(*SCENE, "-check_only", "-time_steps_max", "1.5", says=["-time_steps_max", "an integer"])
+
+    def test_petsc_output_stays_away_from_errors(self):
+        self.refused(*SCENE, "-log_view", "-nonsense", says=["-nonsense"])
+
+    def test_errors_on_several_ranks_are_printed_once(self):
+        result = self.run_program(*SCENE, "-nonsense", ranks=3)
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stderr.count("eulastic: error:"), 1)
+        self.assertEqual(list(self.room.iterdir()), [])
+
+    def test_help_and_version(self):
+        for arguments in (["-help"], ["-version"], ["-nonsense", "-help"], ["-help", "markdown"]):
+            with self.subTest(arguments):
+                result = self.run_program(*arguments)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                self.assertIn("eulastic", result.stdout)
+        self.assertIn("-grid_cells", self.run_program("-help").stdout)
+        self.assertIn("-series_interval", self.run_program("-help").stdout)
+        self.assertEqual(self.run_program("-version").stdout.count("\n"), 1)
+        self.assertEqual(self.run_program("-help", ranks=2).stdout, self.run_program("-help").stdout)
+        self.assertEqual(list(self.room.iterdir()), [])
+
+    def test_options_manual_is_up_to_date(self):
+        self.assertEqual(self.run_program("-help", "markdown").stdout, (ROOT / "docs/options.md").read_text(),
+                         "run: eulastic -help markdown > docs/options.md")
+
+    def test_check_only(self):
+        result = self.run_program(*SCENE, "-check_only", "-grid_cells", "2048,2048,2048")
+        self.assertEqual(result.returncode, 2)  # -grid_cells twice
+        case = self.room / "case.opts"
+        case.write_text("".join(f"{n} {v}\n" for n, v in zip(SCENE[::2], SCENE[1::2])))
+        result = self.run_program(case.name, "-check_only", "-grid_cells", "2048,2048,2048")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for line in ("cells: 2048 x 2048 x 2048 = 8589934592", "dt limit, viscous", "Reynolds number",
+                     "capillary number of cell", "memory:", "hematocrit: 0.0654498"):
+            self.assertIn(line, result.stdout)
+        self.assertEqual([p.name for p in self.room.iterdir()], ["case.opts"])
+
+    def test_every_case_is_valid(self):
+        cases = sorted((ROOT / "options").glob("*.opts"))
+        self.assertTrue(cases)
+        for case in cases:
+            with self.subTest(case.name):
+                result = self.run_program(str(case), "-check_only")
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_options_txt_gives_the_same_run(self):
+        (self.room / ".petscrc").write_text("-fluid_density 7\n-nonsense\n")
+        result = self.run_program(*SCENE, "-output_dir", "first", environment={"PETSC_OPTIONS": "-fluid_density 3"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = (self.room / "first/options.txt").read_text()
+        self.assertIn("\n-fluid_density 3\n", text)
+        self.assertIn("# PETSC_OPTIONS: -fluid_density 3\n", text)
+        self.refused("first/options.txt", says=["first"])  # the directory is there
+        result = self.run_program("first/options.txt", "-output_dir", "second")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        def values(name):
+            lines = (self.room / name / "options.txt").read_text().splitlines()
+            return [l for l in lines if l.startswith("-") and not l.startswith("-output_dir")]
+        self.assertEqual(values("second"), values("first"))
+
+
+if __name__ == "__main__":
+    unittest.main()
