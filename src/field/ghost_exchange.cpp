@@ -11,7 +11,7 @@ namespace {
 int image(const Grid &grid, int d, int g) {
   const int n = grid.cells()[d];
   if (d >= grid.dimension()) return g;
-  if (grid.boundary(d) == Boundary::periodic) return (g + n) % n;
+  if (grid.boundary(d) == Boundary::periodic) return ((g % n) + n) % n;
   return g >= 0 && g <= n ? g : -1;
 }
 

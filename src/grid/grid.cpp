@@ -10,9 +10,13 @@ constexpr int sum_block = 256;  // x is split at multiples of it, so that row su
 
 std::ptrdiff_t round_up(std::ptrdiff_t n, std::ptrdiff_t m) { return (n + m - 1) / m * m; }
 
-// First cell of each of `parts` ranks; x in whole blocks where there are enough of them.
+// First cell of each of `parts` ranks: multiples of a power of two, so that coarse grids have whole cells on every
+// rank, as large as unevenness of an eighth allows; x in whole blocks where there are enough of them.
 std::vector<int> split(int cells, int parts, bool in_blocks) {
-  const int unit = in_blocks && cells >= sum_block * parts ? sum_block : 1;
+  int unit = 1;
+  while (cells % (2 * unit) == 0 && cells / parts >= 8 * 2 * unit) unit *= 2;
+  while (cells % (2 * unit * parts) == 0 && cells / parts >= 4 * unit) unit *= 2;
+  if (in_blocks && cells >= sum_block * parts) unit = sum_block;
   const std::int64_t units = (cells + unit - 1) / unit;
   std::vector<int> starts(parts + 1);
   for (int p = 0; p <= parts; ++p) starts[p] = static_cast<int>(std::min<std::int64_t>(cells, units * p / parts * unit));
@@ -21,7 +25,7 @@ std::vector<int> split(int cells, int parts, bool in_blocks) {
 
 bool wide_enough(const std::vector<int> &starts, bool needs_ghosts) {
   for (std::size_t p = 0; p + 1 < starts.size(); ++p)
-    if (starts[p + 1] - starts[p] < (needs_ghosts ? Grid::ghost_width : 1)) return false;
+    if (starts[p + 1] - starts[p] < (needs_ghosts ? Grid::stencil_width : 1)) return false;
   return true;
 }
 
@@ -62,7 +66,7 @@ Int3 Grid::decompose(const GridSpec &spec, int ranks) {
 
 std::string Grid::why_not(const GridSpec &spec, int ranks) {
   for (int d = 0; d < (spec.cells[2] == 1 ? 2 : 3); ++d)
-    if (spec.cells[d] < ghost_width)
+    if (spec.cells[d] < stencil_width)
       return std::to_string(spec.cells[d]) + " cells in direction " + "xyz"[d] + ", at least 3 are needed";
   if (decompose(spec, ranks)[0]) return {};
   std::string text = std::to_string(ranks) + " ranks cannot share " + std::to_string(spec.cells[0]) + " x " +
@@ -141,7 +145,7 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
   }
   layout_ = make_layout({rank_ % ranks[0], rank_ / ranks[0] % ranks[1], rank_ / ranks[0] / ranks[1]});
   PetscCall(DMDACreate3d(comm, type[0], type[1], type[2], DMDA_STENCIL_BOX, spec.cells[0], spec.cells[1],
-                         spec.cells[2], ranks[0], ranks[1], ranks[2], 1, ghost_width, counts[0].data(),
+                         spec.cells[2], ranks[0], ranks[1], ranks[2], 1, stencil_width, counts[0].data(),
                          counts[1].data(), counts[2].data(), dm_.put()));
   PetscCall(DMSetUp(dm_.get()));
   PetscFunctionReturn(0);

@@ -41,7 +41,8 @@ struct Layout {
 
 class Grid {
 public:
-  static constexpr int ghost_width = 3;
+  static constexpr int ghost_width = 4;    ///< layers in memory
+  static constexpr int stencil_width = 3;  ///< layers that WENO5 reads; also the fewest cells of a rank
 
   /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, or by order) and makes
   /// the DMDA. Call `why_not` first: it explains in one line why a spec cannot be decomposed.

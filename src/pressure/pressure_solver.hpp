@@ -12,7 +12,15 @@ public:
   /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on walls.
   /// `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer valid; a
   /// solver may remove its mean. `increment`: out, one ghost layer valid.
-  virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) = 0;
+  virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
+                               FieldBlock &increment) = 0;
+
+  /// rms of D that is good enough; exact solvers and the paper's single step take no notice.
+  virtual void set_target(double) {}
+  /// Sweeps or iterations since the start; 0 for exact solvers.
+  virtual long sweeps() const { return 0; }
+  /// Fields that must survive a restart for the same bits, or null.
+  virtual FieldBlock *memory() { return nullptr; }
 };
 
 }  // namespace eulastic

@@ -30,13 +30,13 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
 
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::ghost_width));
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
-    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+    PetscCall(update_centre_ghosts(phase.fraction, Grid::stencil_width));
     PetscCall(reset_exterior(*grid_, phase));
     PetscCall(find_solid(*grid_, phase));
-    PetscCall(update_tensor_ghosts(phase.tensor, Grid::ghost_width));
+    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
   }
   if (!now_.phases.empty()) {
     next_fraction_ = FieldBlock(*grid_, 1);
@@ -77,7 +77,7 @@ PetscErrorCode Solver::step(double dt) {
                              now_.phases, velocity_star_));                                           // (7)
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));                                                                             // (8)-(13)
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::ghost_width));
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
   for (Phase &phase : now_.phases) PetscCall(transport(phase, dt));                                   // (4)(5)
   PetscCall(follow_bodies(dt));
   now_.time += dt;
@@ -107,11 +107,11 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
   PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));              // (4)
   phase.fraction.swap(next_fraction_);
-  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(update_centre_ghosts(phase.fraction, Grid::stencil_width));
   PetscCall(find_solid(*grid_, phase));
   PetscCall(transport_tensor(*grid_, dt, now_.velocity, phase, next_tensor_));                        // (5)
   phase.tensor.swap(next_tensor_);
-  PetscCall(update_tensor_ghosts(phase.tensor, Grid::ghost_width));
+  PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
   PetscFunctionReturn(0);
 }
 
