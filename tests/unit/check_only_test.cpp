@@ -1,0 +1,39 @@
+// -check_only: derived numbers against hand values.
+#include "app/check_only.hpp"
+#include "support/command_line.hpp"
+
+using namespace eulastic;
+
+TEST(CheckOnly, NumbersOfAChannel) {
+  // Channel of height 2: U = f H^2/(8 nu) = 1, shear rate f H/(2 nu) = 2; nu = 1/2, c^2 = 2, S = 2 4^2 = 32.
+  const ParseResult result = parse_line(
+      "-grid_cells 16,8,1 -grid_length 4,2,1 -boundary_y wall -fluid_density 2 -fluid_viscosity 1 -body_force 1,0,0 "
+      "-time_end 100 -species a -a_shape sphere -a_radius .5 -a_shear_modulus 4 -a_placement lattice -a_count 2,1,1");
+  ASSERT_EQ(result.error, "");
+  const std::string report = check_report(result.config, 2);
+  const auto has = [&](const std::string &line) {
+    EXPECT_NE(report.find(line + "\n"), std::string::npos) << line << " in\n" << report;
+  };
+  has("cells: 16 x 8 x 1 = 128");
+  has("spacing: 0.25 x 0.25");
+  has("ranks: 1 x 2 x 1 = 2, about 64 cells each");
+  has("velocity scale (estimate): 1");
+  has("Reynolds number: 4 (length 2)");
+  has("capillary number of a: 0.5 (viscosity x shear rate / shear modulus)");
+  has("hematocrit: 0.19635");  // 2 pi/4 / 8
+  const double ghosts = 2 * Grid::ghost_width;
+  char memory[64];  // 16 fields: u, v now and predicted, p, D, dp; phi, label, 3 of B; phi and B being computed
+  std::snprintf(memory, sizeof memory, "%.4g GB per rank", 8e-9 * 16 * (16 + ghosts) * (4 + ghosts));
+  has(memory);
+  has("dt limit, viscous: 0.03125");                // 1/(2 nu S)
+  has("dt limit, elastic wave: 0.125");             // 1/(c sqrt(S))
+  has("dt limit, viscous and elastic: 0.0295085");  // 64 dt^2 + 32 dt = 1
+  has("dt limit, advective: 0.25");
+  has("dt limit, Euler 2 nu/U^2: 1");
+  EXPECT_EQ(report.find("warning"), std::string::npos);
+  const ParseResult forced = parse_line(scene + " -time_step 1 -check_only");
+  EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
+  const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");
+  ASSERT_EQ(huge.error, "");
+  EXPECT_NE(check_report(huge.config, 1024).find("64-bit"), std::string::npos);
+}

@@ -1,0 +1,223 @@
+// Every class of wrong input is refused in one line that names the option and what is accepted.
+#include "support/command_line.hpp"
+
+using namespace eulastic;
+
+namespace {
+
+struct Refusal {
+  std::string added;              ///< to the valid scene
+  std::vector<std::string> says;  ///< pieces of the message
+};
+
+void expect_refusals(const std::vector<Refusal> &refusals, const std::string &base = scene) {
+  for (const Refusal &refusal : refusals) {
+    const ParseResult result = parse_line(base + " " + refusal.added);
+    EXPECT_FALSE(result.error.empty()) << refusal.added;
+    EXPECT_EQ(result.error.find('\n'), std::string::npos);
+    for (const std::string &piece : refusal.says)
+      EXPECT_NE(result.error.find(piece), std::string::npos) << refusal.added << " says: " << result.error;
+  }
+}
+
+}  // namespace
+
+TEST(OptionRefusals, UnknownNames) {
+  expect_refusals({{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "3 integers >= 1"}},
+                   {"-cell_raduis 1", {"nearest known: -cell_radius"}},
+                   {"-time_ned 1", {"nearest known: -time_end"}},
+                   {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
+                   {"--time_step 1", {"--time_step", "nearest known: -time_step"}},
+                   {"-Time_step 1", {"-Time_step", "nearest known: -time_step"}},
+                   {"-other_radius 1", {"-other_radius"}},
+                   {"-options_file x", {"-options_file"}},
+                   {"-log", {"unknown option -log"}},
+                   {"-log_", {"unknown option -log_"}},
+                   {"-NAME_radius 1", {"unknown option -NAME_radius"}}});
+}
+
+TEST(OptionRefusals, PetscIsSilentAfterAnError) {
+  EXPECT_EQ(parse_line("-log_view -nonsense").petsc_arguments, (Words{"-skip_petscrc"}));
+  EXPECT_EQ(parse_line("-log_view -help").petsc_arguments, (Words{"-skip_petscrc"}));
+}
+
+TEST(OptionRefusals, Duplicates) {
+  expect_refusals({{"-time_end 2", {"-time_end", "given twice"}},
+                   {"-cell_diameter 4", {"-cell_diameter", "given twice, also as -cell_radius"}},
+                   {"-check_only -check_only", {"-check_only", "given twice"}},
+                   {"-snapshot_fields body,body", {"-snapshot_fields", "\"body\" is given twice"}}});
+}
+
+TEST(OptionRefusals, MissingValues) {
+  expect_refusals({{"-time_step", {"-time_step", "a value is missing", "a number >= 0"}},
+                   {"-time_step -check_only", {"-time_step", "a value is missing"}},
+                   {"-output_dir", {"-output_dir", "a value is missing"}}});
+  Words list = words(scene);
+  list.push_back("-output_dir");
+  list.push_back("");
+  EXPECT_NE(parse(list).error.find("a value is missing"), std::string::npos);
+  expect_refusals({{"-species", {"-species", "a value is missing"}}}, "-time_end 1");
+}
+
+TEST(OptionRefusals, Lists) {
+  expect_refusals({{"-body_force 1,,2", {"-body_force", "empty item", "3 numbers"}},
+                   {"-body_force ,1,2", {"empty item"}},
+                   {"-body_force 1,2,", {"empty item"}},
+                   {"-body_force 1,2", {"-body_force", "2 items", "3 numbers"}},
+                   {"-body_force 1,2,3,4", {"4 items"}},
+                   {"-time_step 1,2", {"-time_step", "2 items"}},
+                   {"-body_force 1, 2, 3", {"stray word \"3\"", "lists without spaces"}},
+                   {"-body_force 1,2, 3", {"options file 3", "lists without spaces"}},
+                   {"-snapshot_fields body,", {"-snapshot_fields", "empty item"}},
+                   {"-snapshot_fields body,velocty", {"-snapshot_fields", "\"velocty\"", "velocity"}}});
+}
+
+TEST(OptionRefusals, Numbers) {
+  for (const char *bad : {"1x", "x", "nan", "-nan", "NaN", "inf", "-inf", "Infinity", "1e999", "0x10", "1.2.3", "1e",
+                          "--1", "+-1", "1 ", "1;2", "1d0", "-"}) {
+    const ParseResult result = parse([&] {
+      Words list = words(scene);
+      list.push_back("-body_force_phase");
+      list.push_back(bad);
+      return list;
+    }());
+    EXPECT_NE(result.error.find("-body_force_phase"), std::string::npos) << bad << ": " << result.error;
+  }
+  expect_refusals({{"-time_steps_max 1.5", {"-time_steps_max", "\"1.5\" is not an integer", "an integer"}},
+                   {"-time_steps_max 1e3", {"not an integer"}},
+                   {"-time_steps_max 99999999999999999999", {"does not fit"}},
+                   {"-da_processors_x 4294967297", {"-da_processors_x", "does not fit"}},
+                   {"-wall_ymin_velocity nan,0,0", {"-wall_ymin_velocity", "not finite"}},
+                   {"-wall_ymin_velocity -inf,0,0", {"-wall_ymin_velocity", "not finite"}}});
+}
+
+TEST(OptionRefusals, Ranges) {
+  expect_refusals({{"-fluid_density 0", {"-fluid_density", "out of range", "a number > 0"}},
+                   {"-fluid_viscosity -1", {"-fluid_viscosity", "a number >= 0"}},
+                   {"-time_step -1", {"-time_step", "out of range"}},
+                   {"-time_steps_max -1", {"-time_steps_max", "out of range"}},
+                   {"-series_interval -1", {"-series_interval", "out of range"}},
+                   {"-da_processors_x -1", {"-da_processors_x", "out of range"}},
+                   {"-cell_initial_stretch 1,0,1", {"-cell_initial_stretch", "out of range"}},
+                   {"-wall_ymin_frequency -1", {"-wall_ymin_frequency", "out of range"}},
+                   {"-method slow", {"-method", "\"slow\"", "classic"}},
+                   {"-pressure_solver ACM", {"-pressure_solver", "one of acm, smac"}},
+                   {"-fluid_inertia maybe", {"-fluid_inertia", "true or false"}},
+                   {"-check_only 2", {"-check_only", "true or false"}},
+                   {"-boundary_x open", {"-boundary_x", "one of periodic, wall"}},
+                   {"-initial_velocity vortex", {"-initial_velocity", "taylor_green"}}});
+  expect_refusals({{"-grid_cells 0,8,8", {"-grid_cells", "out of range"}},
+                   {"-grid_cells 8,8,2", {"-grid_cells", "at least 3"}},
+                   {"-grid_cells 2,8,1", {"-grid_cells", "at least 3"}},
+                   {"-grid_length 1,0,1", {"-grid_length", "out of range"}},
+                   {"-grid_cells 65536,65536,8", {"-grid_cells", "64-bit"}}},
+                  "-time_end 1");
+  expect_refusals({{"-time_end 0", {"-time_end", "out of range"}}, {"", {"-time_end", "must be given"}}}, "");
+}
+
+TEST(OptionRefusals, StrayWords) {
+  expect_refusals({{"-body_force 1,0,0 -time_step 1 2 3", {}},
+                   {"word another", {"stray word \"another\""}},
+                   {"no_such_file.opts", {"no_such_file.opts", "cannot be read"}},
+                   {"/", {"options file / cannot be read"}}});
+  Words list = words(scene);
+  list.push_back("");
+  EXPECT_NE(parse(list).error.find("stray word"), std::string::npos);
+  EXPECT_NE(parse_line(scene, "word").error.find("PETSC_OPTIONS"), std::string::npos);
+}
+
+TEST(OptionRefusals, SpeciesNames) {
+  for (const char *name :
+       {"wall",   "fluid",   "body",   "time",     "grid",   "boundary", "initial", "output", "snapshot",
+        "series", "species", "method", "pressure", "check",  "help",     "version", "da",     "log",
+        "ksp",    "mat",     "vec",    "info",     "malloc", "options",  "grid_a",  "Wall"}) {
+    const ParseResult result = parse_line(std::string("-time_end 1 -species ") + name);
+    EXPECT_NE(result.error.find(std::string("-species: \"") + name + "\" collides"), std::string::npos)
+        << name << ": " << result.error;
+  }
+  expect_refusals({{"-species a,b,a", {"-species", "\"a\" is given twice"}},
+                   {"-species a,,b", {"-species", "empty item"}},
+                   {"-species 1a", {"-species", "\"1a\" is not a name"}},
+                   {"-species a-b", {"-species", "\"a-b\" is not a name"}},
+                   {"-species a.b", {"-species", "not a name"}},
+                   {"-species a", {"-a_shape", "must be given"}}},
+                  "-time_end 1");
+  const std::string two = "-time_end 1 -species a,a_shear -a_shape sphere -a_radius .1 -a_shear_modulus 1 ";
+  EXPECT_EQ(parse_line(two + "-a_shear_shape sphere -a_shear_radius .2 -a_shear_shear_modulus 2").error, "");
+}
+
+TEST(OptionRefusals, InconsistentScenes) {
+  expect_refusals({{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
+                   {"-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity", "-boundary_x wall"}},
+                   {"-wall_xmax_frequency 1", {"-wall_xmax_frequency", "-boundary_x wall"}},
+                   {"-initial_velocity_amplitude 2", {"-initial_velocity_amplitude", "-initial_velocity"}},
+                   {"-initial_velocity_mean 0,1,0", {"-initial_velocity_mean", "between walls"}},
+                   {"-cell_interval 1,2", {"-cell_interval", "-cell_shape slab"}},
+                   {"-cell_axis x", {"-cell_axis"}},
+                   {"-cell_count 1,1,1", {"-cell_count", "-cell_placement lattice"}},
+                   {"-cell_placement list", {"-cell_positions", "must be given"}},
+                   {"-cell_positions x.csv", {"-cell_positions", "-cell_placement list"}},
+                   {"-cell_placement list -cell_positions no_such.csv", {"-cell_positions", "no_such.csv"}},
+                   {"-cell_placement list -cell_positions /", {"-cell_positions"}},
+                   {"-cell_placement lattice -cell_count 1,9,1", {"-species cell", "wall"}},
+                   {"-cell_centre 4,1,4", {"-species cell", "wall"}},
+                   {"-cell_centre 40,4,4", {"-species cell", "outside"}}});
+  const std::string periodic = "-time_end 1 -grid_cells 8,8,8 ";
+  expect_refusals({{"-initial_velocity couette", {"-initial_velocity", "-boundary_y wall"}},
+                   {"-initial_velocity poiseuille", {"-boundary_y wall"}}},
+                  periodic);
+  const std::string material = "-species a -a_shear_modulus 1 ";
+  expect_refusals({{"-a_shape sphere", {"-a_radius", "must be given"}},
+                   {"-a_shape sphere -a_radius 0", {"-a_radius", "out of range"}},
+                   {"-a_shape sphere -a_diameter 0", {"-a_diameter", "out of range"}},
+                   {"-a_shape sphere -a_radius 3", {"-species a", "long"}},
+                   {"-a_shape ellipsoid", {"-a_semi_axes", "must be given"}},
+                   {"-a_shape ellipsoid -a_semi_axes 1,-1,1", {"-a_semi_axes", "out of range"}},
+                   {"-a_shape slab", {"-a_interval", "must be given"}},
+                   {"-a_shape slab -a_interval .5,.2", {"-a_interval", "below"}},
+                   {"-a_shape slab -a_interval .5,.5", {"-a_interval", "below"}},
+                   {"-a_shape slab -a_interval 1.5,2", {"-a_interval", "outside"}},
+                   {"-a_shape slab -a_interval 0,.5 -a_radius 1", {"-a_radius", "-a_shape sphere"}},
+                   {"-a_shape slab -a_interval 0,.5 -a_centre 0,0,0", {"-a_centre"}},
+                   {"-a_shape cube", {"-a_shape", "sphere, biconcave"}}},
+                  periodic + material);
+  expect_refusals(
+      {{"-species a -a_shape sphere -a_radius .1", {"-a_shear_modulus", "must be given"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus -1", {"-a_shear_modulus", "out of range"}}},
+      periodic);
+}
+
+TEST(OptionRefusals, TwoDimensions) {
+  const std::string flat = "-time_end 1 -grid_cells 8,8,1 -boundary_y wall ";
+  EXPECT_EQ(parse_line(flat + "-species a -a_shape sphere -a_radius .2 -a_centre .5,.5,9 -a_shear_modulus 1").error,
+            "");
+  expect_refusals({{"-boundary_z wall", {"-boundary_z", "more than one cell"}},
+                   {"-body_force 0,0,1", {"-body_force", "2-D"}},
+                   {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
+                   {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
+                   {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
+                   {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
+                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
+                    {"-a_initial_stretch", "2-D"}},
+                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
+                    {"-a_count", "2-D"}}},
+                  flat);
+}
+
+TEST(OptionRefusals, ErrorsNameTheirSource) {
+  const auto error = [](const std::string &text) {
+    const TemporaryFile file(text);
+    const std::string message = parse({file.path()}).error;
+    return message.find(file.path()) == std::string::npos ? "no path in: " + message : message;
+  };
+  EXPECT_NE(error("-time_end 1\n-time_step 1x\n").find(":2)"), std::string::npos);
+  EXPECT_NE(error("-time_end 1\n-time_end 2\n").find("given twice"), std::string::npos);
+  EXPECT_NE(error("-time_end 1\nword\n").find("stray word \"word\""), std::string::npos);
+  EXPECT_NE(error("-time_end 1 2\n").find("stray word \"2\""), std::string::npos);
+  EXPECT_NE(error("-body_force 1, 2, 3\n").find(":1)"), std::string::npos);
+  EXPECT_NE(error("-output_dir \"a\n").find("quote"), std::string::npos);
+  EXPECT_NE(error("-help\n").find("only on the command line"), std::string::npos);
+  EXPECT_NE(error("-wall_xmin_velocity 0,0,0\n-time_end 1\n").find(":1)"), std::string::npos);
+  EXPECT_NE(parse_line("-time_end 1", "-time_step x").error.find("in PETSC_OPTIONS"), std::string::npos);
+  EXPECT_EQ(parse({"-x\ny"}).error.find('\n'), std::string::npos);
+}
