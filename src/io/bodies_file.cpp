@@ -85,8 +85,10 @@ BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
 PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodies) {
   std::string problem;
   PetscFunctionBeginUser;
-  if (rank_ == 0 && !bodies.empty()) {
-    if (first_.empty()) first_ = bodies;
+  if (rank_ == 0 && first_.empty()) first_ = bodies;
+  if (bodies.size() != first_.size() && rank_ == 0) {
+    problem = path_ + ": the number of bodies has changed";
+  } else if (!first_.empty()) {
     columns_[0].waiting.push_back(time);
     for (const BodyRecord &body : bodies) {
       columns_[1].waiting.insert(columns_[1].waiting.end(), body.centroid.begin(), body.centroid.end());
@@ -97,10 +99,7 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
     }
     ++waiting_;
     const std::size_t bytes = waiting_ * (1 + 9 * bodies.size()) * sizeof(double);
-    if (bodies.size() != first_.size())
-      problem = path_ + ": the number of bodies has changed";
-    else if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max)
-      problem = write_waiting();
+    if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
   }
   PetscCall(fail_together(comm_, problem));
   PetscFunctionReturn(0);
@@ -115,7 +114,7 @@ PetscErrorCode BodiesFile::flush() {
 std::string BodiesFile::write_waiting() {
   VerbScope scope(Verb::write);
   (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const std::string target = temporary_name(path_), problem = path_ + ": cannot be written (disk full?)";
+  const std::string target = temporary_name(path_);
   std::error_code error;
   if (written_ > 0) std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
   if (error) return path_ + ": cannot be copied (" + error.message() + ")";
@@ -131,7 +130,10 @@ std::string BodiesFile::write_waiting() {
                                checksum_text(column.checksum));
     column.waiting.clear();
   }
-  if (!file.close() || !fine) return problem;
+  if (!file.close() || !fine) {
+    std::filesystem::remove(target, error);
+    return path_ + ": cannot be written (disk full?)";
+  }
   written_ += std::exchange(waiting_, 0);
   return replace_file(path_);
 }

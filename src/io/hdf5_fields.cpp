@@ -1,6 +1,13 @@
 // Hdf5File: fields.
 #include "io/checksum.hpp"
+#include "io/fail_together.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/text_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
 
 namespace eulastic {
 namespace {
@@ -9,6 +16,17 @@ std::string shape_text(const std::vector<hsize_t> &shape) {
   std::string text;
   for (const hsize_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
   return text.empty() ? "a scalar" : text;
+}
+
+// Takes the disk space of a dataset before it is written: Open MPI's collective writes may lose the error of a full
+// disk. Empty, or what went wrong. Not every file system can.
+std::string reserve(const std::string &path, haddr_t offset, hsize_t bytes) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  const bool refused = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) != 0 &&
+                       (errno == ENOSPC || errno == EDQUOT || errno == EFBIG);
+  const std::string problem = refused ? path + ": " + std::strerror(errno) : std::string();
+  (void)::close(file);
+  return problem;
 }
 
 }  // namespace
@@ -64,6 +82,9 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Box &box, h
   Hdf5Dataset dataset(
       H5Dcreate2(file_.get(), name.c_str(), file_type, file_space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
   PetscCall(check(bool(dataset), "cannot create dataset " + name));
+  const haddr_t offset = H5Dget_offset(dataset.get());
+  const hsize_t bytes = H5Dget_storage_size(dataset.get());
+  PetscCall(fail_together(comm_, mpi_rank_ == 0 ? reserve(temporary_name(path_), offset, bytes) : std::string()));
   const Hdf5Property transfer = hdf5_collective();
   const bool written =
       H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, box.begin, nullptr, box.count, nullptr) >= 0 &&

@@ -65,14 +65,20 @@ PetscErrorCode Hdf5File::open(MPI_Comm comm, const std::string &path) {
 PetscErrorCode Hdf5File::commit() {
   PetscFunctionBeginUser;
   // The flush syncs every rank's part, which rank 0 could not do for other nodes.
-  const bool flushed = H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0;
-  PetscCall(check(file_.close() && flushed, "cannot be completed (disk full?)"));
+  PetscCall(check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be completed (disk full?)"));
+  PetscCall(check(file_.close(), "cannot be closed (disk full?)"));
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? replace_file(path_) : std::string()));
   writing_ = false;
   PetscFunctionReturn(0);
 }
 
+// HDF5 1.10 crashes in MPI_Finalize if a file cannot be closed. So an unfinished one first gives its space back: then
+// there is room for what a full disk had no room for.
 Hdf5File::~Hdf5File() {
+  if (writing_ && file_) {
+    if (mpi_rank_ == 0) (void)!::truncate(temporary_name(path_).c_str(), 0);
+    (void)MPI_Barrier(comm_);
+  }
   (void)file_.close();
   if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
 }

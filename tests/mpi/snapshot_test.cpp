@@ -6,8 +6,10 @@
 #include "io/text_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -278,6 +280,34 @@ TEST(Hdf5, UnfinishedFilesVanish) {
   MPI_Barrier(PETSC_COMM_WORLD);
   EXPECT_FALSE(fs::exists(temporary_name(path)));
   EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(Hdf5, AFullDiskIsAnError) {
+  const SharedDirectory directory;
+  const std::string path = directory / "full.h5";
+  const Scene scene({13, 17, 19});
+  const FieldBlock block(scene.grid, 1);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old_limit;
+  ::getrlimit(RLIMIT_FSIZE, &old_limit);
+  const rlimit limit{10000, old_limit.rlim_max};
+  {
+    Hdf5File out;
+    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    const std::string error = error_of([&] {
+      PetscFunctionBeginUser;
+      PetscCall(out.write_field(scene.grid, {"q"}, {block[0]}));
+      PetscCall(out.commit());
+      PetscFunctionReturn(0);
+    });
+    ::setrlimit(RLIMIT_FSIZE, &old_limit);
+    EXPECT_EQ(error, temporary_name(path) + ": File too large");
+  }
+  std::signal(SIGXFSZ, old_handler);
+  MPI_Barrier(PETSC_COMM_WORLD);
+  EXPECT_FALSE(fs::exists(path));
+  EXPECT_FALSE(fs::exists(temporary_name(path)));
 }
 
 TEST(FailTogether, EveryRankGetsTheText) {
