@@ -1,0 +1,234 @@
+// Elastic force and stretching on fields for which central differences are exact, in every component; energy.
+#include "physics/transport.hpp"
+
+#include "kernels/upper_convected.hpp"
+#include "support/polynomials.hpp"
+#include "support/verbs.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// A solid everywhere, phi and B polynomials of the given degree, velocity linear (L = gradients of v).
+struct Solid {
+  Grid grid;
+  Fluid fluid;
+  std::vector<Phase> phases;
+  FieldBlock velocity, pressure, velocity_star, next;
+  Polynomial phi, v[3], B[3][3];
+
+  Solid(bool flat, int degree, int seed) {
+    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    Random random(seed);
+    const int dim = grid.dimension();
+    velocity = FieldBlock(grid, dim);
+    velocity_star = FieldBlock(grid, dim);
+    pressure = FieldBlock(grid, 1);
+    for (int a = 0; a < dim; ++a) v[a] = Polynomial(random, 1);
+    phi = Polynomial(random, degree);
+    phi.c = 5;  // well above the threshold
+    B[2][2].c = 1;
+    const auto &components = tensor_components(dim);
+    for (const auto [a, b] : components) B[a][b] = B[b][a] = Polynomial(random, degree);
+    phases.resize(1);
+    Phase &phase = phases[0];
+    phase.material.shear_modulus = 0.7;
+    phase.fraction = FieldBlock(grid, 1);
+    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
+    next = FieldBlock(grid, phase.tensor.count());
+    phase.solid.build_all(grid);
+    phase.stressed.build_all(grid);
+    fill();
+  }
+
+  void fill() {
+    const auto &components = tensor_components(grid.dimension());
+    for (int a = 0; a < grid.dimension(); ++a) fill_everywhere(grid, velocity[a], at_face[a], v[a]);
+    fill_everywhere(grid, phases[0].fraction[0], at_centre, phi);
+    for (int c = 0; c < phases[0].tensor.count(); ++c)
+      fill_everywhere(grid, phases[0].tensor[c], components[c].staggering(), B[components[c].a][components[c].b]);
+  }
+
+  double deviator(int a, int b, const Point &x) const {
+    const double trace = B[0][0](x) + B[1][1](x) + B[2][2](x);
+    return B[a][b](x) - (a == b ? trace / 3 : 0);
+  }
+  double deviator_slope(int a, int b, int d, const Point &x) const {
+    const double trace = B[0][0].slope(d, x) + B[1][1].slope(d, x) + B[2][2].slope(d, x);
+    return B[a][b].slope(d, x) - (a == b ? trace / 3 : 0);
+  }
+  // L.B + B.L^T - v.grad B
+  double rate(int a, int b, const Point &x) const {
+    double sum = 0;
+    for (int d = 0; d < grid.dimension(); ++d)
+      sum += v[a].g[d] * B[d][b](x) + B[a][d](x) * v[b].g[d] - v[d](x) * B[a][b].slope(d, x);
+    return sum;
+  }
+};
+
+TEST(ElasticForce, ExactForLinearFractionAndTensor) {
+  for (const bool flat : {false, true})
+    for (int seed = 0; seed < 4; ++seed) {
+      Solid solid(flat, 1, seed);
+      solid.fluid.inertia = false;
+      solid.fluid.density = 1.7;
+      for (int a = 0; a < solid.grid.dimension(); ++a) solid.v[a] = Polynomial{};
+      solid.fill();
+      const double dt = 0.37;
+      ASSERT_EQ(
+          predict(solid.grid, solid.fluid, 0, dt, solid.velocity, solid.pressure, solid.phases, solid.velocity_star),
+          0);
+      for (int a = 0; a < solid.grid.dimension(); ++a)
+        EXPECT_LT(largest_error(solid.grid, solid.velocity_star[a], at_face[a],
+                                [&](const Point &x) {
+                                  double force = 0;
+                                  for (int d = 0; d < solid.grid.dimension(); ++d)
+                                    force += solid.phi(x) * solid.deviator_slope(a, d, d, x) +
+                                             solid.phi.slope(d, x) * solid.deviator(a, d, x);
+                                  return dt * 0.7 / 1.7 * force;
+                                }),
+                  2e-13)
+            << "uvw"[a] << " seed " << seed;
+    }
+}
+
+TEST(ElasticForce, NoneWithoutStrain) {
+  for (const bool flat : {false, true}) {
+    Solid solid(flat, 2, 5);
+    const auto &components = tensor_components(solid.grid.dimension());
+    for (const auto [a, b] : components) {
+      solid.B[a][b] = Polynomial{};
+      if (a == b) solid.B[a][b].c = 1;
+    }
+    solid.v[0] = solid.v[1] = solid.v[2] = Polynomial{};
+    solid.fill();
+    ASSERT_EQ(predict(solid.grid, solid.fluid, 0, 1, solid.velocity, solid.pressure, solid.phases, solid.velocity_star),
+              0);
+    for (int a = 0; a < solid.grid.dimension(); ++a)
+      EXPECT_EQ(largest_error(solid.grid, solid.velocity_star[a], at_face[a], [](const Point &) { return 0.0; }), 0);
+  }
+}
+
+TEST(Stretching, ExactForLinearFlowAndTensor) {
+  for (const bool flat : {false, true})
+    for (const int degree : {0, 1})
+      for (int seed = 0; seed < 4; ++seed) {
+        Solid solid(flat, degree, 10 + seed);
+        const double dt = 0.37;
+        ASSERT_EQ(transport_tensor(solid.grid, dt, solid.velocity, solid.phases[0], solid.next), 0);
+        const auto &components = tensor_components(solid.grid.dimension());
+        for (int c = 0; c < solid.next.count(); ++c) {
+          const auto [a, b] = components[c];
+          EXPECT_LT(
+              largest_error(solid.grid, solid.next[c], components[c].staggering(),
+                            [&, a = a, b = b](const Point &x) { return solid.B[a][b](x) + dt * solid.rate(a, b, x); }),
+              2e-13)
+              << "xyz"[a] << "xyz"[b] << " degree " << degree << " seed " << seed;
+        }
+      }
+}
+
+TEST(Stretching, RigidRotationLeavesTheUnitTensor) {
+  for (const bool flat : {false, true}) {
+    Solid solid(flat, 0, 20);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        solid.B[a][b] = Polynomial{};
+        solid.B[a][b].c = a == b;
+        solid.v[a].g[b] = a == b ? 0 : a < b ? solid.v[a].g[b] : -solid.v[b].g[a];
+      }
+    solid.fill();
+    ASSERT_EQ(transport_tensor(solid.grid, 1, solid.velocity, solid.phases[0], solid.next), 0);
+    const auto &components = tensor_components(solid.grid.dimension());
+    for (int c = 0; c < solid.next.count(); ++c)
+      EXPECT_LT(largest_error(solid.grid, solid.next[c], components[c].staggering(),
+                              [&](const Point &) { return components[c].a == components[c].b ? 1.0 : 0.0; }),
+                1e-14);
+  }
+}
+
+// d(tr B)/dt by stretching alone, at centres.
+void trace_rate(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
+  const int dim = grid.dimension();
+  const auto at = [dim](int a, int b) { return a == b ? a : dim == 2 ? 2 : 6 - a - b; };
+  for (const Segment &s : grid.rows())
+    for (int a = 0; a < dim; ++a) {
+      const int b = (a + 1) % dim, c = 3 - a - b;
+      double *out = rate[0].row(s.j, s.k);
+      const auto inverse = [&](int d) { return 1 / grid.spacing()[d]; };
+      const kernels::Directions d{v[0].stride(a), v[0].stride(b), v[0].stride(c), inverse(a), inverse(b), inverse(c)};
+      if (dim == 2)
+        kernels::add_diagonal_stretch<2>(s, B[a], B[2], {}, v[a], d, out);
+      else
+        kernels::add_diagonal_stretch<3>(s, B[a], B[at(a, b)], B[at(a, c)], v[a], d, out);
+    }
+}
+
+// The power of the elastic force is minus the rate of the elastic energy G phi (tr B - 3)/2, but for the part
+// -tr B/3 of the deviator, which works against div v: none for a solenoidal flow.
+TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
+  for (const bool flat : {false, true})
+    for (const bool solenoidal : {false, true}) {
+      Solid solid(flat, 0, 30);
+      const Grid &grid = solid.grid;
+      const int dim = grid.dimension();
+      const double G = 0.7;
+      Phase &phase = solid.phases[0];
+      Random random(31);
+      randomise(grid, phase.fraction, random, 1.5);
+      randomise(grid, phase.tensor, random);
+      randomise(grid, solid.velocity, random);
+      const Real3 &h = grid.spacing();
+      if (solenoidal) {  // the curl of a potential on the edges
+        FieldBlock psi(grid, 3);
+        randomise(grid, psi, random);
+        for (int a = 0; a < dim; ++a) {
+          const int b = (a + 1) % 3, c = (a + 2) % 3;
+          const auto shift = [&](const Int3 &x, int d) {
+            return Int3{x[0] + (d == 0), x[1] + (d == 1), x[2] + (d == 2)};
+          };
+          for (int k = 0; k < grid.owned()[2]; ++k)
+            for (int j = 0; j < grid.owned()[1]; ++j)
+              for (int i = 0; i < grid.owned()[0]; ++i) {
+                const Int3 x{i, j, k}, xb = shift(x, b), xc = shift(x, c);
+                const View B = psi[b], C = psi[c];
+                double curl = 0;
+                if (b < dim) curl += (C(xb[0], xb[1], xb[2]) - C(i, j, k)) / h[b];
+                if (c < dim) curl -= (B(xc[0], xc[1], xc[2]) - B(i, j, k)) / h[c];
+                solid.velocity[a](i, j, k) = 0.1 * curl;
+              }
+        }
+        GhostExchange exchange(grid);
+        ASSERT_EQ(exchange.update(solid.velocity, 3), 0);
+      }
+      FieldBlock force(grid, dim), zero(grid, dim), rate(grid, 1), D(grid, 1);
+      ASSERT_EQ(predict(grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
+      ASSERT_EQ(compute_divergence(grid, 1, solid.velocity, D), 0);
+      trace_rate(grid, phase.tensor, solid.velocity, rate);
+      double power = 0, energy = 0, against_divergence = 0, largest_divergence = 0;
+      for (int k = 0; k < grid.owned()[2]; ++k)
+        for (int j = 0; j < grid.owned()[1]; ++j)
+          for (int i = 0; i < grid.owned()[0]; ++i) {
+            for (int a = 0; a < dim; ++a) power += solid.velocity[a](i, j, k) * force[a](i, j, k);
+            double trace = dim == 2 ? 1 : phase.tensor[2](i, j, k);
+            trace += phase.tensor[0](i, j, k) + phase.tensor[1](i, j, k);
+            const double stiffness = G * phase.fraction[0](i, j, k);
+            energy += stiffness / 2 * rate[0](i, j, k);
+            against_divergence += stiffness * trace / 3 * D[0](i, j, k);
+            largest_divergence = std::max(largest_divergence, std::fabs(D[0](i, j, k)));
+          }
+      EXPECT_GT(std::fabs(energy), 1);  // the sum must not be trivially small
+      EXPECT_NEAR(power, -energy + against_divergence, 1e-11) << "flat " << flat;
+      if (solenoidal) {
+        EXPECT_LT(largest_divergence, 1e-12);
+        EXPECT_NEAR(power, -energy, 1e-11);
+      } else {
+        EXPECT_GT(std::fabs(against_divergence), 1e-2);
+      }
+    }
+}
+
+}  // namespace

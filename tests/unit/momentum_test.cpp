@@ -1,0 +1,181 @@
+// Carried velocities, the predictor's terms, divergence and correction: exact on polynomials, unequal spacings.
+#include "kernels/momentum.hpp"
+#include "support/polynomials.hpp"
+#include "support/verbs.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// The mean of a component over its faces no further than half a cell from the point, in all directions.
+double mean_of_near_faces(const Grid &grid, ConstView q, int d, const Staggering &at, const Int3 &point) {
+  double sum = 0;
+  int count = 0;
+  for (int dk = -1; dk <= 1; ++dk)
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di) {
+        const Int3 face{point[0] + di, point[1] + dj, point[2] + dk};
+        bool near = true;
+        for (int e = 0; e < 3; ++e) {
+          const double distance = face[e] + (e == d ? 0 : 0.5) - point[e] - (at[e] ? 0 : 0.5);
+          near = near && std::fabs(distance) <= (e < grid.dimension() ? 0.5 : 0.0);
+        }
+        if (!near) continue;
+        sum += q(face[0], face[1], face[2]);
+        ++count;
+      }
+  return sum / count;
+}
+
+TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
+  Random random(1);
+  for (const bool flat : {false, true}) {
+    Grid grid;
+    ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    const int dim = grid.dimension();
+    FieldBlock velocity(grid, dim);
+    randomise(grid, velocity, random);
+    for (int d = 0; d < dim; ++d)
+      for (int set = 0; set < (1 << dim); ++set) {
+        const Staggering at{(set & 1) != 0, (set & 2) != 0, (set & 4) != 0};
+        std::vector<double> out(grid.owned()[0], 99);
+        for (const Segment &row : grid.rows()) {
+          kernels::carry_velocity({2, row.i_end - 1, row.j, row.k}, velocity[d], d, at.data(), dim, out.data());
+          for (int i = 2; i < row.i_end - 1; ++i)
+            EXPECT_NEAR(out[i], mean_of_near_faces(grid, velocity[d], d, at, {i, row.j, row.k}), 1e-15)
+                << "xyz"[d] << " at " << set;
+        }
+        EXPECT_EQ(out[1], 99);
+        EXPECT_EQ(out.back(), 99);
+      }
+  }
+}
+
+struct Flow {
+  Grid grid;
+  Fluid fluid;
+  FieldBlock velocity, pressure, out;
+  Polynomial v[3], p;
+
+  Flow(bool flat, int degree, int seed) {
+    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    Random random(seed);
+    fluid.density = 1.7;
+    fluid.viscosity = 0.6;
+    fluid.body_force.force = {0.3, -0.2, 0.5};
+    velocity = FieldBlock(grid, grid.dimension());
+    out = FieldBlock(grid, grid.dimension());
+    pressure = FieldBlock(grid, 1);
+    for (int a = 0; a < grid.dimension(); ++a) {
+      v[a] = Polynomial(random, degree);
+      fill_everywhere(grid, velocity[a], at_face[a], v[a]);
+    }
+    p = Polynomial(random, 2);
+    fill_everywhere(grid, pressure[0], at_centre, p);
+  }
+};
+
+TEST(Predictor, ViscousPressureAndForceAreExactOnQuadratics) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 2, 2);
+    flow.fluid.inertia = false;
+    const double dt = 0.37;
+    ASSERT_EQ(predict(flow.grid, flow.fluid, 0, dt, flow.velocity, flow.pressure, {}, flow.out), 0);
+    for (int a = 0; a < flow.grid.dimension(); ++a)
+      EXPECT_LT(largest_error(flow.grid, flow.out[a], at_face[a],
+                              [&](const Point &x) {
+                                return flow.v[a](x) + dt * (0.6 / 1.7 * flow.v[a].laplacian(flow.grid.dimension()) -
+                                                            flow.p.slope(a, x) / 1.7 + flow.fluid.body_force.force[a]);
+                              }),
+                2e-13)
+          << "uvw"[a];
+  }
+}
+
+TEST(Predictor, InertiaIsExactOnLinearFlows) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 1, 3);
+    const double dt = 0.37;
+    ASSERT_EQ(predict(flow.grid, flow.fluid, 0, dt, flow.velocity, flow.pressure, {}, flow.out), 0);
+    for (int a = 0; a < flow.grid.dimension(); ++a)
+      EXPECT_LT(largest_error(flow.grid, flow.out[a], at_face[a],
+                              [&](const Point &x) {
+                                double rate = flow.fluid.body_force.force[a] - flow.p.slope(a, x) / 1.7;
+                                for (int d = 0; d < flow.grid.dimension(); ++d) rate -= flow.v[d](x) * flow.v[a].g[d];
+                                return flow.v[a](x) + dt * rate;
+                              }),
+                2e-13)
+          << "uvw"[a];
+  }
+}
+
+TEST(Predictor, ForceFollowsItsTime) {
+  Flow flow(true, 1, 4), later(true, 1, 4);
+  flow.fluid.body_force.frequency = later.fluid.body_force.frequency = 2;
+  flow.fluid.body_force.phase = later.fluid.body_force.phase = 0.3;
+  ASSERT_EQ(predict(flow.grid, flow.fluid, 0, 1, flow.velocity, flow.pressure, {}, flow.out), 0);
+  ASSERT_EQ(predict(later.grid, later.fluid, 0.7, 1, later.velocity, later.pressure, {}, later.out), 0);
+  EXPECT_NEAR(later.out[0](1, 1, 0) - flow.out[0](1, 1, 0), 0.3 * (std::cos(1.7) - std::cos(0.3)), 1e-14);
+  EXPECT_NEAR(later.out[1](1, 1, 0) - flow.out[1](1, 1, 0), -0.2 * (std::cos(1.7) - std::cos(0.3)), 1e-14);
+}
+
+TEST(Divergence, ExactOnQuadratics) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 2, 5);
+    FieldBlock D(flow.grid, 1);
+    ASSERT_EQ(compute_divergence(flow.grid, 1.7, flow.velocity, D), 0);
+    EXPECT_LT(largest_error(flow.grid, D[0], at_centre,
+                            [&](const Point &x) {
+                              double sum = 0;
+                              for (int a = 0; a < flow.grid.dimension(); ++a) sum += flow.v[a].slope(a, x);
+                              return 1.7 * sum;
+                            }),
+              1e-13);
+  }
+}
+
+TEST(Laplacian, ExactOnQuadratics) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 2, 6);
+    double second[3];
+    for (int d = 0; d < 3; ++d) second[d] = 1 / (flow.grid.spacing()[d] * flow.grid.spacing()[d]);
+    const ConstView p = flow.pressure[0];
+    for (const Segment &s : flow.grid.rows())
+      for (int i = 0; i < s.i_end; ++i) {
+        const double *q = p.row(s.j, s.k) + i;
+        EXPECT_NEAR(flat ? kernels::laplacian<2>(q, p.sy, p.sz, second) : kernels::laplacian<3>(q, p.sy, p.sz, second),
+                    flow.p.laplacian(flow.grid.dimension()), 5e-13);
+      }
+  }
+}
+
+TEST(Correction, ExactOnQuadraticsAndInOneGhostOfThePressure) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 2, 7);
+    Random random(8);
+    const Polynomial dp(random, 2);
+    FieldBlock increment(flow.grid, 1);
+    fill_everywhere(flow.grid, increment[0], at_centre, dp);
+    const double dt = 0.37;
+    ASSERT_EQ(correct(flow.grid, 1.7, dt, increment, flow.velocity, flow.out, flow.pressure), 0);
+    for (int a = 0; a < flow.grid.dimension(); ++a)
+      EXPECT_LT(largest_error(flow.grid, flow.out[a], at_face[a],
+                              [&](const Point &x) { return flow.v[a](x) - dt / 1.7 * dp.slope(a, x); }),
+                1e-13);
+    const Int3 n = flow.grid.owned();
+    const int gz = flat ? 0 : 1;
+    double largest = 0;
+    for (int k = -gz; k < n[2] + gz; ++k)
+      for (int j = -1; j <= n[1]; ++j)
+        for (int i = -1; i <= n[0]; ++i) {
+          const Point x = point(flow.grid, at_centre, i, j, k);
+          largest = std::max(largest, std::fabs(flow.pressure[0](i, j, k) - flow.p(x) - dp(x)));
+        }
+    EXPECT_LT(largest, 1e-14);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,258 @@
+// The whole step: mirrored, rotated and moving scenes, solids that carry no stress.
+#include "support/polynomials.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// A scene as plain data, so that it can be mirrored and rotated.
+struct Setting {
+  Int3 cells{18, 16, 14};
+  Real3 length{9, 8, 7};
+  std::array<Boundary, 3> boundary{Boundary::periodic, Boundary::wall, Boundary::periodic};
+  std::array<std::array<Real3, 2>, 3> wall_velocity{};
+  Real3 force{0.4, 0.2, -0.3};
+  Real3 centre{4.1, 3.3, 3.9};
+  Real3 axes{2.2, 1.7, 1.9};
+  PressureKind pressure = PressureKind::acm;
+
+  Setting() { wall_velocity[1] = {Real3{-1.5, 0, 0.8}, Real3{2, 0, -1}}; }
+};
+
+Setting mirrored(Setting s, int d) {
+  s.centre[d] = s.length[d] - s.centre[d];
+  s.force[d] = -s.force[d];
+  std::swap(s.wall_velocity[d][0], s.wall_velocity[d][1]);
+  for (auto &pair : s.wall_velocity)
+    for (auto &v : pair) v[d] = -v[d];
+  return s;
+}
+
+// x becomes y, y becomes z, z becomes x (2-D: x and y change places).
+struct Permutation {
+  Int3 to;
+  template <class T>
+  std::array<T, 3> operator()(const std::array<T, 3> &q) const {
+    std::array<T, 3> r{};
+    for (int d = 0; d < 3; ++d) r[to[d]] = q[d];
+    return r;
+  }
+};
+
+Setting permuted(const Setting &s, const Permutation &p) {
+  Setting r = s;
+  r.cells = p(s.cells);
+  r.length = p(s.length);
+  r.boundary = p(s.boundary);
+  r.force = p(s.force);
+  r.centre = p(s.centre);
+  r.axes = p(s.axes);
+  r.wall_velocity = p(s.wall_velocity);
+  for (auto &pair : r.wall_velocity)
+    for (auto &v : pair) v = p(v);
+  return r;
+}
+
+void run(const Setting &s, Scene &scene, int steps = 20) {
+  GridSpec grid;
+  grid.cells = s.cells;
+  grid.length = s.length;
+  grid.boundary = s.boundary;
+  SolverSpec spec;
+  spec.pressure = s.pressure;
+  spec.fluid.viscosity = 0.5;
+  spec.fluid.body_force.force = s.force;
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) spec.walls.motion[d][side].velocity = s.wall_velocity[d][side];
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
+  const int dim = scene.grid.dimension();
+  scene.add_phase(0.4, [&](double x, double y, double z) {
+    const Point point{x, y, z};
+    double r = 0;
+    for (int d = 0; d < dim; ++d) {
+      r += std::pow((point[d] - s.centre[d]) / s.axes[d], 2);
+    }
+    // Rounded to 1/1024: the same number in a mirrored scene.
+    return std::round(1024 * std::min(1.0, std::max(0.0, 2 - 1.5 * std::sqrt(r)))) / 1024;
+  });
+  ASSERT_EQ(scene.solver.prepare(), 0);
+  ASSERT_EQ(scene.run(0.05 * steps, steps), 0);
+}
+
+// Largest |a - map(b)| over velocity, pressure, fraction and tensor, where b's point and component of a's are given.
+template <class Map>
+double difference(const Scene &a, const Scene &b, Map map) {
+  const int dim = a.grid.dimension();
+  const State &p = a.solver.state(), &q = b.solver.state();
+  const auto &components = tensor_components(dim);
+  double largest = 0;
+  const auto compare = [&](ConstView x, const FieldBlock &y, const Staggering &at, int c, int d) {
+    for (int k = 0; k < a.grid.points_end(2, at[2]); ++k)
+      for (int j = 0; j < a.grid.points_end(1, at[1]); ++j)
+        for (int i = 0; i < a.grid.points_end(0, at[0]); ++i)
+          largest = std::max(largest, std::fabs(x(i, j, k) - map(y, at, Int3{i, j, k}, c, d)));
+  };
+  for (int c = 0; c < dim; ++c) compare(p.velocity[c], q.velocity, at_face[c], c, -1);
+  compare(p.pressure[0], q.pressure, at_centre, -1, -1);
+  compare(p.phases[0].fraction[0], q.phases[0].fraction, at_centre, -1, -1);
+  for (int f = 0; f < p.phases[0].tensor.count(); ++f)
+    compare(p.phases[0].tensor[f], q.phases[0].tensor, components[f].staggering(), components[f].a, components[f].b);
+  return largest;
+}
+
+// Block position of component (c, d): a velocity, a scalar or a tensor component.
+int block_position(int dim, int c, int d) {
+  if (c < 0) return 0;
+  if (d < 0 || c == d) return c;
+  return dim == 2 ? 2 : 6 - c - d;
+}
+
+double mirror_difference(const Scene &a, const Scene &b, int m) {
+  const int dim = a.grid.dimension();
+  return difference(a, b, [&](const FieldBlock &y, const Staggering &at, Int3 point, int c, int d) {
+    const int N = a.grid.cells()[m];
+    point[m] = at[m] ? (N - point[m]) % (a.grid.is_wall(m) ? N + 1 : N) : N - 1 - point[m];
+    const double sign = (c == m) == (d == m) ? 1 : -1;
+    return sign * y[block_position(dim, c, d)](point[0], point[1], point[2]);
+  });
+}
+
+double permutation_difference(const Scene &a, const Scene &b, const Permutation &p) {
+  const int dim = a.grid.dimension();
+  return difference(a, b, [&](const FieldBlock &y, const Staggering &, const Int3 &point, int c, int d) {
+    const Int3 x = p(point);
+    return y[block_position(dim, c < 0 ? c : p.to[c], d < 0 ? d : p.to[d])](x[0], x[1], x[2]);
+  });
+}
+
+Setting flat(Setting s) {
+  s.cells[2] = 1;
+  s.force[2] = s.wall_velocity[1][0][2] = s.wall_velocity[1][1][2] = 0;
+  return s;
+}
+
+// Exact bits but for the ACM's sums, whose order follows x, and for SMAC's transforms.
+TEST(MirroredScene, GivesTheMirroredResult) {
+  for (const bool two_d : {false, true})
+    for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac})
+      for (const bool walls_x : {false, true}) {
+        Setting setting;
+        setting.pressure = pressure;
+        if (walls_x) {
+          setting.boundary[0] = Boundary::wall;
+          setting.wall_velocity[0][0] = {0, 1, 0.5};
+        }
+        if (two_d) {
+          setting = flat(setting);
+          setting.wall_velocity[0][0][2] = 0;
+        }
+        Scene original;
+        run(setting, original);
+        double moved = 0;
+        for_points(original.grid, original.solver.state().phases[0].tensor[0], at_centre,
+                   [&](double &q, double, double, double) { moved = std::max(moved, std::fabs(q - 1)); });
+        EXPECT_GT(moved, 0.01);
+        for (int d = 0; d < original.grid.dimension(); ++d) {
+          Scene image;
+          run(mirrored(setting, d), image);
+          const double e = mirror_difference(original, image, d);
+          std::printf("  mirrored in %c: %g\n", "xyz"[d], e);
+          if (d > 0 && pressure == PressureKind::acm)
+            EXPECT_EQ(e, 0) << "xyz"[d];
+          else
+            EXPECT_LT(e, 1e-12) << "xyz"[d];
+          EXPECT_GT(mirror_difference(original, original, d), 1e-3) << "the scene itself is not symmetric";
+        }
+      }
+}
+
+TEST(RotatedScene, GivesTheRotatedResult) {
+  for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac})
+    for (const Permutation &p : {Permutation{{1, 2, 0}}, Permutation{{2, 0, 1}}, Permutation{{0, 2, 1}}}) {
+      Setting setting;
+      setting.pressure = pressure;
+      Scene original, rotated;
+      run(setting, original);
+      run(permuted(setting, p), rotated);
+      const double e = permutation_difference(original, rotated, p);
+      std::printf("  rotated: %g\n", e);
+      EXPECT_LT(e, 1e-12) << p.to[0] << p.to[1] << p.to[2];
+    }
+  const Setting setting = flat(Setting());
+  const Permutation swap{{1, 0, 2}};
+  Scene original, rotated;
+  run(setting, original);
+  run(permuted(setting, swap), rotated);
+  EXPECT_LT(permutation_difference(original, rotated, swap), 1e-12);
+}
+
+// Difference to the same vortex and disc carried by a uniform velocity, after they moved a quarter of the box.
+double moving_frame_difference(int cells) {
+  constexpr double k = 2 * 3.14159265358979323846, speed = 0.5, end = 0.5;
+  Scene scene[2];
+  for (int moving = 0; moving < 2; ++moving) {
+    GridSpec grid;
+    grid.cells = {cells, cells, 1};
+    SolverSpec spec;
+    spec.fluid.viscosity = 0.02;
+    spec.pressure = PressureKind::smac;
+    EXPECT_EQ(scene[moving].create(PETSC_COMM_SELF, grid, spec), 0);
+    State &state = scene[moving].solver.state();
+    set(scene[moving].grid, state.velocity[0], at_face[0],
+        [=](double x, double y, double) { return moving * speed + 0.3 * std::sin(k * x) * std::cos(k * y); });
+    set(scene[moving].grid, state.velocity[1], at_face[1],
+        [=](double x, double y, double) { return -0.3 * std::cos(k * x) * std::sin(k * y); });
+    scene[moving].add_phase(0.2, [=](double x, double y, double) {
+      return 0.5 - 0.5 * std::tanh((std::hypot(x - 0.5, y - 0.4) - 0.2) * 16);
+    });
+    EXPECT_EQ(scene[moving].solver.prepare(), 0);
+    EXPECT_EQ(scene[moving].run(end, cells * cells / 4), 0);
+  }
+  const ConstView still = scene[0].solver.state().velocity[0], moved = scene[1].solver.state().velocity[0];
+  double sum = 0;
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) sum += std::pow(moved((i + cells / 4) % cells, j, 0) - speed - still(i, j, 0), 2);
+  return std::sqrt(sum) / cells / 0.3;
+}
+
+TEST(UniformVelocity, ChangesOnlyTheAdvectionError) {
+  const double e[2] = {moving_frame_difference(32), moving_frame_difference(64)};
+  std::printf("  moving frame at 32, 64: %.3e %.3e\n", e[0], e[1]);
+  EXPECT_LT(e[1], 0.02);
+  EXPECT_GT(e[1], 1e-8);
+  EXPECT_GT(order(e[0], e[1]), 1);
+}
+
+// One step with an unstrained solid and many with a solid of no stiffness: the bits of the pure fluid.
+TEST(StresslessSolid, IsTheFluid) {
+  for (const bool stiff : {true, false}) {
+    Scene scene[2];
+    for (int solid = 0; solid < 2; ++solid) {
+      GridSpec grid;
+      grid.cells = {13, 10, 9};
+      grid.boundary[1] = Boundary::wall;
+      SolverSpec spec;
+      spec.fluid.viscosity = 0.1;
+      spec.walls.motion[1][0].velocity = {0.5, 0, 0.2};
+      ASSERT_EQ(scene[solid].create(PETSC_COMM_SELF, grid, spec), 0);
+      Random random(1);
+      for (int a = 0; a < 3; ++a)
+        set(scene[solid].grid, scene[solid].solver.state().velocity[a], at_face[a],
+            [&](double, double, double) { return 0.1 * random(); });
+      if (solid) scene[solid].add_phase(stiff ? 1e3 : 0, [&](double, double, double) { return std::fabs(random()); });
+      ASSERT_EQ(scene[solid].solver.prepare(), 0);
+      ASSERT_EQ(stiff ? scene[solid].run(0.002, 1) : scene[solid].run(0.04, 20), 0);
+    }
+    State &a = scene[0].solver.state(), &b = scene[1].solver.state();
+    b.phases.clear();
+    std::uint64_t hash[2];
+    ASSERT_EQ(state_hash(scene[0].grid, a, &hash[0]), 0);
+    ASSERT_EQ(state_hash(scene[1].grid, b, &hash[1]), 0);
+    EXPECT_EQ(hash[0], hash[1]) << "stiff " << stiff;
+  }
+}
+
+}  // namespace
