@@ -1,0 +1,107 @@
+// bodies.h5 grows, and is readable all the time.
+#include "io/bodies_file.hpp"
+#include "io/checksum.hpp"
+#include "support/files.hpp"
+
+namespace eulastic {
+namespace {
+
+using namespace test;
+
+struct BodyTable {
+  explicit BodyTable(const std::string &path) : file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
+  std::vector<double> read(const std::string &name, std::vector<hsize_t> *shape) const {
+    const Hdf5Dataset dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT));
+    *shape = hdf5_shape(dataset.get());
+    std::size_t count = 1;
+    for (const hsize_t n : *shape) count *= n;
+    std::vector<double> values(count);
+    EXPECT_GE(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    const Hdf5Attribute attribute(H5Aopen(dataset.get(), "checksum", H5P_DEFAULT));
+    std::string sum(16, ' ');
+    EXPECT_GE(H5Aread(attribute.get(), hdf5_string(16).get(), sum.data()), 0);
+    if (name != "id") {
+      EXPECT_EQ(sum, checksum_text(checksum(values.data(), count, 0))) << name;
+    }
+    return values;
+  }
+  hsize_t rows() const {
+    std::vector<hsize_t> shape;
+    (void)read("time", &shape);
+    return shape[0];
+  }
+  Hdf5FileHandle file;
+};
+
+std::vector<BodyRecord> bodies_at(int row) {
+  std::vector<BodyRecord> bodies(3);
+  for (int b = 0; b < 3; ++b) {
+    const double x = 100 * row + 10 * b;
+    bodies[b] = {b + 1, b < 2 ? "rbc" : "platelet", {x, x + 1, x + 2}, {x + 3, x + 4, x + 5}, x + 6, x + 7, x + 8};
+  }
+  return bodies;
+}
+
+TEST(BodiesFile, GrowsAndIsReadableAllTheTime) {
+  const TemporaryDirectory base;
+  const std::string path = base / "bodies.h5";
+  BodiesFile file(PETSC_COMM_SELF, path);
+  constexpr int rows = 100;
+  for (int n = 0; n < rows; ++n) {
+    ASSERT_EQ(file.add(0.5 * n, bodies_at(n)), 0);
+    EXPECT_FALSE(fs::exists(path + ".tmp"));
+    const BodyTable table(path);
+    ASSERT_TRUE(bool(table.file));
+    EXPECT_GE(5 * table.rows(), hsize_t(4 * (n + 1))) << "a kill loses at most a fifth";
+  }
+  EXPECT_LT(BodyTable(path).rows(), hsize_t(rows)) << "rows wait, or the cost would be quadratic";
+  ASSERT_EQ(file.flush(), 0);
+  const BodyTable table(path);
+  std::vector<hsize_t> shape;
+  EXPECT_EQ(table.read("id", &shape), (std::vector<double>{1, 2, 3}));
+  const std::vector<double> time = table.read("time", &shape);
+  ASSERT_EQ(shape, (std::vector<hsize_t>{rows}));
+  const std::vector<double> centroid = table.read("centroid", &shape);
+  ASSERT_EQ(shape, (std::vector<hsize_t>{rows, 3, 3}));
+  const std::vector<double> velocity = table.read("velocity", &shape);
+  const char *const scalars[] = {"volume", "taylor_deformation", "inclination"};
+  for (int n = 0; n < rows; ++n) {
+    EXPECT_EQ(time[n], 0.5 * n);
+    for (int b = 0; b < 3; ++b)
+      for (int d = 0; d < 3; ++d) {
+        EXPECT_EQ(centroid[(n * 3 + b) * 3 + d], 100 * n + 10 * b + d);
+        EXPECT_EQ(velocity[(n * 3 + b) * 3 + d], 100 * n + 10 * b + d + 3);
+      }
+  }
+  for (int s = 0; s < 3; ++s) {
+    const std::vector<double> values = table.read(scalars[s], &shape);
+    ASSERT_EQ(shape, (std::vector<hsize_t>{rows, 3}));
+    for (int n = 0; n < rows; ++n)
+      for (int b = 0; b < 3; ++b) EXPECT_EQ(values[n * 3 + b], 100 * n + 10 * b + 6 + s);
+  }
+  const Hdf5Dataset species(H5Dopen2(table.file.get(), "species", H5P_DEFAULT));
+  char names[24];
+  ASSERT_GE(H5Dread(species.get(), hdf5_string(8).get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, names), 0);
+  EXPECT_EQ(std::string(names, 8), std::string("rbc\0\0\0\0\0", 8));
+  EXPECT_EQ(std::string(names + 16, 8), "platelet");
+}
+
+TEST(BodiesFile, SaysWhatIsWrong) {
+  const TemporaryDirectory base;
+  BodiesFile nowhere(PETSC_COMM_SELF, base / "no/bodies.h5"), changing(PETSC_COMM_SELF, base / "bodies.h5"),
+      empty(PETSC_COMM_SELF, base / "empty.h5");
+  EXPECT_NE(error_of([&] { return nowhere.add(0, bodies_at(0)); }).find("cannot be written"), std::string::npos);
+  ASSERT_EQ(changing.add(0, bodies_at(0)), 0);
+  {
+    const FullDisk full_disk(1024);
+    EXPECT_NE(error_of([&] { return changing.add(1, bodies_at(1)); }), "no error");
+  }
+  EXPECT_EQ(BodyTable(base / "bodies.h5").rows(), 1u) << "the old file stays";
+  EXPECT_NE(error_of([&] { return changing.add(0, {}); }).find("number of bodies"), std::string::npos);
+  ASSERT_EQ(empty.add(0, {}), 0);
+  ASSERT_EQ(empty.flush(), 0);
+  EXPECT_FALSE(fs::exists(base / "empty.h5"));
+}
+
+}  // namespace
+}  // namespace eulastic
