@@ -89,12 +89,14 @@ public:
       modulus = std::max(modulus, spec.shear_modulus);
       extremes.trace = std::max(extremes.trace, l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
     }
-    const TimeStepLimits limits = euler_limits(spacing_, dimension_, config_.fluid, modulus, extremes);
+    const TimeStepLimits limits = time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, modulus, extremes,
+                                                    {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
     report.line("dt limit, viscous", "%.6g", limits.viscous);
     report.line("dt limit, elastic wave", "%.6g", limits.elastic);
     report.line("dt limit, viscous and elastic", "%.6g", limits.combined);
+    report.line("dt limit, Kelvin-Voigt", "%.6g", limits.kelvin_voigt);
     report.line("dt limit, advective", "%.6g", limits.advective);
-    report.line("dt limit, Euler 2 nu/U^2", "%.6g", limits.inertial);
+    if (!limits.scheme.staggered) report.line("dt limit, Euler 2 nu/U^2", "%.6g", limits.inertial);
     const char *name = "-time_step";
     double dt = limits.automatic(&name);
     if (config_.time.step > 0) {

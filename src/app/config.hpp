@@ -6,19 +6,12 @@
 #include "grid/grid.hpp"
 #include "physics/fluid.hpp"
 #include "physics/initial_velocity.hpp"
-#include "solver/solver.hpp"
+#include "solver/method.hpp"
 
 #include <string>
 #include <vector>
 
 namespace eulastic {
-
-enum class MethodKind { classic };
-
-struct Method {
-  MethodKind kind = MethodKind::classic;
-  PressureKind pressure = PressureKind::acm;
-};
 
 struct TimeControl {
   double end = 0;
@@ -41,7 +34,7 @@ struct Config {
   Fluid fluid;
   InitialFlow initial;
   std::vector<SpeciesSpec> species;
-  Method method;
+  Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;
   bool check_only = false;

@@ -10,6 +10,8 @@ namespace {
 
 const Names boundary_names{"periodic", "wall"};
 const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab"};
+const Names method_names{"fast", "classic"};
+const char *const by_method = "set by -method";
 const Names placement_names{"one", "list", "lattice"};
 
 void add_grid(Rows &rows, Config &config) {
@@ -131,9 +133,27 @@ void add_bodies(Rows &rows, Config &config) {
 
 void add_method(Rows &rows, Config &config) {
   rows.group = "Method";
-  rows.choice("method", config.method.kind, {"classic"}, "preset of the whole scheme");
-  rows.choice("pressure_solver", config.method.pressure, {"acm", "smac"},
+  Method &method = config.method;
+  rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
+  rows.choice("time_integrator", method.integrator, {"staggered", "euler"},
+              "second order with solids at half steps, or explicit Euler").default_note = by_method;
+  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"},
+              "super time stepping RKL2, or one explicit stage").default_note = by_method;
+  rows.choice("interface_scheme", method.interface, {"thinc", "weno5"},
+              "solid fraction: sharp and conservative, or WENO5").default_note = by_method;
+  rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
+              "B outside bodies: extended, or reset to I").default_note = by_method;
+  const Names pressure_names{"acm", "smac"};
+  rows.choice("pressure_solver", method.pressure, pressure_names,
               "artificial compressibility, or the exact Poisson solution");
+  const std::size_t first = rows.rows.size();
+  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step").default_note =
+      by_method;
+  rows.real("acm_tolerance", method.acm_tolerance, positive, "", "sweep until rms(div v) h/U is below");
+  rows.integers("acm_memory", &method.acm_memory, 1, {0, false}, "increments of earlier steps used as directions")
+      .default_note = by_method;
+  rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids").default_note = by_method;
+  rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
 }
 
 void add_running(Rows &rows, Config &config) {
@@ -163,6 +183,13 @@ void add_running(Rows &rows, Config &config) {
 }
 
 }  // namespace
+
+std::string read_method(const std::string &value, Config *config) {
+  int kind = 0;
+  std::string wrong = read_choice(value, method_names, &kind);
+  if (wrong.empty()) config->method = method_preset(static_cast<MethodKind>(kind));
+  return wrong;
+}
 
 std::vector<Option> option_table(Config &config) {
   Rows rows;

@@ -34,6 +34,9 @@ struct Option {
 /// which must not change its size meanwhile.
 std::vector<Option> option_table(Config &config);
 
+/// Sets all parts of the method to the preset that `value` names. Comes before the other options of the method.
+std::string read_method(const std::string &value, Config *config);
+
 /// The first words ("wall", "ksp", ...) that no species may be called.
 bool is_reserved_word(const std::string &word);
 

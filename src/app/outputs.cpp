@@ -60,12 +60,14 @@ PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   if (measured_time_ == state.time) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver_->phases_now(&phases));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
-  PetscCall(measure_flow(*grid_, state.velocity, state.phases,
+  PetscCall(measure_flow(*grid_, state.velocity, *phases,
                          {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &flow_));
   if (solver_->bodies().bodies() > 0)
-    PetscCall(solver_->bodies().measure(*grid_, state.phases, state.velocity, &bodies_));
+    PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &bodies_));
   if (first_volume_.empty())
     for (const BodyMeasure &body : bodies_) first_volume_.push_back(body.volume);
   volume_drift_ = 0;
@@ -109,10 +111,13 @@ PetscErrorCode Outputs::write_due(bool last) {
                              volume_drift_}));
     if (bodies_file_) PetscCall(bodies_file_->add(state.time, records()));
   }
-  if (snapshot)
-    PetscCall(snapshots_->write(state.time, static_cast<long>(state.step),
-                                snapshot_fields_->collect(selection(config_.output), state.velocity, state.pressure,
-                                                          state.phases)));
+  if (snapshot) {
+    const std::vector<Phase> *phases = nullptr;
+    PetscCall(solver_->phases_now(&phases));
+    PetscCall(snapshots_->write(
+        state.time, static_cast<long>(state.step),
+        snapshot_fields_->collect(selection(config_.output), state.velocity, state.pressure, *phases)));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -122,13 +127,17 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   const State &state = solver_->state();
   PetscCall(measure());
   if (bodies_file_) PetscCall(bodies_file_->flush());
-  summary.method = "classic";
+  summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
   summary.pressure_solver = config_.method.pressure == PressureKind::smac ? "smac" : "acm";
   summary.cells = static_cast<long>(grid_->cell_count());
   summary.ranks = grid_->ranks();
   summary.steps = static_cast<long>(state.step);
   summary.time = state.time;
   summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;
+  if (state.step > 0) {
+    summary.rkl_stages_per_step = double(solver_->stages()) / double(state.step);
+    summary.acm_sweeps_per_step = double(solver_->sweeps()) / double(state.step);
+  }
   summary.divergence_rms = flow_.divergence_rms;
   summary.divergence_max = flow_.divergence_max;
   summary.volume_drift = volume_drift_;

@@ -8,6 +8,7 @@
 #include "io/snapshot.hpp"
 #include "io/snapshot_fields.hpp"
 #include "io/summary.hpp"
+#include "solver/solver.hpp"
 
 #include <memory>
 

@@ -42,12 +42,18 @@ std::string unknown(const std::string &name, const std::vector<Option> &table) {
   return "unknown option -" + name + "; nearest known: -" + nearest->name + " (" + nearest->accepted + "); see -help";
 }
 
-// Names of the species, from the highest source that gives any.
-std::string read_species(const std::vector<Source> &sources, Config *config) {
+// What the highest source says of an option, or null.
+const Entry *last_given(const std::vector<Source> &sources, const std::string &name) {
   const Entry *given = nullptr;
   for (const Source &source : sources)
     for (const Entry &entry : source)
-      if (entry.name == "species") given = &entry;
+      if (entry.name == name) given = &entry;
+  return given;
+}
+
+// Names of the species, from the highest source that gives any.
+std::string read_species(const std::vector<Source> &sources, Config *config) {
+  const Entry *given = last_given(sources, "species");
   if (!given || given->value.empty()) return {};  // the missing value is reported later
   std::vector<std::string> names;
   std::string wrong = read_words(given->value, {}, &names);
@@ -119,6 +125,8 @@ private:
 
 std::string read_sources(const std::vector<Source> &sources, Config *config) {
   if (std::string wrong = read_species(sources, config); !wrong.empty()) return wrong;
+  if (const Entry *method = last_given(sources, "method"))
+    (void)read_method(method->value, config);  // what is wrong with it is reported later
   std::vector<Option> table = option_table(*config);
   Reader reader(table);
   for (const Source &source : sources)

@@ -9,7 +9,7 @@ namespace eulastic {
 PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
-  PetscCall(solver->create(grid, {config.fluid, config.walls, config.method.pressure}));
+  PetscCall(solver->create(grid, {config.method, config.fluid, config.walls}));
   State &state = solver->state();
   set_initial_velocity(grid, config.walls, config.initial, state.velocity);
   int next_label = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "solver/solver.hpp"
 
 namespace eulastic {
 

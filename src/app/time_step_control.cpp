@@ -7,8 +7,8 @@
 namespace eulastic {
 namespace {
 
-constexpr int interval = 10;     // steps between measurements
-constexpr double growth = 1.05;  // most that dt grows from one measurement to the next
+constexpr int euler_interval = 10;  // steps between measurements; the large steps of the staggered scheme look each time
+constexpr double growth = 1.05;     // most that dt grows from one measurement to the next
 
 std::string not_finite(const Solver &solver, double cell, double dt, const TimeStepLimits &limits) {
   const Int3 &n = solver.grid().cells();
@@ -29,6 +29,7 @@ std::string not_finite(const Solver &solver, double cell, double dt, const TimeS
 PetscErrorCode TimeStepControl::choose(Solver *solver, double *dt, std::string *stop, std::string *warning) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
+  const int interval = solver->spec().staggered() ? 1 : euler_interval;
   if (state.step % interval == 0 || dt_ == 0) {
     FlowExtremes extremes;
     PetscCall(solver->measure(&extremes));

@@ -9,7 +9,7 @@
 
 namespace eulastic {
 
-inline constexpr double label_threshold = 1e-6;  ///< a cell with less phi has no label
+inline constexpr double label_threshold = 1e-12;  ///< a cell with less phi has no label
 
 /// Updates phase->label on owned cells (and one ghost layer of fraction); to be called, on a schedule that is part of
 /// the run, before the interface has moved by more than half a cell since the last call. Layers taken anew: four. A

@@ -15,4 +15,14 @@ void FieldBlock::fill(int f, double value) noexcept {
   std::fill_n(data_.get() + f * layout_.size, layout_.size, value);
 }
 
+void FieldBlock::copy_from(const FieldBlock &other) {
+  if (count_ != other.count_ || layout_.size != other.layout_.size) {
+    data_.reset(static_cast<double *>(std::aligned_alloc(64, other.bytes())));
+    if (!data_) throw std::bad_alloc();
+  }
+  layout_ = other.layout_;
+  count_ = other.count_;
+  std::copy_n(other.data_.get(), layout_.size * count_, data_.get());
+}
+
 }  // namespace eulastic

@@ -5,7 +5,8 @@
 
 namespace eulastic {
 
-/// Segments ordered by row. Rows cover the points of edge fields: one more than the cells at high walls.
+/// Segments ordered by row. Rows cover the points of edge fields: one more than the cells at high walls; those of
+/// a band cover the cells and `margin` layers around them.
 class ActiveSegments {
 public:
   struct Range {
@@ -18,11 +19,16 @@ public:
   /// value >= threshold. Starts are rounded down to a multiple of 8 and gaps shorter than 8 are closed, so a
   /// superset; `value` needs that many ghosts.
   void build(const Grid &grid, ConstView value, double threshold, int low, int high);
+  /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
+  /// and some more. `value` needs margin + 1 ghosts.
+  void build_band(const Grid &grid, ConstView value, int margin);
+  /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
+  void build_faces(const ActiveSegments &cells);
   /// Everything.
   void build_all(const Grid &grid);
 
   Range row(int j, int k) const noexcept {
-    const int r = j + rows_y_ * k;
+    const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
     return {segments_.data() + first_[r], segments_.data() + first_[r + 1]};
   }
   const std::vector<Segment> &all() const noexcept { return segments_; }
@@ -32,8 +38,12 @@ public:
   double points() const noexcept;  ///< sum of lengths
 
 private:
-  void start(const Grid &grid);
+  void start(const Int3 &begin, const Int3 &end);
+  template <class Flag>
+  void build_rows(const Grid &grid, ConstView value, Flag flag, int wanted, int low, int high);
+  void append_row(const unsigned char *mask, int wanted, int j, int k);
 
+  Int3 begin_{};  ///< first point
   int rows_y_ = 0, rows_z_ = 0, points_x_ = 0;
   std::vector<Segment> segments_;
   std::vector<int> first_;

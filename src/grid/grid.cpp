@@ -151,4 +151,28 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
   PetscFunctionReturn(0);
 }
 
+Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
+  Grid result;
+  result.comm_ = everywhere ? PETSC_COMM_SELF : comm_;
+  result.rank_ = everywhere ? 0 : rank_;
+  result.ranks_ = everywhere ? 1 : ranks_;
+  result.spec_ = spec_;
+  result.spec_.cells = cells;
+  Int3 position{};
+  for (int d = 0; d < 3; ++d) {
+    result.spacing_[d] = spec_.length[d] / cells[d];
+    result.starts_[d] = {0};
+    if (!everywhere) {
+      const int stride = cells[d] < spec_.cells[d] ? 2 : 1;
+      for (int p = 1; p < processors(d); ++p)
+        result.starts_[d].push_back(std::min(cells[d], (starts_[d][p] + stride - 1) / stride));
+      position[d] = static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), layout_.begin[d]) -
+                                     starts_[d].begin()) - 1;
+    }
+    result.starts_[d].push_back(cells[d]);
+  }
+  result.layout_ = result.make_layout(position);
+  return result;
+}
+
 }  // namespace eulastic

@@ -41,7 +41,7 @@ struct Layout {
 
 class Grid {
 public:
-  static constexpr int ghost_width = 4;    ///< layers in memory
+  static constexpr int ghost_width = 5;    ///< layers in memory: four of B outside bodies, and the centres of their edges
   static constexpr int stencil_width = 3;  ///< layers that WENO5 reads; also the fewest cells of a rank
 
   /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, or by order) and makes
@@ -51,6 +51,10 @@ public:
   static std::string why_not(const GridSpec &spec, int ranks);
   /// Ranks per direction that `create` would use; {0,0,0} when impossible.
   static Int3 decompose(const GridSpec &spec, int ranks);
+
+  /// The same box in fewer cells, for multigrid, without a DM. Where a direction has fewer cells, ranks begin at half
+  /// of their first cell, rounded up; a rank may end up with none. With `everywhere` every rank holds all of it.
+  Grid coarse(const Int3 &cells, bool everywhere) const;
 
   MPI_Comm comm() const { return comm_; }
   DM dm() const { return dm_.get(); }

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace eulastic {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Shares of the limits that the automatic step uses. Euler lowers the viscosity by U^2 dt/2: a tenth of 2 nu/U^2
-// keeps that below 10 % where the flow is fastest.
-constexpr double combined_share = 0.8, advective_share = 0.25, inertial_share = 0.1;
+// Shares of the limits that the automatic step uses (docs/method.md). Euler lowers the viscosity by U^2 dt/2: a tenth
+// of 2 nu/U^2 keeps that below 10 % where the flow is fastest.
+constexpr double combined_share = 0.8, inertial_share = 0.1;
+constexpr double advective_euler = 0.25, advective_staggered = 0.3;
+constexpr double elastic_share = 0.5, kelvin_voigt_share = 0.05, forcing_share = 1. / 40;
+constexpr double pi = 3.14159265358979323846;
 
 double over(double a, double b) { return b > 0 ? a / b : infinite; }
 
@@ -37,11 +41,10 @@ double stretch_squared(double trace, int dimension) {
     const double t = std::max(trace - 1, 2.0);
     return 0.5 * (t + std::sqrt(t * t - 4));
   }
-  // x + 2/sqrt(x) = trace, x >= 1: the fixed point x <- trace - 2/sqrt(x) falls monotonically from above.
-  double x = std::max(trace, 3.0);
-  const double t = x;
-  for (int i = 0; i < 60; ++i) x = std::max(1.0, t - 2 / std::sqrt(x));
-  return x;
+  // x + 2/sqrt(x) = trace: with y = sqrt(x) the largest root of y^3 - trace y + 2 = 0.
+  const double t = std::max(trace, 3.0);
+  const double y = 2 * std::sqrt(t / 3) * std::cos(std::acos(-std::sqrt(27 / (t * t * t))) / 3);
+  return y * y;
 }
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
@@ -91,42 +94,65 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
   PetscFunctionReturn(0);
 }
 
-TimeStepLimits euler_limits(const Real3 &spacing, int dimension, const Fluid &fluid, double shear_modulus,
-                            const FlowExtremes &extremes) {
-  double S = 0, crossing = 0, speed_squared = 0;
+TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
+                                double shear_modulus, const FlowExtremes &extremes, const StepScheme &scheme) {
+  double S = 0, crossing = 0, gain = 0, speed_squared = 0, frequency = std::fabs(fluid.body_force.frequency);
   for (int d = 0; d < dimension; ++d) {
+    double speed = extremes.speed[d];
+    for (const auto &pair : walls.motion)
+      for (const WallMotion &wall : pair) {
+        speed = std::max(speed, std::fabs(wall.velocity[d]));
+        frequency = std::max(frequency, std::fabs(wall.frequency));
+      }
     S += 1 / (spacing[d] * spacing[d]);
-    crossing += extremes.speed[d] / spacing[d];
-    speed_squared += extremes.speed[d] * extremes.speed[d];
+    crossing += speed / spacing[d];
+    gain += std::fabs(fluid.body_force.force[d]) / spacing[d];
+    speed_squared += speed * speed;
   }
   const double nu = fluid.kinematic_viscosity();
-  const double c_squared = shear_modulus * stretch_squared(extremes.trace, dimension) / fluid.density;
-  return {over(1, 2 * nu * S), over(1, std::sqrt(c_squared * S)),
-          over(1, nu * S + std::sqrt(nu * nu * S * S + c_squared * S)), over(1, crossing),
-          fluid.inertia && nu > 0 ? over(2 * nu, speed_squared) : infinite};
-}
-
-TimeStepLimits euler_limits(const Grid &grid, const Fluid &fluid, double shear_modulus, const FlowExtremes &extremes) {
-  return euler_limits(grid.spacing(), grid.dimension(), fluid, shear_modulus, extremes);
+  const double stiffness = shear_modulus * stretch_squared(extremes.trace, dimension);
+  const double c_squared = stiffness / fluid.density;
+  const double share = scheme.staggered ? advective_staggered : advective_euler;
+  TimeStepLimits limits{};
+  limits.scheme = scheme;
+  limits.viscous = over(1, 2 * nu * S);
+  limits.elastic = over(1, std::sqrt(c_squared * S));
+  limits.combined = over(1, nu * S + std::sqrt(nu * nu * S * S + c_squared * S));
+  limits.kelvin_voigt = over(2 * fluid.viscosity, stiffness);
+  limits.advective = over(2 * share, crossing + std::sqrt(crossing * crossing + 4 * gain * share));
+  limits.inertial = fluid.inertia && nu > 0 ? over(2 * nu, speed_squared) : infinite;
+  limits.forcing = over(2 * pi, frequency);
+  return limits;
 }
 
 double TimeStepLimits::automatic(const char **name) const {
-  const struct {
+  struct Bound {
     double dt;
     const char *name;
-  } bound[3] = {{combined_share * combined, elastic < viscous ? "elastic wave" : "viscous"},
-                {advective_share * advective, "advective"},
-                {inertial_share * inertial, "Euler 2 nu/U^2"}};
-  const auto *least = std::min_element(bound, bound + 3, [](const auto &a, const auto &b) { return a.dt < b.dt; });
+  };
+  std::vector<Bound> bounds{{advective, "advective"}, {forcing_share * forcing, "forcing period"}};
+  if (scheme.rkl)
+    bounds.push_back(elastic_share * elastic > kelvin_voigt_share * kelvin_voigt
+                         ? Bound{elastic_share * elastic, "elastic wave"}
+                         : Bound{kelvin_voigt_share * kelvin_voigt, "Kelvin-Voigt"});
+  else
+    bounds.push_back({combined_share * combined, elastic < viscous ? "elastic wave" : "viscous"});
+  if (!scheme.staggered) bounds.push_back({inertial_share * inertial, "Euler 2 nu/U^2"});
+  const auto least =
+      std::min_element(bounds.begin(), bounds.end(), [](const Bound &a, const Bound &b) { return a.dt < b.dt; });
   if (name) *name = least->name;
   return least->dt;
 }
 
 const char *TimeStepLimits::broken(double dt) const {
-  if (dt >= viscous) return "viscous";
-  if (dt >= combined) return "viscous + elastic wave";
-  if (dt >= advective) return "advective";
-  if (dt >= inertial) return "Euler 2 nu/U^2";
+  const double share = scheme.staggered ? advective_staggered : advective_euler;
+  if (scheme.rkl) {
+    if (dt >= std::max(elastic, kelvin_voigt)) return "elastic wave and Kelvin-Voigt";
+  } else if (dt >= combined) {
+    return dt >= viscous ? "viscous" : "viscous + elastic wave";
+  }
+  if (dt >= advective / share) return "advective";
+  if (!scheme.staggered && dt >= inertial) return "Euler 2 nu/U^2";
   return nullptr;
 }
 

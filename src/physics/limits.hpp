@@ -21,22 +21,33 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
 double stretch_squared(double trace, int dimension);
 
+/// Which limits hold.
+struct StepScheme {
+  bool staggered = false;  ///< second order (Adams-Bashforth, Heun), else Euler
+  bool rkl = false;        ///< super time stepping: no viscous limit, and stiff solids follow the fluid
+};
+
 /// Upper bounds on dt; infinite where the term is absent.
 struct TimeStepLimits {
-  double viscous;    ///< 1/(2 nu S), S = sum 1/h^2
-  double elastic;    ///< 1/(c sqrt(S))
-  double combined;   ///< dt^2 c^2 S + 2 nu dt S = 1
-  double advective;  ///< 1/(sum |u_i|/h_i)
-  double inertial;   ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
-  /// The automatic step of the explicit Euler scheme and the name of what sets it.
+  StepScheme scheme;
+  double viscous;       ///< 1/(2 nu S), S = sum 1/h^2; what a plain explicit step bears
+  double elastic;       ///< 1/(c sqrt(S))
+  double combined;      ///< dt^2 c^2 S + 2 nu dt S = 1
+  double kelvin_voigt;  ///< 2 mu/(G lambda^2)
+  double advective;     ///< sum (|u_i| + |f_i| dt) dt/h_i = share, the share of the scheme included; walls count
+  double inertial;      ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
+  double forcing;       ///< the shortest period of walls and body force
+  /// The automatic step and the name of what sets it.
   double automatic(const char **name = nullptr) const;
   /// Name of the first stability limit that dt breaks, or null.
   const char *broken(double dt) const;
 };
 
-TimeStepLimits euler_limits(const Grid &grid, const Fluid &fluid, double shear_modulus, const FlowExtremes &extremes);
-/// The same without a grid, for -check_only.
-TimeStepLimits euler_limits(const Real3 &spacing, int dimension, const Fluid &fluid, double shear_modulus,
-                            const FlowExtremes &extremes);
+TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
+                                double shear_modulus, const FlowExtremes &extremes, const StepScheme &scheme);
+inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const Walls &walls, double shear_modulus,
+                                       const FlowExtremes &extremes, const StepScheme &scheme) {
+  return time_step_limits(grid.spacing(), grid.dimension(), fluid, walls, shear_modulus, extremes, scheme);
+}
 
 }  // namespace eulastic

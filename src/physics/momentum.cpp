@@ -17,6 +17,9 @@ struct PredictorTerms {
   const std::vector<Phase> *phases;
   bool inertia;
   double dt, density, kinematic_viscosity, epsilon;
+  AdvectionWeights weights;
+  FieldBlock *advection;  // null: not kept
+  bool rate_only;         // write dv/dt instead of v + dt dv/dt
   Real3 force, inverse, inverse_squared;
 };
 
@@ -38,6 +41,16 @@ EULASTIC_INLINE void elastic_force(const PredictorTerms &t, int a, const Segment
   }
 }
 
+// rate holds -v.grad v of now and `kept` that of the last step; they trade places, weighted.
+EULASTIC_INLINE void combine_advection(int n, AdvectionWeights weights, double *kept, double *rate) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const double now = rate[i], before = kept[i];
+    rate[i] = kernels::fma(weights.now, now, weights.before * before);
+    kept[i] = now;
+  }
+}
+
 template <int Dim>
 EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratch &scratch) {
   const FieldBlock &v = *t.velocity;
@@ -53,14 +66,19 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         if (t.inertia) {
           for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
           kernels::subtract_advection<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
+          if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
         }
         kernels::add_viscous_pressure_force<Dim>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(), p,
                                                  p.stride(a), t.inverse[a] / t.density, t.force[a], rate);
         elastic_force<Dim>(t, a, row, rate);
         const double *now = v[a].row(j, k);
         double *next = out[a].row(j, k);
+        if (t.rate_only) {
+          for (int i = 0; i < n[0]; ++i) next[i] = rate[i];
+        } else {
 #pragma omp simd
-        for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+          for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+        }
       }
     }
 }
@@ -84,17 +102,18 @@ EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlo
   divergence_rows<3>(g, density, v, out);
 }
 
-EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, const FieldBlock &increment,
-                                  const FieldBlock &star, FieldBlock &velocity, FieldBlock &pressure) {
+EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, double rotation,
+                                  const FieldBlock &increment, const FieldBlock &divergence, const FieldBlock &star,
+                                  FieldBlock &velocity, FieldBlock &pressure) {
   const Int3 n = grid.owned();
   const int gz = grid.dimension() == 3 ? 1 : 0;
   const ConstView q = increment[0];
   for (int k = -gz; k < n[2] + gz; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       double *p = pressure[0].row(j, k);
-      const double *dp = q.row(j, k);
+      const double *dp = q.row(j, k), *D = divergence[0].row(j, k);
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) p[i] += dp[i];
+      for (int i = -1; i < n[0] + 1; ++i) p[i] += kernels::fma(-rotation, D[i], dp[i]);
       if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
       for (int a = 0; a < grid.dimension(); ++a) {
         const double factor = dt_over_density / grid.spacing()[a];
@@ -107,41 +126,49 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, cons
     }
 }
 
-}  // namespace
-
-PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, double time, double dt, double speed_scale,
-                                const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
-  PetscFunctionBeginUser;
+void run_predictor(const Grid &grid, const Fluid &fluid, PredictorTerms terms, FieldBlock &out) {
   VerbScope scope(Verb::momentum);
   const int dim = grid.dimension();
-  PredictorTerms terms{&grid,
-                       &velocity,
-                       &pressure,
-                       &phases,
-                       fluid.inertia,
-                       dt,
-                       fluid.density,
-                       fluid.kinematic_viscosity(),
-                       weno_epsilon(speed_scale),
-                       fluid.body_force.at(time),
-                       {},
-                       {}};
   for (int d = 0; d < 3; ++d) {
     terms.inverse[d] = 1 / grid.spacing()[d];
     terms.inverse_squared[d] = terms.inverse[d] * terms.inverse[d];
   }
   RowScratch scratch(grid, 4);
   if (dim == 2)
-    predict_2d(terms, velocity_star, scratch);
+    predict_2d(terms, out, scratch);
   else
-    predict_3d(terms, velocity_star, scratch);
+    predict_3d(terms, out, scratch);
   double stressed = 0;
-  for (const Phase &phase : phases) stressed += phase.stressed.points();
+  for (const Phase &phase : *terms.phases) stressed += phase.stressed.points();
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * (grid.owned_count() * per_face +
                      stressed * (dim == 2 ? kernels::elastic_flops_2d : kernels::elastic_flops_3d)));
+}
+
+}  // namespace
+
+PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
+                                const FieldBlock &velocity, const FieldBlock &pressure,
+                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
+  PetscFunctionBeginUser;
+  run_predictor(grid, fluid,
+                {&grid, &velocity, &pressure, &phases, fluid.inertia, step.dt, fluid.density,
+                 fluid.kinematic_viscosity(), weno_epsilon(step.speed_scale), step.weights, nullptr, false,
+                 fluid.body_force.at(step.force_time), {}, {}},
+                velocity_star);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
+                             const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
+                             FieldBlock &advection, FieldBlock &rate) {
+  PetscFunctionBeginUser;
+  run_predictor(grid, fluid,
+                {&grid, &velocity, &pressure, &phases, fluid.inertia, step.dt, fluid.density,
+                 fluid.kinematic_viscosity(), weno_epsilon(step.speed_scale), step.weights,
+                 advection ? &advection : nullptr, true, fluid.body_force.at(step.force_time), {}, {}},
+                rate);
   PetscFunctionReturn(0);
 }
 
@@ -157,12 +184,13 @@ PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldB
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, const FieldBlock &increment,
+PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
+                                const FieldBlock &increment, const FieldBlock &divergence,
                                 const FieldBlock &velocity_star, FieldBlock &velocity, FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  correct_rows(grid, dt / density, increment, velocity_star, velocity, pressure);
-  scope.flops(grid.owned_count() * (3 * grid.dimension() + 1));
+  correct_rows(grid, dt / density, rotation, increment, divergence, velocity_star, velocity, pressure);
+  scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
   PetscFunctionReturn(0);
 }
 

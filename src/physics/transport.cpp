@@ -15,6 +15,8 @@ struct TransportTerms {
   double dt;
   const FieldBlock *velocity;
   Real3 inverse;
+  EvolveRule rule{};
+  bool second_of_heun = false;
 };
 
 template <int Dim>
@@ -55,9 +57,9 @@ constexpr int position(int x, int y) {
 }
 
 template <int Dim>
-EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phase, int a, int b, FieldBlock &out,
-                                      RowScratch &scratch) {
-  const FieldBlock &B = phase.tensor, &v = *t.velocity;
+EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
+                                      FieldBlock &out, RowScratch &scratch) {
+  const FieldBlock &v = *t.velocity;
   const ConstView phi = phase.fraction[0];
   const int f = position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;                        // second direction
@@ -65,7 +67,8 @@ EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phas
   const bool at[3] = {a != b && (a == 0 || b == 0), a != b && (a == 1 || b == 1), a != b && (a == 2 || b == 2)};
   const kernels::Directions d{phi.stride(a),  phi.stride(other),  phi.stride(third),
                               t.inverse[a], t.inverse[other], t.inverse[third]};
-  const double exterior = a == b ? 1.0 : 0.0;
+  const double exterior = a == b ? 1.0 : 0.0, threshold = a == b ? t.rule.centre : t.rule.edge;
+  const double before = t.second_of_heun ? 0.5 : 0.0, share = t.second_of_heun ? 0.5 : 1.0;
   const int end = t.grid->points_end(0, at[0]);
   double *rate = scratch.row(0);
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
@@ -88,8 +91,8 @@ EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phas
                                           v[a], v[b], d, rate);
 #pragma omp simd
         for (int i = s.i_begin; i < s.i_end; ++i) {
-          const double moved = kernels::fma(t.dt, rate[i], now[i]);
-          next[i] = fraction_at(solid + i, a == b, d.a, d.b) < solid_threshold ? exterior : moved;
+          const double moved = kernels::fma(before, next[i], share * kernels::fma(t.dt, rate[i], now[i]));
+          next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
         }
         done = s.i_end;
       }
@@ -98,20 +101,23 @@ EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phas
 }
 
 template <int Dim>
-EULASTIC_INLINE void tensor_rows(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &scratch) {
+EULASTIC_INLINE void tensor_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
+                                 RowScratch &scratch) {
   for (int a = 0; a < Dim; ++a)
-    for (int b = a; b < Dim; ++b) tensor_component<Dim>(t, phase, a, b, out, scratch);
+    for (int b = a; b < Dim; ++b) tensor_component<Dim>(t, phase, B, a, b, out, scratch);
 }
 
-EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &s) {
-  tensor_rows<2>(t, phase, out, s);
+EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
+                               RowScratch &s) {
+  tensor_rows<2>(t, phase, B, out, s);
 }
-EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, FieldBlock &out, RowScratch &s) {
-  tensor_rows<3>(t, phase, out, s);
+EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
+                               RowScratch &s) {
+  tensor_rows<3>(t, phase, B, out, s);
 }
 
 TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
-  return {&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}};
+  return {&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}, {}, false};
 }
 
 }  // namespace
@@ -130,33 +136,35 @@ PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &ve
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode find_solid(const Grid &grid, Phase &phase) {
+PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  phase.solid.build(grid, phase.fraction[0], solid_threshold, 1, 0);
-  phase.stressed.build(grid, phase.fraction[0], solid_threshold, 1, 1);
+  phase.solid.build(grid, phase.fraction[0], rule.centre, 1, 0);
+  phase.stressed.build(grid, phase.fraction[0], rule.stressed, 1, 1);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode transport_tensor(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
-                                FieldBlock &next) {
+PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
+                                const Phase &phase, const FieldBlock &tensor, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   RowScratch scratch(grid, 4);
-  const TransportTerms terms = make_terms(grid, dt, velocity);
+  TransportTerms terms = make_terms(grid, stage.dt, velocity);
+  terms.rule = stage.rule;
+  terms.second_of_heun = stage.second_of_heun;
   if (grid.dimension() == 2) {
-    tensor_2d(terms, phase, next, scratch);
+    tensor_2d(terms, phase, tensor, next, scratch);
     scope.flops(phase.solid.points() * (3 * (2 * (kernels::weno5_flops + 5) + 2) +
                                         2 * kernels::stretch_diagonal_flops_2d + kernels::stretch_shear_flops_2d));
   } else {
-    tensor_3d(terms, phase, next, scratch);
+    tensor_3d(terms, phase, tensor, next, scratch);
     scope.flops(phase.solid.points() * (6 * (3 * (kernels::weno5_flops + 5) + 2) +
                                         3 * kernels::stretch_diagonal_flops_3d + 3 * kernels::stretch_shear_flops_3d));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode reset_exterior(const Grid &grid, Phase &phase) {
+PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, Phase &phase) {
   PetscFunctionBeginUser;
   const ConstView phi = phase.fraction[0];
   const auto &components = tensor_components(grid.dimension());
@@ -167,7 +175,7 @@ PetscErrorCode reset_exterior(const Grid &grid, Phase &phase) {
     for (int k = 0; k < grid.points_end(2, at[2]); ++k)
       for (int j = 0; j < grid.points_end(1, at[1]); ++j)
         for (int i = 0; i < grid.points_end(0, at[0]); ++i)
-          if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < solid_threshold)
+          if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
             B(i, j, k) = a == b ? 1.0 : 0.0;
   }
   PetscFunctionReturn(0);

@@ -6,22 +6,35 @@
 
 namespace eulastic {
 
-/// Below this solid fraction B is reset to I (the paper's rule).
-inline constexpr double solid_threshold = 0.01;
+/// Where B evolves; elsewhere it is I, or extrapolated afterwards (exterior.hpp).
+struct EvolveRule {
+  double centre, edge;  ///< least solid fraction, at centres and (mean of four) on edges
+  double stressed;      ///< least solid fraction that makes stress
+};
+/// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
+inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
 
 /// next = phi - dt v.grad phi at centres. Three ghosts of both.
 PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const FieldBlock &fraction,
                                FieldBlock &next);
 
-/// Lists where B may differ from I and which faces feel it. Two ghosts of phi.
-PetscErrorCode find_solid(const Grid &grid, Phase &phase);
+/// Lists where B may evolve and which faces feel the stress. Two ghosts of phi.
+PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase);
 
-/// next = B + dt (L.B + B.L^T - v.grad B) on the phase's solid segments, I where the solid fraction there (averaged
-/// to edges) is below the threshold, and elsewhere. Includes the edges on walls. Three ghosts of v and B, one of phi.
-PetscErrorCode transport_tensor(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
-                                FieldBlock &next);
+/// One Runge-Kutta stage of B.
+struct TensorStage {
+  EvolveRule rule;
+  double dt;
+  bool second_of_heun;  ///< next = (next + B + dt rate)/2, else next = B + dt rate
+};
 
-/// B = I below the threshold, without transport. One ghost of phi.
-PetscErrorCode reset_exterior(const Grid &grid, Phase &phase);
+/// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which
+/// holds B at the start of the step in Heun's second stage. Includes the edges on walls. Three ghosts of v and B,
+/// one of phi.
+PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
+                                const Phase &phase, const FieldBlock &tensor, FieldBlock &next);
+
+/// B = I where it does not evolve, without transport. One ghost of phi.
+PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, Phase &phase);
 
 }  // namespace eulastic

@@ -4,6 +4,10 @@
 #include "physics/momentum.hpp"
 #include "physics/transport.hpp"
 #include "pressure/acm.hpp"
+#if __has_include("pressure/acm_sweeps.hpp")
+#include "pressure/acm_sweeps.hpp"
+#define HAVE_SWEEPS
+#endif
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -15,16 +19,30 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   PetscFunctionBeginUser;
   grid_ = &grid;
   spec_ = spec;
+  const int dim = grid.dimension();
   exchange_ = std::make_unique<GhostExchange>(grid);
   if (spec.pressure == PressureKind::smac)
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
-  else
+  else if (spec.acm_of_the_paper())
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
-  now_.velocity = FieldBlock(grid, grid.dimension());
+#ifdef HAVE_SWEEPS
+  else
+    PetscCall(AcmSweepSolver::create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse},
+                                     &pressure_solver_));
+#else
+  else pressure_solver_ = std::make_unique<AcmSolver>(grid);
+#endif
+  now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
-  velocity_star_ = FieldBlock(grid, grid.dimension());
+  velocity_star_ = FieldBlock(grid, dim);
   divergence_ = FieldBlock(grid, 1);
   increment_ = FieldBlock(grid, 1);
+  if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
+  if (spec.staggered() || spec.viscous == ViscousScheme::rkl) {
+    viscous_.rate = FieldBlock(grid, dim);
+    viscous_.now = FieldBlock(grid, dim);
+  }
+  if (spec.viscous == ViscousScheme::rkl) viscous_.before = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
 
@@ -32,17 +50,25 @@ PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
+  if (now_.phases.empty()) PetscFunctionReturn(0);
+  next_fraction_ = FieldBlock(*grid_, 1);
+  next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
+  if (spec_.interface == InterfaceScheme::thinc) interface_ = std::make_unique<InterfaceTransport>(*grid_);
   for (Phase &phase : now_.phases) {
-    PetscCall(update_centre_ghosts(phase.fraction, Grid::stencil_width));
-    PetscCall(reset_exterior(*grid_, phase));
-    PetscCall(find_solid(*grid_, phase));
-    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
-  }
-  if (!now_.phases.empty()) {
-    next_fraction_ = FieldBlock(*grid_, 1);
-    next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
+    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+    PetscCall(reset_exterior(*grid_, evolve_rule(), phase));
+    PetscCall(find_solid(*grid_, evolve_rule(), phase));
+    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase.fraction));
+    PetscCall(complete_exterior(phase.tensor));
   }
   PetscFunctionReturn(0);
+}
+
+EvolveRule Solver::evolve_rule() const {
+  if (spec_.exterior == SolidExterior::identity) return reset_below_one_per_cent;
+  EvolveRule rule = evolve_above_half;
+  if (spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
+  return rule;
 }
 
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
@@ -61,28 +87,54 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
   double modulus = 0;
   for (const Phase &phase : now_.phases) modulus = std::max(modulus, phase.material.shear_modulus);
-  return euler_limits(*grid_, spec_.fluid, modulus, extremes);
+  return time_step_limits(*grid_, spec_.fluid, spec_.walls, modulus, extremes,
+                          {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
 }
 
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
-                    increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes();
+                    increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
+                    viscous_.rate.bytes() + viscous_.now.bytes() + viscous_.before.bytes();
   for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
 }
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
-  PetscCall(predict_velocity(*grid_, spec_.fluid, now_.time, dt, speed_scale(dt), now_.velocity, now_.pressure,
-                             now_.phases, velocity_star_));                                           // (7)
+  if (spec_.staggered()) PetscCall(transport(now_.phases, 0.5 * (now_.dt + dt)));                     // (4)(5)
+  PetscCall(predict(dt));                                                                             // (7)
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));                                                                             // (8)-(13)
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
-  for (Phase &phase : now_.phases) PetscCall(transport(phase, dt));                                   // (4)(5)
+  if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));                                      // (4)(5)
   PetscCall(follow_bodies(dt));
   now_.time += dt;
   now_.dt = dt;
   ++now_.step;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::predict(double dt) {
+  PetscFunctionBeginUser;
+  const Fluid &fluid = spec_.fluid;
+  MomentumStep step{now_.time, dt, speed_scale(dt), {}};
+  if (spec_.staggered()) {
+    step.force_time += 0.5 * dt;
+    if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
+  }
+  if (spec_.viscous == ViscousScheme::explicit_euler && !spec_.staggered()) {
+    PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+    ++stages_;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection,
+                          viscous_.rate));
+  int stages = 1;
+  if (spec_.viscous == ViscousScheme::rkl)
+    stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
+  PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
+                            now_.velocity, viscous_, velocity_star_));
+  stages_ += stages;
   PetscFunctionReturn(0);
 }
 
@@ -95,23 +147,82 @@ double Solver::speed_scale(double dt) const {
 PetscErrorCode Solver::project(double dt) {
   PetscFunctionBeginUser;
   const double density = spec_.fluid.density;
+  const double rotation = spec_.staggered() ? 0.5 * spec_.fluid.kinematic_viscosity() : 0;
+  const Real3 &h = grid_->spacing();
+  const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
   PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence_));
   PetscCall(update_centre_ghosts(divergence_, 1));
+  pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));                     // (10) or (11)
-  PetscCall(correct_velocity(*grid_, density, dt, increment_, velocity_star_, now_.velocity, now_.pressure));
+  PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.velocity,
+                             now_.pressure));
   PetscFunctionReturn(0);
 }
 
-// B follows the new velocity: forward Euler in both would need dt <= mu/G.
+PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
+  PetscFunctionBeginUser;
+  for (Phase &phase : phases) PetscCall(transport(phase, dt));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
-  PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));              // (4)
-  phase.fraction.swap(next_fraction_);
-  PetscCall(update_centre_ghosts(phase.fraction, Grid::stencil_width));
-  PetscCall(find_solid(*grid_, phase));
-  PetscCall(transport_tensor(*grid_, dt, now_.velocity, phase, next_tensor_));                        // (5)
-  phase.tensor.swap(next_tensor_);
-  PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
+  if (spec_.interface == InterfaceScheme::thinc) {
+    PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.fraction));
+  } else {
+    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));            // (4)
+    phase.fraction.swap(next_fraction_);
+  }
+  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(find_solid(*grid_, evolve_rule(), phase));
+  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase.fraction));
+  PetscCall(transport_left_cauchy_green(phase, dt));                                                  // (5)
+  PetscFunctionReturn(0);
+}
+
+// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
+PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
+  PetscFunctionBeginUser;
+  PetscCall(transport_tensor(*grid_, {evolve_rule(), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
+  PetscCall(complete_exterior(next_tensor_));
+  if (spec_.staggered()) {
+    PetscCall(transport_tensor(*grid_, {evolve_rule(), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
+    PetscCall(complete_exterior(phase.tensor));
+  } else {
+    phase.tensor.swap(next_tensor_);
+  }
+  PetscFunctionReturn(0);
+}
+
+// Ghosts of B, after its extension outside the body where that is wanted.
+PetscErrorCode Solver::complete_exterior(FieldBlock &tensor) {
+  PetscFunctionBeginUser;
+  if (spec_.exterior == SolidExterior::extrapolate) {
+    PetscCall(exchange_->update(tensor, ExteriorLayers::layers));
+    PetscCall(layers_.extend(*grid_, tensor));
+  }
+  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
+  PetscFunctionBeginUser;
+  *phases = &now_.phases;
+  if (!spec_.staggered() || now_.step == 0) PetscFunctionReturn(0);
+  *phases = &phases_now_;
+  if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
+  phases_now_.resize(now_.phases.size());
+  for (std::size_t p = 0; p < phases_now_.size(); ++p) {
+    Phase &copy = phases_now_[p];
+    const Phase &phase = now_.phases[p];
+    copy.species = phase.species;
+    copy.material = phase.material;
+    copy.fraction.copy_from(phase.fraction);
+    copy.tensor.copy_from(phase.tensor);
+    if (phase.label) copy.label.copy_from(phase.label);
+  }
+  PetscCall(transport(phases_now_, 0.5 * now_.dt));
+  phases_now_step_ = now_.step;
   PetscFunctionReturn(0);
 }
 

@@ -3,21 +3,26 @@
 
 #include "bodies/measures.hpp"
 #include "field/ghost_exchange.hpp"
+#include "physics/exterior.hpp"
 #include "physics/fluid.hpp"
+#if __has_include("physics/interface.hpp")
+#include "physics/interface.hpp"
+#else
+namespace eulastic { struct InterfaceTransport { explicit InterfaceTransport(const Grid &) {} PetscErrorCode advance(GhostExchange &, double, long, const FieldBlock &, FieldBlock &) { return PETSC_ERR_SUP; } }; }
+#endif
 #include "physics/limits.hpp"
+#include "physics/super_time_stepping.hpp"
 #include "pressure/pressure_solver.hpp"
+#include "solver/method.hpp"
 #include "solver/state.hpp"
 
 #include <memory>
 
 namespace eulastic {
 
-enum class PressureKind { acm, smac };
-
-struct SolverSpec {
+struct SolverSpec : Method {
   Fluid fluid;
   Walls walls;
-  PressureKind pressure = PressureKind::acm;
 };
 
 class Solver {
@@ -39,16 +44,28 @@ public:
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
-  /// Advances by dt with `-method classic`.
+  /// Advances by dt.
   PetscErrorCode step(double dt);
+
+  /// The phases at the time of the velocity. With the staggered integrator they live half a step behind: a copy is
+  /// brought up, the state is not touched. Valid until the next step.
+  PetscErrorCode phases_now(const std::vector<Phase> **phases);
+  /// Viscous stages and pressure sweeps since the start.
+  long stages() const { return stages_; }
+  long sweeps() const { return pressure_solver_->sweeps(); }
 
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width);
   double speed_scale(double dt) const;
+  EvolveRule evolve_rule() const;
+  PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
+  PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport(Phase &phase, double dt);
+  PetscErrorCode transport_left_cauchy_green(Phase &phase, double dt);
+  PetscErrorCode complete_exterior(FieldBlock &tensor);
   PetscErrorCode follow_bodies(double dt);
 
   const Grid *grid_ = nullptr;
@@ -58,6 +75,12 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
+  SuperTimeStepping viscous_;
+  ExteriorLayers layers_;
+  std::unique_ptr<InterfaceTransport> interface_;
+  std::vector<Phase> phases_now_;   ///< copies for phases_now()
+  std::int64_t phases_now_step_ = -1;
+  long stages_ = 0;
 };
 
 }  // namespace eulastic

@@ -16,8 +16,9 @@ struct State {
   double crossing_rate = 0; ///< max |u_d|/h_d when last measured, cells per time
   double travel = 0;        ///< cells the interface may have moved since the labels were carried
   FieldBlock velocity;      ///< u, v (, w) on faces, three ghosts valid
-  FieldBlock pressure;      ///< at centres, one ghost valid
-  std::vector<Phase> phases;  ///< three ghosts valid
+  FieldBlock pressure;      ///< at centres, one ghost valid; half a step behind when staggered
+  FieldBlock advection;     ///< v.grad v of the last step, for Adams-Bashforth; empty with Euler
+  std::vector<Phase> phases;  ///< three ghosts valid; half a step behind when staggered
 };
 
 /// Rank-independent 64-bit hash of velocity, pressure and phases.

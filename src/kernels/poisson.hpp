@@ -1,0 +1,94 @@
+// The Laplacian on lines of unequal cells, the transfers between two grids row by row, and products of rows.
+#pragma once
+
+#include "kernels/stencils.hpp"
+
+#include <cstdint>
+
+namespace eulastic::kernels {
+
+/// Couplings of the cells of one row to their neighbours, 1/(width x distance of centres); 0 at a wall, where
+/// therefore no ghost is needed. Along x one number per cell.
+struct LineCoefficients {
+  const double *x_low, *x_high;
+  double y_low, y_high, z_low, z_high;
+};
+
+inline constexpr double line_laplacian_flops_per_direction = 6;
+
+/// Sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]) at cell i of the row q.
+template <int Dim>
+EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy, std::ptrdiff_t sz,
+                                      const LineCoefficients &c) noexcept {
+  const double centre = q[i];
+  double sum = c.x_low[i] * (q[i - 1] - centre);
+  sum = fma(c.x_high[i], q[i + 1] - centre, sum);
+  sum = fma(c.y_low, q[i - sy] - centre, sum);
+  sum = fma(c.y_high, q[i + sy] - centre, sum);
+  if constexpr (Dim == 3) {
+    sum = fma(c.z_low, q[i - sz] - centre, sum);
+    sum = fma(c.z_high, q[i + sz] - centre, sum);
+  }
+  return sum;
+}
+
+/// sum += weight (r - factor lap r): what one relaxation from zero leaves of the right-hand side r.
+template <int Dim>
+EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const LineCoefficients &c, double factor,
+                                          double weight, double *sum) noexcept {
+  const double *f = r.row(s.j, s.k);
+  const std::ptrdiff_t sy = r.sy, sz = r.sz;
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i)
+    sum[i] = fma(weight, fma(-factor, line_laplacian<Dim>(f, i, sy, sz, c), f[i]), sum[i]);
+}
+
+/// out = q + factor (r - lap q), one relaxation.
+template <int Dim>
+EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, const LineCoefficients &c, double factor,
+                           View out) noexcept {
+  const double *old = q.row(s.j, s.k), *f = r.row(s.j, s.k);
+  double *next = out.row(s.j, s.k);
+  const std::ptrdiff_t sy = q.sy, sz = q.sz;
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i)
+    next[i] = fma(factor, f[i] - line_laplacian<Dim>(old, i, sy, sz, c), old[i]);
+}
+
+/// Pairs of fine values to one coarse value: coarse[i] = low[i] fine[2i] + high[i] fine[2i + 1].
+EULASTIC_INLINE void join_pairs(int n, const double *fine, const double *low, const double *high,
+                                double *coarse) noexcept {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) coarse[i] = fma(low[i], fine[2 * i], high[i] * fine[2 * i + 1]);
+}
+
+/// Linear interpolation from coarse cells to their two halves; low and high are the shares of the neighbours.
+EULASTIC_INLINE void split_pairs(int begin, int end, const double *coarse, const double *low, const double *high,
+                                 double *fine) noexcept {
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    fine[2 * i] = fma(low[i], coarse[i - 1] - coarse[i], coarse[i]);
+    fine[2 * i + 1] = fma(high[i], coarse[i + 1] - coarse[i], coarse[i]);
+  }
+}
+
+/// out = a + share (b - a).
+EULASTIC_INLINE void blend(int begin, int end, const double *a, const double *b, double share, double *out) noexcept {
+#pragma omp simd
+  for (int i = begin; i < end; ++i) out[i] = fma(share, b[i] - a[i], a[i]);
+}
+
+/// Sum of a[i] b[i], at most one block of the exact sums, in eight fixed lanes (absolute index mod 8) and a fixed
+/// tree; the first product has absolute index `first`.
+EULASTIC_INLINE double lane_dot(const double *a, const double *b, int n, std::int64_t first) noexcept {
+  double lane[8] = {};
+  int i = 0;
+  for (; i < n && ((first + i) & 7); ++i) lane[(first + i) & 7] = a[i] * b[i];
+  for (; i + 8 <= n; i += 8)
+#pragma omp simd
+    for (int l = 0; l < 8; ++l) lane[l] = fma(a[i + l], b[i + l], lane[l]);
+  for (int l = 0; i < n; ++i, ++l) lane[l] = fma(a[i], b[i], lane[l]);
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+}  // namespace eulastic::kernels

@@ -1,0 +1,31 @@
+// One stage of RKL2 in increments, updated in place: three reads, one write.
+#pragma once
+
+#include "kernels/momentum.hpp"
+
+namespace eulastic::kernels {
+
+/// W_j = mu W_j-1 + nu W_j-2 + mu~ dt (viscosity lap W_j-1) + (mu~ + gamma~) dt M_0.
+struct RklStage {
+  double mu, nu, viscous, rate;  ///< viscous = mu~ dt viscosity, rate = (mu~ + gamma~) dt
+};
+
+inline constexpr double rkl_stage_flops_2d = 12, rkl_stage_flops_3d = 16;
+
+/// `before` holds W_j-2 and gets W_j.
+template <int Dim>
+EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView now, ConstView rate, const double *second,
+                               View before) noexcept {
+  const double *w = now.row(s.j, s.k), *m = rate.row(s.j, s.k);
+  double *out = before.row(s.j, s.k);
+  const std::ptrdiff_t sy = now.sy, sz = now.sz;
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i) {
+    double sum = c.nu * out[i];
+    sum = fma(c.mu, w[i], sum);
+    sum = fma(c.rate, m[i], sum);
+    out[i] = fma(c.viscous, laplacian<Dim>(w + i, sy, sz, second), sum);
+  }
+}
+
+}  // namespace eulastic::kernels

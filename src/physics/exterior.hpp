@@ -1,0 +1,45 @@
+// B outside the body: constant extrapolation over four layers, I beyond, so that WENO5 never sees a jump to I.
+//
+// B evolves where phi > 1/2 (on edges: where the mean of the four centres is). Layer L holds the other points with a
+// face neighbour in layer L - 1 and takes the mean of its neighbours in the layers before. Synchronous: only lower
+// layers are read. Ghosts are extended along with the owned points: B needs four valid ghost layers where it
+// evolves, and afterwards an exchange of three.
+#pragma once
+
+#include "field/phase.hpp"
+#include "physics/transport.hpp"
+
+namespace eulastic {
+
+/// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
+/// and empty centres does not decide.
+inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30};
+
+/// Which points each layer holds; made anew whenever phi has changed.
+class ExteriorLayers {
+public:
+  static constexpr int layers = 4;
+
+  /// phi needs five valid ghost layers.
+  PetscErrorCode build(const Grid &grid, const FieldBlock &fraction);
+  /// Extends all components of B. Points outside every layer are left alone (they hold I).
+  PetscErrorCode extend(const Grid &grid, FieldBlock &tensor) const;
+  /// Points in the layers of all locations.
+  double points() const noexcept;
+
+private:
+  struct Entry {
+    std::ptrdiff_t offset;   ///< from the field's first double
+    unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
+  };
+  struct Location {
+    Staggering staggering{};
+    std::array<std::vector<Entry>, layers> layer;
+  };
+  void build_location(const Grid &grid, ConstView fraction, Location *location);
+
+  std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
+  std::vector<unsigned char> mask_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,141 @@
+#include "physics/interface.hpp"
+
+#include "base/events.hpp"
+#include "kernels/thinc.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+enum Work { slope_field, flux_field, solid_field };
+
+// Local cells begin <= (i, j, k) < end.
+struct Box {
+  Int3 begin, end;
+  Box grown(int d, int low, int high) const {
+    Box box = *this;
+    box.begin[d] -= low;
+    box.end[d] += high;
+    return box;
+  }
+};
+
+// One direction of one transport.
+struct Sweep {
+  int direction;
+  Box cells;
+  double rate;  // dt/h
+  std::ptrdiff_t stride[3];  // of the direction first
+  ConstView velocity;
+  View phi, slope, flux, solid;
+  const ActiveSegments *active_cells, *active_faces;
+};
+
+template <class Body>
+EULASTIC_INLINE void for_segments(const ActiveSegments &active, const Box &box, Body &&body) {
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j)
+      for (const Segment &s : active.row(j, k)) {
+        const Segment part{std::max(s.i_begin, box.begin[0]), std::min(s.i_end, box.end[0]), j, k};
+        if (part.size() > 0) body(part);
+      }
+}
+
+template <int Dim>
+EULASTIC_INLINE void sweep_band(const Sweep &t) {
+  const int d = t.direction;
+  const std::ptrdiff_t step = t.stride[0];
+  for_segments(*t.active_cells, t.cells.grown(d, 1, 1), [&](const Segment &s) __attribute__((always_inline)) {
+    kernels::interface_slope<Dim>(s, t.phi, t.stride, t.slope.row(s.j, s.k));
+  });
+  for_segments(*t.active_faces, t.cells.grown(d, 0, 1), [&](const Segment &s) __attribute__((always_inline)) {
+    kernels::interface_flux(s, t.phi, t.slope, t.velocity, step, t.rate, t.flux.row(s.j, s.k));
+  });
+  for_segments(*t.active_cells, t.cells, [&](const Segment &s) __attribute__((always_inline)) {
+    kernels::apply_flux(s, t.flux, t.velocity, t.solid, step, t.rate, t.phi.row(s.j, s.k));
+  });
+}
+
+EULASTIC_CLONES void sweep_2d(const Sweep &t) { sweep_band<2>(t); }
+EULASTIC_CLONES void sweep_3d(const Sweep &t) { sweep_band<3>(t); }
+
+// phi of the cell behind each wall is that of the cell before it; also behind the wall of a neighbour.
+void reflect_at_walls(const Grid &grid, View phi) {
+  const Layout &own = grid.layout();
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true}) {
+      const int behind = (high ? grid.cells()[d] : -1) - own.begin[d], before = behind + (high ? -1 : 1);
+      if (!grid.is_wall(d) || behind < -own.ghosts[d] || behind >= own.cells[d] + own.ghosts[d]) continue;
+      Int3 begin, end;
+      for (int e = 0; e < 3; ++e) {
+        begin[e] = e == d ? 0 : -own.ghosts[e];
+        end[e] = e == d ? 1 : own.cells[e] + own.ghosts[e];
+      }
+      const std::ptrdiff_t s = phi.stride(d);
+      for (int k = begin[2]; k < end[2]; ++k)
+        for (int j = begin[1]; j < end[1]; ++j) {
+          double *row = phi.row(j, k);
+          for (int i = begin[0]; i < end[0]; ++i) row[i + behind * s] = row[i + before * s];
+        }
+    }
+}
+
+// Directions of a step: every one is first, in the middle and last equally often, and each order is followed by the
+// opposite one.
+Int3 order_of_directions(int dimension, long step) {
+  static constexpr Int3 orders[6] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}, {1, 0, 2}};
+  if (dimension == 3) return orders[step % 6];
+  return step % 2 == 0 ? Int3{0, 1, 2} : Int3{1, 0, 2};
+}
+
+// The cells each sweep has to move so that the later ones find their neighbours: a sweep along d reads two more
+// layers in d and one more in the others. Never behind a wall.
+std::array<Box, 3> cells_of_sweeps(const Grid &grid, const Int3 &order) {
+  std::array<Box, 3> boxes{};
+  Int3 layers{};
+  for (int s = grid.dimension() - 1; s >= 0; --s) {
+    boxes[s] = {{0, 0, 0}, grid.owned()};
+    for (int d = 0; d < grid.dimension(); ++d) {
+      const int begin = grid.layout().begin[d];
+      boxes[s] = boxes[s].grown(d, layers[d], layers[d]);
+      if (grid.is_wall(d)) {
+        boxes[s].begin[d] = std::max(boxes[s].begin[d], -begin);
+        boxes[s].end[d] = std::min(boxes[s].end[d], grid.cells()[d] - begin);
+      }
+      layers[d] += d == order[s] ? 2 : 1;
+    }
+  }
+  return boxes;
+}
+
+}  // namespace
+
+PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity, long step, FieldBlock &fraction) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::solid_fraction);
+  const int dimension = grid_->dimension();
+  const Int3 order = order_of_directions(dimension, step);
+  const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
+  const View phi = fraction[0], solid = work_[solid_field];
+  reflect_at_walls(*grid_, phi);
+  cells_.build_band(*grid_, phi, dimension);
+  faces_.build_faces(cells_);
+  for (const Segment &s : cells_.all())
+    for (int i = s.i_begin; i < s.i_end; ++i) solid(i, s.j, s.k) = phi(i, s.j, s.k) > 0.5;
+  for (int s = 0; s < dimension; ++s) {
+    const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
+    const Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {phi.stride(d), phi.stride(e), phi.stride(f)},
+                      velocity[d], phi, work_[slope_field], work_[flux_field], solid, &cells_, &faces_};
+    if (dimension == 2)
+      sweep_2d(sweep);
+    else
+      sweep_3d(sweep);
+    reflect_at_walls(*grid_, phi);
+  }
+  scope.flops(dimension * (cells_.points() * (kernels::slope_flops(dimension) + kernels::apply_flux_flops) +
+                           faces_.points() * kernels::interface_flux_flops));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,107 @@
+#include "physics/super_time_stepping.hpp"
+
+#include "base/events.hpp"
+#include "kernels/super_time_stepping.hpp"
+
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// b_j of RKL2; b_0 = b_1 = b_2 = 1/3.
+double weight(int j) { return j < 2 ? 1. / 3 : (double(j) * j + j - 2) / (2. * j * (j + 1)); }
+
+kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscosity) {
+  const double w = 4. / (double(stages) * stages + stages - 2);
+  const double mu = (2. * j - 1) / j * weight(j) / weight(j - 1);
+  const double nu = -(j - 1.) / j * weight(j) / weight(j - 2);
+  const double mu_tilde = mu * w, gamma_tilde = -(1 - weight(j - 1)) * mu_tilde;
+  return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt};
+}
+
+// Fraction of dt that stage j has reached.
+double stage_time(int j, int stages) {
+  const double s = stages;
+  return j == 1 ? stage_time(2, stages) / 3 : (double(j) * j + j - 2) / (s * s + s - 2);
+}
+
+template <int Dim>
+EULASTIC_INLINE void stage_rows(const Grid &grid, const kernels::RklStage &c, const double *second,
+                                const FieldBlock &now, const FieldBlock &rate, FieldBlock &before) {
+  const Int3 n = grid.owned();
+  for (int a = 0; a < Dim; ++a)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) kernels::rkl_stage<Dim>({0, n[0], j, k}, c, now[a], rate[a], second, before[a]);
+}
+
+EULASTIC_CLONES void stage_2d(const Grid &g, const kernels::RklStage &c, const double *second, const FieldBlock &now,
+                              const FieldBlock &rate, FieldBlock &before) {
+  stage_rows<2>(g, c, second, now, rate, before);
+}
+EULASTIC_CLONES void stage_3d(const Grid &g, const kernels::RklStage &c, const double *second, const FieldBlock &now,
+                              const FieldBlock &rate, FieldBlock &before) {
+  stage_rows<3>(g, c, second, now, rate, before);
+}
+
+// to = scale a + b at all owned points; b may be null.
+EULASTIC_CLONES void scale_add(const Grid &grid, double scale, const FieldBlock &a, const FieldBlock *b,
+                               FieldBlock &to) {
+  const Int3 n = grid.owned();
+  for (int c = 0; c < to.count(); ++c)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        const double *x = a[c].row(j, k);
+        double *out = to[c].row(j, k);
+        if (b) {
+          const double *y = (*b)[c].row(j, k);
+#pragma omp simd
+          for (int i = 0; i < n[0]; ++i) out[i] = kernels::fma(scale, x[i], y[i]);
+        } else {
+          for (int i = 0; i < n[0]; ++i) out[i] = scale * x[i];
+        }
+      }
+}
+
+void clear(const Grid &grid, FieldBlock &block) {
+  const Int3 n = grid.owned();
+  for (int c = 0; c < block.count(); ++c)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        double *row = block[c].row(j, k);
+        for (int i = 0; i < n[0]; ++i) row[i] = 0;
+      }
+}
+
+}  // namespace
+
+int rkl_stages(double dt, double dt_explicit) {
+  if (!(dt_explicit > 0) || std::isinf(dt_explicit)) return 3;
+  const double s = std::ceil(0.5 * (std::sqrt(9 + 16 * dt / dt_explicit) - 1) - 1e-9);
+  const int stages = s < 3 ? 3 : static_cast<int>(std::fmin(s, 1e6));
+  return stages % 2 ? stages : stages + 1;
+}
+
+PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const Walls &walls,
+                               double kinematic_viscosity, double time, double dt, int stages,
+                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::viscous);
+  double second[3];
+  for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
+  const double first = stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2);  // mu~_1
+  scale_add(grid, first * dt, work.rate, nullptr, work.now);
+  if (stages > 1) clear(grid, work.before);
+  for (int j = 2; j <= stages; ++j) {
+    PetscCall(exchange.update(work.now, 1));
+    fill_wall_ghosts_velocity_change(grid, walls, time, time + stage_time(j - 1, stages) * dt, work.now, 1);
+    const kernels::RklStage c = stage_coefficients(j, stages, dt, kinematic_viscosity);
+    (grid.dimension() == 2 ? stage_2d : stage_3d)(grid, c, second, work.now, work.rate, work.before);
+    work.now.swap(work.before);
+  }
+  scale_add(grid, 1, work.now, &velocity, velocity_star);
+  scope.flops(grid.owned_count() * grid.dimension() *
+              ((stages - 1) * (grid.dimension() == 2 ? kernels::rkl_stage_flops_2d : kernels::rkl_stage_flops_3d) + 3));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

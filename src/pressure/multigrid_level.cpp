@@ -1,0 +1,123 @@
+#include "pressure/multigrid_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// A last cell stays between half and twice as wide as the others, and the next number of cells is even if it can be.
+int halved(int cells, bool last_is_narrow) {
+  const int more = (cells + 1) / 2;
+  if (cells % 2 == 0 || cells == 1) return more;
+  return more % 2 == 0 && !last_is_narrow ? more : cells / 2;
+}
+
+int parent_of(int cell, int stride, int coarse_cells) { return std::min(cell / stride, coarse_cells - 1); }
+
+std::vector<double> centres(const std::vector<double> &widths) {
+  std::vector<double> centre;
+  double edge = 0;
+  for (const double w : widths) {
+    centre.push_back(edge + w / 2);
+    edge += w;
+  }
+  return centre;
+}
+
+}  // namespace
+
+MultigridLevel::MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &finest_spacing)
+    : grid_(std::move(grid)), exchange_(grid_), widths_(widths), finest_spacing_(finest_spacing) {
+  double diagonal = 0;
+  for (int d = 0; d < 3; ++d) {
+    const std::vector<double> &w = widths_[d];
+    const int cells = grid_.cells()[d], begin = grid_.layout().begin[d];
+    const double h = finest_spacing[d];
+    for (int local = 0; local <= grid_.owned()[d]; ++local) {
+      const int g = (begin + local) % cells, below = (g + cells - 1) % cells, above = (g + 1) % cells;
+      const bool low_wall = grid_.boundary(d) == Boundary::wall && g == 0;
+      const bool high_wall = grid_.boundary(d) == Boundary::wall && g == cells - 1;
+      low_[d].push_back(cells == 1 || low_wall ? 0 : 2 / (h * h * w[g] * (w[g] + w[below])));
+      high_[d].push_back(cells == 1 || high_wall ? 0 : 2 / (h * h * w[g] * (w[g] + w[above])));
+    }
+    if (cells > 1) diagonal += 2 / (h * h * w[0] * w[0]);
+  }
+  step_ = diagonal > 0 ? -1 / diagonal : 0;
+}
+
+std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
+  // Beyond this ratio of spacings the stiffer direction goes first: relaxation smooths little along the other.
+  constexpr double about_equal = 1.25;
+  Int3 cells = grid_.cells();
+  Widths widths;
+  double smallest = HUGE_VAL;
+  for (int d = 0; d < 3; ++d)
+    if (cells[d] > 1) smallest = std::min(smallest, widths_[d][0] * finest_spacing_[d]);
+  for (int d = 0; d < 3; ++d) {
+    const bool halve = cells[d] > 1 && widths_[d][0] * finest_spacing_[d] <= about_equal * smallest;
+    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0]);
+    widths[d].assign(cells[d], 0.0);
+    for (int i = 0; i < grid_.cells()[d]; ++i) widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
+  }
+  return std::make_unique<MultigridLevel>(grid_.coarse(cells, false), widths, finest_spacing_);
+}
+
+std::unique_ptr<MultigridLevel> MultigridLevel::everywhere() const {
+  return std::make_unique<MultigridLevel>(grid_.coarse(grid_.cells(), true), widths_, finest_spacing_);
+}
+
+bool MultigridLevel::well_shared() const {
+  for (int rank = 0; rank < grid_.ranks(); ++rank) {
+    const Int3 owned = grid_.layout_of(rank).cells;
+    for (int d = 0; d < 3; ++d)
+      if (grid_.processors(d) > 1 && owned[d] < 2) return false;
+  }
+  return true;
+}
+
+LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const {
+  const int fine_cells = grid_.cells()[d], coarse_cells = coarse.grid_.cells()[d];
+  const int fine_begin = grid_.layout().begin[d], coarse_begin = coarse.grid_.layout().begin[d];
+  const int coarse_owned = coarse.grid_.owned()[d];
+  const std::vector<double> &fine_width = widths_[d], &coarse_width = coarse.widths_[d];
+  const std::vector<double> fine_centre = centres(fine_width), coarse_centre = centres(coarse_width);
+  const bool wall = grid_.boundary(d) == Boundary::wall;
+  LineTransfer line;
+  line.stride = coarse_cells < fine_cells ? 2 : 1;
+  line.first = line.stride * coarse_begin - fine_begin;
+  for (int m = 0; m < 3; ++m)
+    for (int I = 0; I < coarse_owned; ++I) {
+      const int g = coarse_begin + I, child = line.stride * g + m;
+      const bool exists = child < fine_cells && parent_of(child, line.stride, coarse_cells) == g;
+      line.weight[m].push_back(exists ? fine_width[child] / coarse_width[g] : 0);
+    }
+  // Which way the neighbour lies, and its share, for a fine cell of global index g.
+  const auto neighbour = [&](int g, double *share) {
+    const int parent = parent_of(g, line.stride, coarse_cells);
+    const double distance = fine_centre[g] - coarse_centre[parent];
+    const int way = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + way;
+    *share = 0;
+    if (way == 0 || coarse_cells == 1 || (wall && (other < 0 || other >= coarse_cells))) return 0;
+    *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
+    return way;
+  };
+  for (int i = 0; i < grid_.owned()[d]; ++i) {
+    double share;
+    const int way = neighbour(fine_begin + i, &share);
+    line.parent.push_back(parent_of(fine_begin + i, line.stride, coarse_cells) - coarse_begin);
+    line.neighbour.push_back(line.parent.back() + way);
+    line.share.push_back(share);
+  }
+  for (int I = -1; I <= coarse_owned; ++I) {
+    const int g = line.stride * (coarse_begin + I);
+    double low = 0, high = 0;
+    if (g >= 0 && g < fine_cells) neighbour(g, &low);
+    if (g + 1 >= 0 && g + 1 < fine_cells) neighbour(g + 1, &high);
+    line.share_low.push_back(low);
+    line.share_high.push_back(high);
+  }
+  return line;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,61 @@
+// One level of the V-cycle: cells that are equal but for the last one of a direction (wider or narrower where the
+// number of cells was odd), their Laplacian as couplings along lines, and the lines of the transfer to the next level.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "kernels/poisson.hpp"
+
+namespace eulastic {
+
+/// Between the cells of two levels along one direction, local indices. The children of coarse cell I begin at
+/// first + stride I; there are two of them, or one (stride 1, or a last cell that stays alone), or three.
+struct LineTransfer {
+  int first = 0, stride = 1;
+  std::vector<double> weight[3];       ///< [child][I]: its share of the volume of I, 0 where there is no such child
+  std::vector<int> parent, neighbour;  ///< of fine cell i: its coarse cell and the one on its own side of the centre
+  std::vector<double> share;           ///< of the neighbour, in linear interpolation; 0 at walls
+  std::vector<double> share_low, share_high;  ///< [I + 1]: the same for the two halves of I, -1 <= I <= cells
+
+  double *low() { return share_low.data() + 1; }
+  const double *low() const { return share_low.data() + 1; }
+  const double *high() const { return share_high.data() + 1; }
+};
+
+class MultigridLevel {
+public:
+  using Widths = std::array<std::vector<double>, 3>;  ///< of all cells, in units of the finest spacing
+
+  MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &finest_spacing);
+  MultigridLevel(const MultigridLevel &) = delete;
+
+  const Grid &grid() const { return grid_; }
+  GhostExchange &exchange() { return exchange_; }
+  bool single_cell() const { return grid_.cell_count() == 1; }
+  /// 1 / (sum over directions of -2/h^2): the step of an undamped relaxation.
+  double step() const { return step_; }
+  kernels::LineCoefficients coefficients(int j, int k) const {
+    return {low_[0].data(), high_[0].data(), low_[1][j], high_[1][j], low_[2][k], high_[2][k]};
+  }
+
+  /// The next coarser level: halved in the directions whose spacing is about the smallest one.
+  std::unique_ptr<MultigridLevel> coarser() const;
+  /// The same cells, all of them on every rank.
+  std::unique_ptr<MultigridLevel> everywhere() const;
+  /// Whether every rank has at least two cells in every direction that is still divided.
+  bool well_shared() const;
+  /// The transfer to `coarse` along direction d.
+  LineTransfer transfer(const MultigridLevel &coarse, int d) const;
+
+  FieldBlock rhs, solution, scratch;  ///< empty until allocated: the finest level works on its caller's
+  std::array<LineTransfer, 3> lines;  ///< to the next level
+
+private:
+  Grid grid_;
+  GhostExchange exchange_;
+  Widths widths_;
+  Real3 finest_spacing_;
+  std::array<std::vector<double>, 3> low_, high_;  ///< of owned cells and the first high ghost
+  double step_ = 0;
+};
+
+}  // namespace eulastic

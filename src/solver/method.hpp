@@ -1,0 +1,46 @@
+// The parts of the scheme, each by itself, and the two presets made of them.
+#pragma once
+
+namespace eulastic {
+
+enum class MethodKind { fast, classic };
+enum class TimeIntegrator { staggered, euler };
+enum class ViscousScheme { rkl, explicit_euler };
+enum class InterfaceScheme { thinc, weno5 };
+enum class SolidExterior { extrapolate, identity };
+enum class PressureKind { acm, smac };
+
+/// The initialisers are the paper's method.
+struct Method {
+  MethodKind kind = MethodKind::classic;
+  TimeIntegrator integrator = TimeIntegrator::euler;
+  ViscousScheme viscous = ViscousScheme::explicit_euler;
+  InterfaceScheme interface = InterfaceScheme::weno5;
+  SolidExterior exterior = SolidExterior::identity;
+  PressureKind pressure = PressureKind::acm;
+  int acm_sweeps_max = 1;
+  double acm_tolerance = 1e-4;  ///< on rms(div v) h/U
+  int acm_memory = 0;           ///< increments of earlier steps kept as directions
+  bool acm_coarse = false;      ///< sweep along a V-cycle of D, else along D
+
+  bool staggered() const { return integrator == TimeIntegrator::staggered; }
+  /// One step of (11)-(13) and nothing else.
+  bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
+};
+
+/// `-method classic` or `fast`.
+inline Method method_preset(MethodKind kind) {
+  Method method;
+  if (kind == MethodKind::classic) return method;
+  method.kind = MethodKind::fast;
+  method.integrator = TimeIntegrator::staggered;
+  method.viscous = ViscousScheme::rkl;
+  method.interface = InterfaceScheme::thinc;
+  method.exterior = SolidExterior::extrapolate;
+  method.acm_sweeps_max = 50;
+  method.acm_memory = 2;
+  method.acm_coarse = true;
+  return method;
+}
+
+}  // namespace eulastic
