@@ -79,14 +79,16 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, in
 
 void ActiveSegments::build(const Grid &grid, ConstView value, double threshold, int low, int high) {
   start({0, 0, 0}, {grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)});
-  build_rows(grid, value, [threshold](double q) { return q >= threshold; }, 1, low, high);
+  build_rows(
+      grid, value, [threshold](double q) { return q >= threshold; }, 1, low, high);
 }
 
 void ActiveSegments::build_band(const Grid &grid, ConstView value, int margin) {
   const Int3 &n = grid.owned();
   const int margin_z = grid.dimension() == 3 ? margin : 0;
   start({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
-  build_rows(grid, value, [](double q) { return (q != 0) | (q != 1) << 1; }, 3, 1, 1);
+  build_rows(
+      grid, value, [](double q) { return (q != 0) | (q != 1) << 1; }, 3, 1, 1);
 }
 
 void ActiveSegments::build_faces(const ActiveSegments &cells) {
@@ -98,7 +100,8 @@ void ActiveSegments::build_faces(const ActiveSegments &cells) {
       std::fill(mask_.begin(), mask_.end(), 0);
       const auto paint = [&](int row_j, int row_k) {
         for (const Segment &s : cells.row(row_j, row_k))
-          std::fill_n(mask_.begin() + (s.i_begin - begin[0]), std::min(s.size() + 1, begin[0] + points_x_ - s.i_begin), 1);
+          std::fill_n(mask_.begin() + (s.i_begin - begin[0]), std::min(s.size() + 1, begin[0] + points_x_ - s.i_begin),
+                      1);
       };
       paint(j, k);
       if (j > begin[1]) paint(j - 1, k);

@@ -8,8 +8,6 @@
 namespace eulastic {
 namespace {
 
-enum Work { slope_field, flux_field, solid_field };
-
 // Local cells begin <= (i, j, k) < end.
 struct Box {
   Int3 begin, end;
@@ -21,44 +19,45 @@ struct Box {
   }
 };
 
-// One direction of one transport.
+// One direction of one transport; the strides begin with its own.
 struct Sweep {
   int direction;
   Box cells;
   double rate;  // dt/h
-  std::ptrdiff_t stride[3];  // of the direction first
+  std::ptrdiff_t stride[3];
   ConstView velocity;
   View phi, slope, flux, solid;
-  const ActiveSegments *active_cells, *active_faces;
 };
 
-template <class Body>
-EULASTIC_INLINE void for_segments(const ActiveSegments &active, const Box &box, Body &&body) {
+// The pieces of the active segments in a box.
+std::vector<Segment> inside(const ActiveSegments &active, const Box &box) {
+  std::vector<Segment> pieces;
   for (int k = box.begin[2]; k < box.end[2]; ++k)
     for (int j = box.begin[1]; j < box.end[1]; ++j)
       for (const Segment &s : active.row(j, k)) {
-        const Segment part{std::max(s.i_begin, box.begin[0]), std::min(s.i_end, box.end[0]), j, k};
-        if (part.size() > 0) body(part);
+        const Segment piece{std::max(s.i_begin, box.begin[0]), std::min(s.i_end, box.end[0]), j, k};
+        if (piece.size() > 0) pieces.push_back(piece);
       }
+  return pieces;
 }
 
 template <int Dim>
-EULASTIC_INLINE void sweep_band(const Sweep &t) {
-  const int d = t.direction;
+EULASTIC_INLINE void sweep_band(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
   const std::ptrdiff_t step = t.stride[0];
-  for_segments(*t.active_cells, t.cells.grown(d, 1, 1), [&](const Segment &s) __attribute__((always_inline)) {
+  for (const Segment &s : inside(cells, t.cells.grown(t.direction, 1, 1)))
     kernels::interface_slope<Dim>(s, t.phi, t.stride, t.slope.row(s.j, s.k));
-  });
-  for_segments(*t.active_faces, t.cells.grown(d, 0, 1), [&](const Segment &s) __attribute__((always_inline)) {
+  for (const Segment &s : inside(faces, t.cells.grown(t.direction, 0, 1)))
     kernels::interface_flux(s, t.phi, t.slope, t.velocity, step, t.rate, t.flux.row(s.j, s.k));
-  });
-  for_segments(*t.active_cells, t.cells, [&](const Segment &s) __attribute__((always_inline)) {
+  for (const Segment &s : inside(cells, t.cells))
     kernels::apply_flux(s, t.flux, t.velocity, t.solid, step, t.rate, t.phi.row(s.j, s.k));
-  });
 }
 
-EULASTIC_CLONES void sweep_2d(const Sweep &t) { sweep_band<2>(t); }
-EULASTIC_CLONES void sweep_3d(const Sweep &t) { sweep_band<3>(t); }
+EULASTIC_CLONES void sweep_2d(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+  sweep_band<2>(t, cells, faces);
+}
+EULASTIC_CLONES void sweep_3d(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+  sweep_band<3>(t, cells, faces);
+}
 
 // phi of the cell behind each wall is that of the cell before it; also behind the wall of a neighbour.
 void reflect_at_walls(const Grid &grid, View phi) {
@@ -117,7 +116,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const int dimension = grid_->dimension();
   const Int3 order = order_of_directions(dimension, step);
   const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
-  const View phi = fraction[0], solid = work_[solid_field];
+  const View phi = fraction[0], solid = work_[2];
   reflect_at_walls(*grid_, phi);
   cells_.build_band(*grid_, phi, dimension);
   faces_.build_faces(cells_);
@@ -125,15 +124,16 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
     for (int i = s.i_begin; i < s.i_end; ++i) solid(i, s.j, s.k) = phi(i, s.j, s.k) > 0.5;
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    const Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {phi.stride(d), phi.stride(e), phi.stride(f)},
-                      velocity[d], phi, work_[slope_field], work_[flux_field], solid, &cells_, &faces_};
+    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, work_[0], work_[1], solid};
+    for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
     if (dimension == 2)
-      sweep_2d(sweep);
+      sweep_2d(sweep, cells_, faces_);
     else
-      sweep_3d(sweep);
+      sweep_3d(sweep, cells_, faces_);
     reflect_at_walls(*grid_, phi);
   }
-  scope.flops(dimension * (cells_.points() * (kernels::slope_flops(dimension) + kernels::apply_flux_flops) +
+  const double slope_flops = dimension == 2 ? kernels::interface_slope_flops_2d : kernels::interface_slope_flops_3d;
+  scope.flops(dimension * (cells_.points() * (slope_flops + kernels::apply_flux_flops) +
                            faces_.points() * kernels::interface_flux_flops));
   PetscFunctionReturn(0);
 }

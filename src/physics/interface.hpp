@@ -1,4 +1,4 @@
-// Sharp, conservative transport of the solid fraction (4): THINC/WLIC, split by direction.
+// Sharp, conservative transport of the solid fraction (4): THINC/SW (kernels/thinc.hpp), split by direction.
 //
 // The dilation of each direction is taken with the same [phi^n > 1/2] (Weymouth & Yue, JCP 229, 2010): a discretely
 // solenoidal velocity keeps the volume to round-off, and 0 <= phi <= 1 as long as sum |u_d| dt/h_d < 1/2.
