@@ -1,20 +1,21 @@
-// The verbs of the explicit step with the arguments that tests vary.
+// The verbs of the classic step with the arguments that tests vary.
 #pragma once
 
 #include "physics/momentum.hpp"
+#include "physics/transport.hpp"
 
 namespace eulastic::test {
 
-/// (7) at `time`, WENO5's velocity scale 1.
+/// (7) at `time`, explicit Euler, WENO5's velocity scale 1.
 inline PetscErrorCode predict(const Grid &grid, const Fluid &fluid, double time, double dt, const FieldBlock &velocity,
                               const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &out) {
-  return predict_velocity(grid, fluid, time, dt, 1, velocity, pressure, phases, out);
+  return predict_velocity(grid, fluid, {time, dt, 1, {}}, velocity, pressure, phases, out);
 }
 
-/// (8) and (9).
-inline PetscErrorCode correct(const Grid &grid, double density, double dt, const FieldBlock &increment,
-                              const FieldBlock &velocity_star, FieldBlock &velocity, FieldBlock &pressure) {
-  return correct_velocity(grid, density, dt, increment, velocity_star, velocity, pressure);
+/// (5), explicit Euler, reset below one per cent.
+inline PetscErrorCode transport(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+                                FieldBlock &next) {
+  return transport_tensor(grid, {reset_below_one_per_cent, dt, false}, velocity, phase, phase.tensor, next);
 }
 
 }  // namespace eulastic::test

@@ -1,5 +1,4 @@
 // Active segments: a superset, no larger than promised, aligned; and a step that does not see what was skipped.
-#include "physics/transport.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -138,7 +137,7 @@ void compare_steps(bool flat, double y) {
     star[all] = FieldBlock(scene.grid, scene.grid.dimension());
     next[all] = FieldBlock(scene.grid, phase.tensor.count());
     ASSERT_EQ(predict(scene.grid, spec.fluid, 2, 0.1, state.velocity, state.pressure, state.phases, star[all]), 0);
-    ASSERT_EQ(transport_tensor(scene.grid, 0.1, state.velocity, phase, next[all]), 0);
+    ASSERT_EQ(transport(scene.grid, 0.1, state.velocity, phase, next[all]), 0);
   }
   EXPECT_LT(points[0], 0.6 * points[1]);
   EXPECT_GT(rms_error(scene.grid, next[0][0], at_centre, [](double, double, double) { return 1.0; }), 1e-2);
