@@ -1,0 +1,90 @@
+// Kernels alone, row by row on a block of 64 x 16 x 16 cells that stays in the caches.
+#include "../support/scene.hpp"
+#include "kernels/elastic.hpp"
+#include "kernels/momentum.hpp"
+#include "kernels/upper_convected.hpp"
+#include "kernels/weno5.hpp"
+#include "machine.hpp"
+
+#include <vector>
+
+using namespace eulastic;
+
+namespace {
+
+struct Block {
+  Grid grid;
+  FieldBlock fields;
+  std::vector<Segment> rows;
+  std::vector<double> rate, carried[3];
+  double inverse[3]{64, 16, 16};
+  kernels::Directions directions{};
+
+  Block() {
+    GridSpec spec;
+    spec.cells = {64, 16, 16};
+    (void)grid.create(PETSC_COMM_SELF, spec);
+    fields = FieldBlock(grid, 10);
+    for (std::size_t i = 0; i < fields.bytes() / sizeof(double); ++i) fields.data()[i] = 1 + 0.1 * std::sin(0.37 * i);
+    rows = grid.rows();
+    rate.resize(64);
+    for (auto &row : carried)
+      for (int i = 0; i < 64; ++i) row.push_back(std::sin(0.9 * i));
+    directions = {1, fields[0].sy, fields[0].sz, 64, 16, 16};
+  }
+};
+
+EULASTIC_CLONES void carry(Block &b) {
+  for (const Segment &s : b.rows)
+    for (int d = 0; d < 3; ++d) kernels::carry_velocity(s, b.fields[d], d, at_face[0].data(), 3, b.carried[d].data());
+}
+
+EULASTIC_CLONES void weno5(Block &b) {
+  const double *velocity[3] = {b.carried[0].data(), b.carried[1].data(), b.carried[2].data()};
+  for (const Segment &s : b.rows)
+    kernels::subtract_advection<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
+}
+
+EULASTIC_CLONES void viscous(Block &b) {
+  for (const Segment &s : b.rows)
+    kernels::add_viscous_pressure_force<3>(s, b.fields[0], 1, b.inverse, b.fields[3], 1, 64, 1, b.rate.data());
+}
+
+EULASTIC_CLONES void elastic(Block &b) {
+  const std::ptrdiff_t stride[3] = {b.directions.a, b.directions.b, b.directions.c};
+  const kernels::TensorViews views{b.fields[4], b.fields[5], b.fields[6], b.fields[9], b.fields[8]};
+  for (const Segment &s : b.rows)
+    kernels::add_elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1, b.rate.data());
+}
+
+EULASTIC_CLONES void stretch_diagonal(Block &b) {
+  for (const Segment &s : b.rows)
+    kernels::add_diagonal_stretch<3>(s, b.fields[4], b.fields[9], b.fields[8], b.fields[0], b.directions,
+                                     b.rate.data());
+}
+
+EULASTIC_CLONES void stretch_shear(Block &b) {
+  for (const Segment &s : b.rows)
+    kernels::add_shear_stretch<3>(s, b.fields[4], b.fields[5], b.fields[9], b.fields[7], b.fields[8], b.fields[0],
+                                  b.fields[1], b.directions, b.rate.data());
+}
+
+void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cell) {
+  Block block;
+  const double cells = block.grid.owned_count();
+  performance::measure(state, cells, 0, flops_per_cell * cells, [&] {
+    std::fill(block.rate.begin(), block.rate.end(), 0.0);
+    work(block);
+    benchmark::DoNotOptimize(block.rate.data());
+    return 0;
+  });
+}
+
+BENCHMARK_CAPTURE(kernel, carry_velocity, carry, 9);
+BENCHMARK_CAPTURE(kernel, weno5_advection, weno5, 3 * (kernels::weno5_flops + 3));
+BENCHMARK_CAPTURE(kernel, viscous_pressure, viscous, 3 * kernels::viscous_pressure_flops_per_direction + 5);
+BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::elastic_flops_3d);
+BENCHMARK_CAPTURE(kernel, stretch_diagonal, stretch_diagonal, kernels::stretch_diagonal_flops_3d);
+BENCHMARK_CAPTURE(kernel, stretch_shear, stretch_shear, kernels::stretch_shear_flops_3d);
+
+}  // namespace

@@ -1,0 +1,73 @@
+#include "machine.hpp"
+
+#include "kernels/isa.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace eulastic::performance {
+namespace {
+
+constexpr int rounds = 20000;
+
+// `Lanes` independent chains of fused multiply-adds: enough vectors to hide the latency, few enough for the registers.
+template <int Lanes>
+EULASTIC_INLINE void multiply_add(double *values) {
+  double x[Lanes];
+  for (int i = 0; i < Lanes; ++i) x[i] = values[i];
+  for (int r = 0; r < rounds; ++r) {
+#pragma omp simd
+    for (int i = 0; i < Lanes; ++i) x[i] = kernels::fma(x[i], 0.999, 0.001);
+  }
+  for (int i = 0; i < Lanes; ++i) values[i] = x[i];
+}
+EULASTIC_CLONES void multiply_add_40(double *values) { multiply_add<40>(values); }
+EULASTIC_CLONES void multiply_add_96(double *values) { multiply_add<96>(values); }
+
+EULASTIC_CLONES void triad(std::ptrdiff_t n, double *a, const double *b, const double *c, double s) {
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < n; ++i) a[i] = kernels::fma(s, c[i], b[i]);
+}
+
+// Least time of one call of `work` in seconds.
+template <class Work>
+double least_time(int calls, Work work) {
+  double least = 1e30;
+  for (int n = 0; n < calls; ++n) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  return least;
+}
+
+}  // namespace
+
+double peak_flops() {
+  static const double peak = [] {
+    std::vector<double> values(96, 0.5);
+    const auto run = [&](int lanes, void (*work)(double *)) {
+      return 2.0 * lanes * rounds / least_time(200, [&] {
+               work(values.data());
+               benchmark::DoNotOptimize(values.data());
+             });
+    };
+    return std::max(run(40, multiply_add_40), run(96, multiply_add_96));
+  }();
+  return peak;
+}
+
+double triad_bandwidth() {
+  static const double bandwidth = [] {
+    const std::ptrdiff_t n = 1 << 23;
+    std::vector<double> a(n), b(n, 1), c(n, 2);
+    return 24.0 * n / least_time(10, [&] {
+             triad(n, a.data(), b.data(), c.data(), 3);
+             benchmark::DoNotOptimize(a.data());
+           });
+  }();
+  return bandwidth;
+}
+
+}  // namespace eulastic::performance
