@@ -84,6 +84,69 @@ TEST(ActiveSegments, CoverWhatIsActiveAndLittleMore) {
     }
 }
 
+bool covers(const ActiveSegments &segments, int i, int j, int k) {
+  for (const Segment &s : segments.row(j, k))
+    if (s.i_begin <= i && i < s.i_end) return true;
+  return false;
+}
+
+// The band: cells that with their neighbours are neither all empty nor all full; its faces: those and the next ones.
+TEST(ActiveSegments, BandAndItsFaces) {
+  Random random(2);
+  for (const Int3 &cells : {Int3{61, 4, 5}, Int3{40, 7, 1}})
+    for (const int margin : {0, 2})
+      for (const double share : {0.0, 0.002, 0.03, 1.0})
+        for (const double rest : {0.0, 1.0, 0.4}) {
+          Grid grid;
+          GridSpec spec;
+          spec.cells = cells;
+          spec.boundary[1] = Boundary::wall;
+          ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+          const bool flat = grid.dimension() == 2;
+          FieldBlock value(grid, 1);
+          fill_everywhere(grid, value[0], at_centre,
+                          [&](const Point &) { return std::fabs(random()) < share ? 0.5 : rest; });
+          ActiveSegments band, faces;
+          band.build_band(grid, value[0], margin);
+          faces.build_faces(band);
+          int idle = 0, points = 0;
+          const int mz = flat ? 0 : margin;
+          for (int k = -mz; k < cells[2] + mz; ++k)
+            for (int j = -margin; j < cells[1] + margin; ++j)
+              for (int i = -margin; i < cells[0] + margin; ++i) {
+                bool empty = true, full = true;
+                for (int dk = flat ? 0 : -1; dk <= (flat ? 0 : 1); ++dk)
+                  for (int dj = -1; dj <= 1; ++dj)
+                    for (int di = -1; di <= 1; ++di) {
+                      empty = empty && value[0](i + di, j + dj, k + dk) == 0;
+                      full = full && value[0](i + di, j + dj, k + dk) == 1;
+                    }
+                const bool in_band = covers(band, i, j, k), active = !empty && !full;
+                EXPECT_TRUE(in_band || !active) << i << " " << j << " " << k;
+                idle += in_band && !active;
+                points += in_band;
+                if (!in_band) continue;
+                EXPECT_TRUE(covers(faces, i, j, k));
+                if (i + 1 < cells[0] + margin) {
+                  EXPECT_TRUE(covers(faces, i + 1, j, k));
+                }
+                if (j + 1 < cells[1] + margin) {
+                  EXPECT_TRUE(covers(faces, i, j + 1, k));
+                }
+                if (k + 1 < cells[2] + mz) {
+                  EXPECT_TRUE(covers(faces, i, j, k + 1));
+                }
+              }
+          EXPECT_EQ(band.points(), points);
+          if (share == 0 && rest != 0.4) {
+            EXPECT_EQ(points, 0);
+          }
+          if (share == 1) {
+            EXPECT_EQ(idle, 0);
+          }
+        }
+}
+
 TEST(ActiveSegments, AllIsEveryPoint) {
   Grid grid;
   GridSpec spec;
