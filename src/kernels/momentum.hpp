@@ -7,7 +7,7 @@ namespace eulastic::kernels {
 
 inline constexpr double viscous_pressure_flops_per_direction = 6;
 
-/// rate += nu lap q - (p - p[-step]) pressure_factor + force. `second[d]` = 1/h_d^2; p may be null (no pressure term).
+/// rate += nu lap q - (p - p[-step]) pressure_factor + force. `second[d]` = 1/h_d^2.
 template <int Dim>
 EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, double viscosity, const double *second,
                                                 ConstView p, std::ptrdiff_t step, double pressure_factor,
