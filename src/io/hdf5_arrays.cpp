@@ -7,7 +7,7 @@ namespace eulastic {
 PetscErrorCode Hdf5File::verify(const std::string &name, std::uint64_t sum) {
   std::string stored;
   PetscFunctionBeginUser;
-  if (H5Aexists_by_name(file_.get(), name.c_str(), "checksum", H5P_DEFAULT) <= 0) PetscFunctionReturn(0);
+  if (!has_attribute(name, "checksum")) PetscFunctionReturn(0);
   PetscCall(read_attribute(name, "checksum", &stored));
   PetscCall(check(stored == checksum_text(sum), "dataset " + name + " is damaged (its checksum differs)"));
   PetscFunctionReturn(0);
@@ -50,8 +50,11 @@ template PetscErrorCode Hdf5File::write_array(const std::string &, const std::ve
                                               const std::vector<double> &);
 template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<hsize_t> &,
                                               const std::vector<long> &);
+template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<hsize_t> &,
+                                              const std::vector<unsigned char> &);
 template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<double> *);
 template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<long> *);
+template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<unsigned char> *);
 
 PetscErrorCode Hdf5File::write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
                                              const Hdf5Space &space, const void *value) {

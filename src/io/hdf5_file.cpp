@@ -15,6 +15,7 @@ Hdf5Property parallel_access(MPI_Comm comm) {
   (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
   Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
   (void)H5Pset_fapl_mpio(access.get(), comm, MPI_INFO_NULL);
+  (void)H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);  // its metadata have checksums
   (void)H5Pset_all_coll_metadata_ops(access.get(), true);
   (void)H5Pset_coll_metadata_write(access.get(), true);
   return access;
@@ -85,6 +86,22 @@ Hdf5File::~Hdf5File() {
 
 bool Hdf5File::has(const std::string &dataset) const {
   return H5Lexists(file_.get(), dataset.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> Hdf5File::datasets() const {
+  std::vector<std::string> names;
+  H5G_info_t info{};
+  (void)H5Gget_info(file_.get(), &info);
+  for (hsize_t n = 0; n < info.nlinks; ++n) {
+    char name[256] = "";
+    (void)H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, sizeof name, H5P_DEFAULT);
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+bool Hdf5File::has_attribute(const std::string &object, const std::string &name) const {
+  return H5Aexists_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
 PetscErrorCode Hdf5File::open_dataset(const std::string &name, Hdf5Dataset *dataset) const {

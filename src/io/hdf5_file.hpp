@@ -45,7 +45,7 @@ public:
   /// wall the dataset may have N + 1 points; if it has N, the high wall is left as it is. Ghosts are untouched.
   PetscErrorCode read_field(const Grid &grid, const std::string &name, const Staggering &staggering, View field);
 
-  /// Small arrays, the same on every rank; T = double or long.
+  /// Small arrays, the same on every rank; T = double, long or unsigned char (text).
   template <class T>
   PetscErrorCode write_array(const std::string &name, const std::vector<hsize_t> &shape, const std::vector<T> &values);
   template <class T>
@@ -61,6 +61,9 @@ public:
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, double *value);
 
   bool has(const std::string &dataset) const;
+  bool has_attribute(const std::string &object, const std::string &name) const;
+  /// Names at the root of the file.
+  std::vector<std::string> datasets() const;
 
 private:
   struct Box {

@@ -62,6 +62,11 @@ inline hid_t hdf5_type<long>() {
   return H5T_NATIVE_LONG;
 }
 
+template <>
+inline hid_t hdf5_type<unsigned char>() {
+  return H5T_NATIVE_UCHAR;
+}
+
 /// A string of fixed length (parallel HDF5 has no others).
 inline Hdf5Type hdf5_string(std::size_t length) {
   Hdf5Type type(H5Tcopy(H5T_C_S1));

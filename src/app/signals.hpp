@@ -1,0 +1,11 @@
+// Signals that ask a run to write a checkpoint and end: SIGUSR1, SIGTERM, SIGINT.
+#pragma once
+
+namespace eulastic {
+
+/// Local. Call after PetscInitialize, which has handlers of its own. A second SIGINT ends the process at once.
+void catch_signals();
+/// Local: whether this process has been asked. All ranks must agree before anything is done about it.
+bool signal_caught();
+
+}  // namespace eulastic

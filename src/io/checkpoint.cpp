@@ -1,0 +1,126 @@
+#include "io/checkpoint.hpp"
+
+#include "base/events.hpp"
+#include "io/fail_together.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char *kind = "eulastic checkpoint";
+constexpr long format = 1;  // raised whenever a file means something else
+
+template <class T>
+PetscErrorCode write_all(Hdf5File &file, const std::map<std::string, std::vector<T>> &arrays) {
+  PetscFunctionBeginUser;
+  for (const auto &[name, values] : arrays) PetscCall(file.write_array(name, {hsize_t(values.size())}, values));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+std::string checkpoint_name(long step) {
+  char name[40];
+  std::snprintf(name, sizeof name, "checkpoint_%08ld.h5", step);
+  return name;
+}
+
+long checkpoint_step(const std::string &path) {
+  static const std::regex pattern("checkpoint_([0-9]{1,18})\\.h5");
+  const std::string name = fs::path(path).filename();
+  std::smatch match;
+  return std::regex_match(name, match, pattern) ? std::stol(match[1]) : -1;
+}
+
+std::vector<std::string> list_checkpoints(const std::string &directory) {
+  std::vector<std::string> paths;
+  std::error_code error;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    if (checkpoint_step(it->path()) >= 0) paths.push_back(it->path());
+  std::sort(paths.begin(), paths.end(),
+            [](const std::string &a, const std::string &b) { return checkpoint_step(a) > checkpoint_step(b); });
+  return paths;
+}
+
+PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const std::string &options,
+                                const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::write);
+  Hdf5File file;
+  PetscCall(file.create(grid.comm(), path));
+  PetscCall(file.write_attribute("/", "kind", std::string(kind)));
+  PetscCall(file.write_attribute("/", "format", format));
+  PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
+  const std::vector<unsigned char> text(options.begin(), options.end());
+  PetscCall(file.write_array("options", {hsize_t(text.size())}, text));
+  PetscCall(write_all(file, numbers.reals));
+  PetscCall(write_all(file, numbers.integers));
+  for (const CheckpointField &field : fields)
+    PetscCall(file.write_field(grid, {field.name, field.staggering, field.stored, true}, {field.view}));
+  PetscCall(file.commit());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
+  std::string found;
+  double number = 0;
+  PetscFunctionBeginUser;
+  PetscCall(file_.open(comm, path));
+  if (file_.has_attribute("/", "kind")) PetscCall(file_.read_attribute("/", "kind", &found));
+  PetscCall(fail_together(comm, found == kind ? "" : path + ": not a checkpoint of this program"));
+  PetscCall(file_.read_attribute("/", "format", &number));
+  PetscCall(file_.read_attribute("/", "version", &version_));
+  PetscCall(fail_together(comm, number == format ? ""
+                                                 : path + ": has format " + std::to_string(long(number)) +
+                                                       " (written by version " + version_ +
+                                                       "), this program reads format " + std::to_string(format)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::require_checksum(const std::string &dataset) {
+  std::string checksum;
+  PetscFunctionBeginUser;
+  PetscCall(file_.read_attribute(dataset, "checksum", &checksum));
+  PetscFunctionReturn(0);
+}
+
+template <class T>
+PetscErrorCode CheckpointFile::read(const std::string &name, std::vector<T> *values) {
+  std::vector<hsize_t> shape;
+  PetscFunctionBeginUser;
+  PetscCall(require_checksum(name));
+  PetscCall(file_.read_array(name, &shape, values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::read_options(std::string *options) {
+  std::vector<unsigned char> text;
+  PetscFunctionBeginUser;
+  PetscCall(read("options", &text));
+  options->assign(text.begin(), text.end());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::read_numbers(CheckpointNumbers *numbers) {
+  PetscFunctionBeginUser;
+  for (auto &[name, values] : numbers->reals) PetscCall(read(name, &values));
+  for (auto &[name, values] : numbers->integers) PetscCall(read(name, &values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::read_fields(const Grid &grid, const std::vector<CheckpointField> &fields) {
+  PetscFunctionBeginUser;
+  for (const CheckpointField &field : fields) {
+    if (field.optional && !file_.has(field.name)) continue;
+    PetscCall(require_checksum(field.name));
+    PetscCall(file_.read_field(grid, field.name, field.staggering, field.view));
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
