@@ -1,7 +1,8 @@
 // The Laplacian on lines of unequal cells, the transfers between two grids row by row, and products of rows.
 #pragma once
 
-#include "kernels/stencils.hpp"
+#include "grid/segment.hpp"
+#include "kernels/isa.hpp"
 
 #include <cstdint>
 

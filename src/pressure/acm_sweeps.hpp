@@ -1,0 +1,55 @@
+// ACM swept until the divergence is small: minimal residual over a multigrid direction and what it remembers.
+//
+// With q = dt increment, <(D - lap q)^2> is minimised first over the last increments of the previous time steps
+// (Fischer, CMAME 163, 1998), then in every sweep over V(D), a V-cycle, and the previous direction (conjugate
+// residuals). Without multigrid D itself takes the place of V(D), as in (11). Scalars only.
+#pragma once
+
+#include "pressure/minimise.hpp"
+#include "pressure/multigrid.hpp"
+#include "pressure/pressure_solver.hpp"
+
+namespace eulastic {
+
+struct AcmSweepOptions {
+  int sweeps_max = 20;    ///< at least 1; the projection on what is remembered comes before and is none
+  int memory = 2;         ///< increments of previous time steps, 0 ... 4
+  bool multigrid = true;  ///< else the direction is the divergence itself
+};
+
+class AcmSweepSolver final : public PressureSolver {
+public:
+  /// Collective; `grid` and `exchange` must outlive the solver.
+  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options);
+
+  /// The increment has zero mean. It is NaN where D is not finite anywhere.
+  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  void set_target(double rms) override { target_ = rms; }
+  long sweeps() const override { return sweeps_; }
+  /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
+  FieldBlock *memory() override;
+  /// rms of D that the last solve left, by its own account.
+  double residual_rms() const { return residual_rms_; }
+  std::size_t bytes() const;
+
+private:
+  PetscErrorCode update_ghosts(FieldBlock &field, int width);
+  PetscErrorCode start(const FieldBlock &divergence);
+  PetscErrorCode sweep(bool last, double dt, FieldBlock &increment, bool *done);
+  PetscErrorCode find_minimum(SweepMinimum *minimum, double *mean);
+  void step(bool last, double dt, const SweepMinimum &minimum, double mean, FieldBlock &increment);
+  void remember(const FieldBlock &increment);
+
+  const Grid *grid_ = nullptr;
+  GhostExchange *exchange_ = nullptr;
+  AcmSweepOptions options_;
+  std::unique_ptr<Multigrid> multigrid_;
+  FieldBlock residual_, correction_, direction_, scratch_, memory_;
+  std::vector<ConstView> directions_;  ///< of this sweep
+  std::vector<double> rows_;           ///< scratch, one row per direction and one more
+  double target_ = 0, residual_rms_ = 0;
+  long sweeps_ = 0;
+  bool ghosts_of_memory_ = true;  ///< valid
+};
+
+}  // namespace eulastic

@@ -1,0 +1,45 @@
+// A multigrid V-cycle for the Poisson equation with zero normal derivative on walls: a fixed linear operator, without
+// global sums, the same bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
+//
+// One relaxation before the coarse grid (never stored: it is folded into the restriction), a few after it with the
+// steps of a Chebyshev polynomial; restriction by volume, linear interpolation; directions of unequal spacing are
+// halved one after the other. Small levels are gathered and continued by every rank for itself, down to one cell.
+#pragma once
+
+#include "pressure/multigrid_level.hpp"
+
+namespace eulastic {
+
+class Multigrid {
+public:
+  static constexpr int halo = 2;  ///< ghost layers of the right-hand side that a cycle reads
+
+  /// Builds all levels, collectively; keeps no reference to `grid`.
+  PetscErrorCode create(const Grid &grid);
+  /// solution = V rhs, about the q with lap q = rhs. `rhs`: `halo` ghost layers valid. `solution`: one ghost layer
+  /// valid on return; `scratch` is lost. All on the grid. Ghosts behind walls are neither used (but must be finite)
+  /// nor set.
+  PetscErrorCode apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch);
+  /// Floating-point operations of one cycle on this rank.
+  double flops() const { return flops_; }
+  std::size_t bytes() const;
+  int levels() const { return static_cast<int>(levels_.size()); }
+  struct Relaxations;
+
+private:
+  using Level = std::unique_ptr<MultigridLevel>;
+  PetscErrorCode cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch);
+  const Relaxations &relaxations(const MultigridLevel &level) const;
+  PetscErrorCode gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs);
+  void take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const;
+  void restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse);
+  void prolong(const MultigridLevel &fine, const FieldBlock &rhs, const MultigridLevel &coarse, FieldBlock &solution);
+
+  std::vector<Level> levels_;              ///< the finest first
+  std::vector<double> row_[3];             ///< one row each, with margins
+  std::vector<double> packed_, gathered_;  ///< owned cells of the gathered level, of one rank and of all
+  std::vector<int> counts_, displacements_;
+  double flops_ = 0;
+};
+
+}  // namespace eulastic

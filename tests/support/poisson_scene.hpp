@@ -1,0 +1,117 @@
+// A Poisson problem lap q = D on a grid, with functions of the global cell, its residual, and all decompositions.
+#pragma once
+
+#include "field/exact_sum.hpp"
+#include "field/walls.hpp"
+#include "pressure/pressure_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace eulastic::test {
+
+using CellFunction = std::function<double(int, int, int)>;  // of the global cell
+
+// Random in (-1, 1), a function of the global index alone.
+inline double noise(int i, int j, int k) {
+  const double x = 43758.5453 * std::sin(12.9898 * i + 78.233 * j + 37.719 * k);
+  return 2 * (x - std::floor(x)) - 1;
+}
+
+inline double global_sum(const Grid &grid, const CellFunction &local) {
+  ExactSums sum(1);
+  std::vector<double> row(grid.owned()[0]);
+  for (const Segment &s : grid.rows()) {
+    for (int i = 0; i < s.i_end; ++i) row[i] = local(i, s.j, s.k);
+    sum.add_row(0, row.data(), s.i_end, grid.layout().begin[0]);
+  }
+  double total = 0;
+  EXPECT_EQ(sum.reduce(grid.comm(), &total), 0);
+  return total;
+}
+
+struct PoissonScene {
+  static constexpr double dt = 0.37;
+  Grid grid;
+  std::unique_ptr<GhostExchange> exchange;
+  FieldBlock divergence, pressure, increment;
+
+  PoissonScene(MPI_Comm comm, const GridSpec &spec) {
+    EXPECT_EQ(grid.create(comm, spec), 0);
+    exchange = std::make_unique<GhostExchange>(grid);
+    divergence = FieldBlock(grid, 1);
+    pressure = FieldBlock(grid, 1);
+    increment = FieldBlock(grid, 1);
+    increment.fill(0, std::nan(""));  // so that a ghost nobody filled shows
+  }
+  void set(const CellFunction &f, bool without_mean = true) {
+    const Layout &own = grid.layout();
+    for (const Segment &s : grid.rows())
+      for (int i = 0; i < s.i_end; ++i)
+        divergence[0](i, s.j, s.k) = f(own.begin[0] + i, own.begin[1] + s.j, own.begin[2] + s.k);
+    const ConstView D = divergence[0];
+    const double mean = without_mean ? global_sum(grid, D) / grid.cell_count() : 0;
+    for (const Segment &s : grid.rows())
+      for (int i = 0; i < s.i_end; ++i) divergence[0](i, s.j, s.k) -= mean;
+    EXPECT_EQ(exchange->update(divergence, 1), 0);
+    fill_wall_ghosts_even(grid, at_centre, divergence[0], 1);
+  }
+  // D - dt lap increment, from the ghosts of the increment.
+  double residual(int i, int j, int k) const {
+    const ConstView q = increment[0];
+    double laplacian = 0;
+    for (int d = 0; d < grid.dimension(); ++d) {
+      const double *at = q.row(j, k) + i;
+      const double h = grid.spacing()[d];
+      laplacian += (at[-q.stride(d)] - 2 * at[0] + at[q.stride(d)]) / (h * h);
+    }
+    return divergence[0](i, j, k) - dt * laplacian;
+  }
+  double rms(const CellFunction &local) const {
+    return std::sqrt(global_sum(grid, [&](int i, int j, int k) { return std::pow(local(i, j, k), 2); }) /
+                     grid.cell_count());
+  }
+  double rms_divergence() const { return rms(divergence[0]); }
+  double rms_residual() const {
+    return rms([&](int i, int j, int k) { return residual(i, j, k); });
+  }
+};
+
+inline std::vector<GridSpec> all_boundaries(const Int3 &cells) {
+  std::vector<GridSpec> specs;
+  for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8); ++walls) {
+    GridSpec spec;
+    spec.cells = cells;
+    spec.length = {1.7, 0.9, 2.3};
+    for (int d = 0; d < 3; ++d) spec.boundary[d] = walls >> d & 1 ? Boundary::wall : Boundary::periodic;
+    specs.push_back(spec);
+  }
+  return specs;
+}
+
+// Every way to share the cells of `spec` among the ranks of this run. Sums are the same only where x is not cut
+// inside a block of 256 cells.
+inline std::vector<GridSpec> all_decompositions(GridSpec spec) {
+  int ranks = 0;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  std::vector<GridSpec> specs;
+  for (int px = 1; px <= ranks; ++px)
+    for (int py = 1; py <= ranks / px; ++py) {
+      if (ranks % (px * py) || (px > 1 && spec.cells[0] < 256 * px)) continue;
+      spec.processors = {px, py, ranks / (px * py)};
+      if (Grid::why_not(spec, ranks).empty()) specs.push_back(spec);
+    }
+  return specs;
+}
+
+inline std::string name(const GridSpec &s) {
+  std::string text;
+  for (int d = 0; d < 3; ++d)
+    text += std::to_string(s.cells[d]) + (s.boundary[d] == Boundary::wall ? " wall" : " periodic") + " on " +
+            std::to_string(s.processors[d]) + "; ";
+  return text;
+}
+
+}  // namespace eulastic::test
