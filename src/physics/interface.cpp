@@ -89,19 +89,14 @@ Int3 order_of_directions(int dimension, long step) {
 }
 
 // The cells each sweep has to move so that the later ones find their neighbours: a sweep along d reads two more
-// layers in d and one more in the others. Never behind a wall.
+// layers in d and one more in the others. Behind walls only the first layer matters, and that is reflected anew.
 std::array<Box, 3> cells_of_sweeps(const Grid &grid, const Int3 &order) {
   std::array<Box, 3> boxes{};
   Int3 layers{};
   for (int s = grid.dimension() - 1; s >= 0; --s) {
     boxes[s] = {{0, 0, 0}, grid.owned()};
     for (int d = 0; d < grid.dimension(); ++d) {
-      const int begin = grid.layout().begin[d];
       boxes[s] = boxes[s].grown(d, layers[d], layers[d]);
-      if (grid.is_wall(d)) {
-        boxes[s].begin[d] = std::max(boxes[s].begin[d], -begin);
-        boxes[s].end[d] = std::min(boxes[s].end[d], grid.cells()[d] - begin);
-      }
       layers[d] += d == order[s] ? 2 : 1;
     }
   }

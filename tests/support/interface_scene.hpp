@@ -107,6 +107,12 @@ public:
               velocity[a](i, j, k) += (e == 0 ? difference : -difference) / h[b];
             }
       }
+    PetscCall(update_velocity_ghosts());
+    PetscFunctionReturn(0);
+  }
+
+  PetscErrorCode update_velocity_ghosts() {
+    PetscFunctionBeginUser;
     PetscCall(exchange_->update(velocity, 3));
     fill_wall_ghosts_velocity(grid, Walls{}, 0, velocity, 3);
     PetscFunctionReturn(0);

@@ -1,0 +1,95 @@
+// Our exp and log against those of libm in long double, and the same bits for every vector length.
+#include "kernels/exp_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+using namespace eulastic;
+
+namespace {
+
+constexpr int samples = 200003;
+
+// Difference from `exact` in units of the last place of `exact`.
+double ulps(double value, long double exact) {
+  const double rounded = std::fabs(static_cast<double>(exact));
+  const double unit = std::nextafter(rounded, INFINITY) - rounded;
+  return static_cast<double>(std::fabs((value - exact) / unit));
+}
+
+double worst_exp(double low, double high) {
+  double worst = 0;
+  for (int n = 0; n < samples; ++n) {
+    const double x = low + (high - low) * n / (samples - 1);
+    worst = std::fmax(worst, ulps(kernels::exp(x), std::exp(static_cast<long double>(x))));
+  }
+  return worst;
+}
+
+double worst_log(double low, double high) {
+  double worst = 0;
+  for (int n = 0; n < samples; ++n) {
+    const double x = low + (high - low) * n / (samples - 1);
+    if (x != 1) worst = std::fmax(worst, ulps(kernels::log(x), std::log(static_cast<long double>(x))));
+  }
+  return worst;
+}
+
+TEST(Exp, IsWithinOneUnitInTheLastPlace) {
+  EXPECT_LT(worst_exp(-7, 7), 1);
+  EXPECT_LT(worst_exp(-1e-3, 1e-3), 1);
+  EXPECT_LT(worst_exp(-700, 700), 1);
+  EXPECT_EQ(kernels::exp(0), 1);
+  EXPECT_EQ(kernels::exp(-0.0), 1);
+}
+
+TEST(Log, IsWithinOneUnitInTheLastPlace) {
+  EXPECT_LT(worst_log(1e-3, 1e3), 1);
+  EXPECT_LT(worst_log(0.5, 2), 1);
+  EXPECT_LT(worst_log(1 - 1e-6, 1 + 1e-6), 1);
+  EXPECT_LT(worst_log(1e-300, 1e-290), 1);
+  EXPECT_LT(worst_log(1e290, 1e300), 1);
+  EXPECT_EQ(kernels::log(1), 0);
+}
+
+TEST(Log, InvertsExp) {
+  for (double x = -20; x <= 20; x += 0.37) EXPECT_NEAR(kernels::log(kernels::exp(x)), x, 3e-16 * (1 + std::fabs(x)));
+}
+
+EULASTIC_INLINE void both(const double *x, double *e, double *l, int n) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    e[i] = kernels::exp(x[i]);
+    l[i] = kernels::log(e[i]);
+  }
+}
+
+[[gnu::noinline]] void baseline(const double *x, double *e, double *l, int n) { both(x, e, l, n); }
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+[[gnu::noinline, gnu::target("arch=x86-64-v4")]] void wide(const double *x, double *e, double *l, int n) {
+  both(x, e, l, n);
+}
+bool has_wide() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"); }
+#else
+void wide(const double *x, double *e, double *l, int n) { both(x, e, l, n); }
+bool has_wide() { return false; }
+#endif
+
+TEST(ExpLog, HaveTheSameBitsInEveryVectorLength) {
+  const int n = 4099;
+  std::vector<double> x(n), e(n), l(n), e2(n), l2(n);
+  for (int i = 0; i < n; ++i) x[i] = -7 + 14.0 * i / n;
+  baseline(x.data(), e.data(), l.data(), n);
+  for (int i = 0; i < n; ++i) both(&x[i], &e2[i], &l2[i], 1);
+  EXPECT_EQ(std::memcmp(e.data(), e2.data(), n * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(l.data(), l2.data(), n * sizeof(double)), 0);
+  if (!has_wide()) GTEST_SKIP() << "no AVX-512 here";
+  wide(x.data(), e2.data(), l2.data(), n);
+  EXPECT_EQ(std::memcmp(e.data(), e2.data(), n * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(l.data(), l2.data(), n * sizeof(double)), 0);
+}
+
+}  // namespace
