@@ -54,22 +54,9 @@ void add_body(const Grid &grid, const PlacedBody &body, double name, View fracti
 
 }  // namespace
 
-PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
-                          int first_label, Phase *phase) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   const auto &components = tensor_components(grid.dimension());
-  phase->species = spec.name;
-  phase->material.shear_modulus = spec.shear_modulus;
-  phase->fraction = FieldBlock(grid, 1);
-  phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
-  phase->label = FieldBlock(grid, 1);
-  const View fraction = phase->fraction[0], label = phase->label[0];
-  const Surface surface(spec, grid.dimension());
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    if (is_far(grid, places[b], surface.bounding_radius())) continue;
-    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), fraction, label);
-  }
+  const ConstView fraction = phase->fraction[0];
   for (std::size_t c = 0; c < components.size(); ++c) {
     if (components[c].a != components[c].b) continue;
     const double stretch = spec.initial_stretch[components[c].a];
@@ -79,6 +66,26 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
       for (int i = row.i_begin; i < row.i_end; ++i)
         if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;
   }
+}
+
+PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
+                          int first_label, Phase *phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  const auto &components = tensor_components(grid.dimension());
+  phase->species = spec.name;
+  phase->material.shear_modulus = spec.shear_modulus;
+  phase->material.attached = spec.shape == Shape::slab;
+  phase->fraction = FieldBlock(grid, 1);
+  phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
+  phase->label = FieldBlock(grid, 1);
+  const View fraction = phase->fraction[0], label = phase->label[0];
+  const Surface surface(spec, grid.dimension());
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    if (is_far(grid, places[b], surface.bounding_radius())) continue;
+    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), fraction, label);
+  }
+  stretch_phase(grid, spec, phase);
   PetscFunctionReturn(0);
 }
 

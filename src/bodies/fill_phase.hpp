@@ -12,4 +12,7 @@ namespace eulastic {
 PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
                           int first_label, Phase *phase);
 
+/// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere.
+void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase);
+
 }  // namespace eulastic

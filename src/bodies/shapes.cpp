@@ -109,6 +109,8 @@ double shape_volume(const SpeciesSpec &spec, int dimension) {
       return flat && spec.axis != 2 ? 2 * r : pi * r * r;
     case Shape::slab:
       return spec.interval[1] - spec.interval[0];
+    case Shape::state:
+      return 0;
   }
   return 0;
 }

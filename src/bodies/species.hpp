@@ -8,7 +8,7 @@
 
 namespace eulastic {
 
-enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab };
+enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, state };  // state: from -initial_state
 enum class Placement { one, list, lattice };
 
 struct SpeciesSpec {

@@ -15,6 +15,8 @@ void FieldBlock::fill(int f, double value) noexcept {
   std::fill_n(data_.get() + f * layout_.size, layout_.size, value);
 }
 
+void FieldBlock::clear() noexcept { std::fill_n(data_.get(), layout_.size * count_, 0.0); }
+
 void FieldBlock::copy_from(const FieldBlock &other) {
   if (count_ != other.count_ || layout_.size != other.layout_.size) {
     data_.reset(static_cast<double *>(std::aligned_alloc(64, other.bytes())));

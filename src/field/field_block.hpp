@@ -29,6 +29,8 @@ public:
 
   /// Sets field f to one value, ghosts and padding included.
   void fill(int f, double value) noexcept;
+  /// Sets everything to 0.
+  void clear() noexcept;
   /// Makes this an equal block of its own memory.
   void copy_from(const FieldBlock &other);
   void swap(FieldBlock &other) noexcept { std::swap(*this, other); }

@@ -5,18 +5,18 @@
 
 namespace eulastic::kernels {
 
-/// W_j = mu W_j-1 + nu W_j-2 + mu~ dt (viscosity lap W_j-1) + (mu~ + gamma~) dt M_0.
+/// W_j = mu W_j-1 + nu W_j-2 + mu~ dt (viscosity lap W_j-1 + c_j-1 dt M_1) + (mu~ + gamma~) dt M_0.
 struct RklStage {
-  double mu, nu, viscous, rate;  ///< viscous = mu~ dt viscosity, rate = (mu~ + gamma~) dt
+  double mu, nu, viscous, rate, slope;  ///< mu~ dt viscosity, (mu~ + gamma~) dt, mu~ dt c_j-1 dt
 };
 
 inline constexpr double rkl_stage_flops_2d = 12, rkl_stage_flops_3d = 16;
 
-/// `before` holds W_j-2 and gets W_j.
-template <int Dim>
-EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView now, ConstView rate, const double *second,
-                               View before) noexcept {
-  const double *w = now.row(s.j, s.k), *m = rate.row(s.j, s.k);
+/// `before` holds W_j-2 and gets W_j. M_1 = slope is read if WithSlope.
+template <int Dim, bool WithSlope>
+EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView now, ConstView rate, ConstView slope,
+                               const double *second, View before) noexcept {
+  const double *w = now.row(s.j, s.k), *m = rate.row(s.j, s.k), *m1 = WithSlope ? slope.row(s.j, s.k) : m;
   double *out = before.row(s.j, s.k);
   const std::ptrdiff_t sy = now.sy, sz = now.sz;
 #pragma omp simd
@@ -24,6 +24,7 @@ EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView no
     double sum = c.nu * out[i];
     sum = fma(c.mu, w[i], sum);
     sum = fma(c.rate, m[i], sum);
+    if constexpr (WithSlope) sum = fma(c.slope, m1[i], sum);
     out[i] = fma(c.viscous, laplacian<Dim>(w + i, sy, sz, second), sum);
   }
 }

@@ -21,9 +21,14 @@ struct Reach {
   }
 };
 
+// What the neighbour at `step` says of b[0]: its own value, or the line through it and the next.
+double extended(const double *b, std::ptrdiff_t step, bool linear) {
+  return linear ? 2 * b[step] - b[2 * step] : b[step];
+}
+
 }  // namespace
 
-PetscErrorCode ExteriorLayers::build(const Grid &grid, const FieldBlock &fraction) {
+PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
   if (locations_.empty()) {
@@ -35,11 +40,13 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const FieldBlock &fractio
       }
   }
   mask_.assign(static_cast<std::size_t>(grid.layout().size), outside);
-  for (Location &location : locations_) build_location(grid, fraction[0], &location);
+  for (Location &location : locations_) build_location(grid, phase, &location);
   PetscFunctionReturn(0);
 }
 
-void ExteriorLayers::build_location(const Grid &grid, ConstView fraction, Location *location) {
+void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Location *location) {
+  const ConstView fraction = phase.fraction[0];
+  const EvolveRule &rule = evolve_rule_of(phase.material);
   const Layout &layout = grid.layout();
   const Staggering &at = location->staggering;
   unsigned char *mask = mask_.data();
@@ -54,8 +61,8 @@ void ExteriorLayers::build_location(const Grid &grid, ConstView fraction, Locati
       const double *phi = fraction.row(j, k);
       unsigned char *row = mask + layout.offset(0, j, k);
       for (int i = all.begin[0]; i < all.end[0]; ++i) {
-        const bool evolves = steps ? kernels::average4(phi + i, -step[0], -step[1]) >= evolve_above_half.edge
-                                   : phi[i] >= evolve_above_half.centre;
+        const bool evolves = steps ? kernels::average4(phi + i, -step[0], -step[1]) >= rule.edge
+                                   : phi[i] >= rule.centre;
         row[i] = evolves ? 0 : outside;
       }
     }
@@ -70,13 +77,18 @@ void ExteriorLayers::build_location(const Grid &grid, ConstView fraction, Locati
         for (int i = box.begin[0]; i < box.end[0]; ++i) {
           const std::ptrdiff_t p = row + i;
           if (mask[p] != outside) continue;
-          unsigned char neighbours = 0;
+          unsigned neighbours = 0, second = 0;
           const Int3 point{i, j, k};
           for (int d = 0; d < grid.dimension(); ++d) {
-            if (point[d] > all.begin[d] && mask[p - stride[d]] < L) neighbours |= 1u << (2 * d);
-            if (point[d] + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= 2u << (2 * d);
+            const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
+            if (point[d] > all.begin[d] && mask[p - stride[d]] < L) neighbours |= low;
+            if (point[d] + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= high;
+            if (!phase.material.attached) continue;
+            if (neighbours & low && point[d] > all.begin[d] + 1 && mask[p - 2 * stride[d]] < L) second |= low;
+            if (neighbours & high && point[d] + 2 < all.end[d] && mask[p + 2 * stride[d]] < L) second |= high;
           }
-          if (neighbours) entries.push_back({p, neighbours});
+          if (neighbours)
+            entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
         }
       }
     for (const Entry &entry : entries) mask[entry.offset] = static_cast<unsigned char>(L);
@@ -104,10 +116,11 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, FieldBlock &tensor) cons
         double sum = 0;
         int count = 0;
         for (int d = 0; d < grid.dimension(); ++d) {
-          const bool low = entry.neighbours >> (2 * d) & 1, high = entry.neighbours >> (2 * d) & 2;
-          // The pair first: a mirrored scene gives the mirrored bits.
-          const double pair = (low ? B[entry.offset - stride[d]] : 0) + (high ? B[entry.offset + stride[d]] : 0);
-          sum += pair;
+          const int low = entry.neighbours >> (2 * d) & 1, high = entry.neighbours >> (2 * d + 1) & 1;
+          const double *b = B + entry.offset;
+          const double from_low = low ? extended(b, -stride[d], entry.second >> (2 * d) & 1) : 0;
+          const double from_high = high ? extended(b, stride[d], entry.second >> (2 * d + 1) & 1) : 0;
+          sum += from_low + from_high;  // the pair first: a mirrored scene gives the mirrored bits
           count += low + high;
         }
         B[entry.offset] = sum / count;

@@ -14,14 +14,19 @@ namespace eulastic {
 /// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
 /// and empty centres does not decide.
 inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30};
+/// Attached bodies: only where all is solid. With linear extension that is second order wherever the surface lies.
+inline constexpr EvolveRule evolve_where_full{1 - 1e-6, 1 - 1e-6, 1e-30};
+inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
+  return material.attached ? evolve_where_full : evolve_above_half;
+}
 
 /// Which points each layer holds; made anew whenever phi has changed.
 class ExteriorLayers {
 public:
   static constexpr int layers = 4;
 
-  /// phi needs five valid ghost layers.
-  PetscErrorCode build(const Grid &grid, const FieldBlock &fraction);
+  /// phi of the phase needs five valid ghost layers.
+  PetscErrorCode build(const Grid &grid, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I).
   PetscErrorCode extend(const Grid &grid, FieldBlock &tensor) const;
   /// Points in the layers of all locations.
@@ -31,12 +36,13 @@ private:
   struct Entry {
     std::ptrdiff_t offset;   ///< from the field's first double
     unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
+    unsigned char second;      ///< the same of the points behind them: there linear extension is possible
   };
   struct Location {
     Staggering staggering{};
     std::array<std::vector<Entry>, layers> layer;
   };
-  void build_location(const Grid &grid, ConstView fraction, Location *location);
+  void build_location(const Grid &grid, const Phase &phase, Location *location);
 
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
   std::vector<unsigned char> mask_;

@@ -23,21 +23,23 @@ struct PredictorTerms {
   Real3 force, inverse, inverse_squared;
 };
 
+// rate += scale div(G phi dev B)_a on the stressed segments of a row.
 template <int Dim>
-EULASTIC_INLINE void elastic_force(const PredictorTerms &t, int a, const Segment &row, double *rate) {
+EULASTIC_INLINE void elastic_force(const std::vector<Phase> &phases, const Real3 &inverse_spacing, double scale, int a,
+                                   const Segment &row, double *rate) {
   // Block position of a tensor component, see tensor_components().
   const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
-  for (const Phase &phase : *t.phases) {
+  for (const Phase &phase : phases) {
     if (phase.material.shear_modulus == 0) continue;
     const FieldBlock &B = phase.tensor;
     const ConstView phi = phase.fraction[0];
     const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
     const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
-    const double inverse[3] = {t.inverse[a], t.inverse[b], t.inverse[c]};
+    const double inverse[3] = {inverse_spacing[a], inverse_spacing[b], inverse_spacing[c]};
     for (const Segment &s : phase.stressed.row(row.j, row.k))
       kernels::add_elastic_force<Dim>({s.i_begin, std::min(s.i_end, row.i_end), s.j, s.k}, phi, views, stride, inverse,
-                                      phase.material.shear_modulus / t.density, rate);
+                                      scale * phase.material.shear_modulus, rate);
   }
 }
 
@@ -70,7 +72,7 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         }
         kernels::add_viscous_pressure_force<Dim>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(), p,
                                                  p.stride(a), t.inverse[a] / t.density, t.force[a], rate);
-        elastic_force<Dim>(t, a, row, rate);
+        elastic_force<Dim>(*t.phases, t.inverse, 1 / t.density, a, row, rate);
         const double *now = v[a].row(j, k);
         double *next = out[a].row(j, k);
         if (t.rate_only) {
@@ -85,6 +87,29 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
 
 EULASTIC_CLONES void predict_2d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<2>(t, out, s); }
 EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<3>(t, out, s); }
+
+template <int Dim>
+EULASTIC_INLINE void elastic_rows(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
+  const Int3 n = grid.owned();
+  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
+  for (int a = 0; a < Dim; ++a)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        elastic_force<Dim>(phases, inverse, scale, a, {0, n[0], j, k}, force[a].row(j, k));
+}
+
+EULASTIC_CLONES void elastic_2d(const Grid &g, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
+  elastic_rows<2>(g, scale, phases, force);
+}
+EULASTIC_CLONES void elastic_3d(const Grid &g, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
+  elastic_rows<3>(g, scale, phases, force);
+}
+
+double stressed_points(const std::vector<Phase> &phases) {
+  double sum = 0;
+  for (const Phase &phase : phases) sum += phase.stressed.points();
+  return sum;
+}
 
 template <int Dim>
 EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const FieldBlock &v, FieldBlock &out) {
@@ -138,8 +163,7 @@ void run_predictor(const Grid &grid, const Fluid &fluid, PredictorTerms terms, F
     predict_2d(terms, out, scratch);
   else
     predict_3d(terms, out, scratch);
-  double stressed = 0;
-  for (const Phase &phase : *terms.phases) stressed += phase.stressed.points();
+  const double stressed = stressed_points(*terms.phases);
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * (grid.owned_count() * per_face +
@@ -169,6 +193,15 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
                  fluid.kinematic_viscosity(), weno_epsilon(step.speed_scale), step.weights,
                  advection ? &advection : nullptr, true, fluid.body_force.at(step.force_time), {}, {}},
                 rate);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::momentum);
+  const bool flat = grid.dimension() == 2;
+  (flat ? elastic_2d : elastic_3d)(grid, scale, phases, force);
+  scope.flops(stressed_points(phases) * (flat ? 2 * kernels::elastic_flops_2d : 3 * kernels::elastic_flops_3d));
   PetscFunctionReturn(0);
 }
 

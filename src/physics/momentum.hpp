@@ -35,6 +35,9 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
                              const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
                              FieldBlock &advection, FieldBlock &rate);
 
+/// force += scale div(G phi dev B) of all phases, at the faces that feel it. One ghost of phi and B.
+PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force);
+
 /// D* = rho div v* at centres. Needs one ghost of v*.
 PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
                                   FieldBlock &divergence);

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "kernels/super_time_stepping.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace eulastic {
@@ -11,36 +12,63 @@ namespace {
 // b_j of RKL2; b_0 = b_1 = b_2 = 1/3.
 double weight(int j) { return j < 2 ? 1. / 3 : (double(j) * j + j - 2) / (2. * j * (j + 1)); }
 
-kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscosity) {
-  const double w = 4. / (double(stages) * stages + stages - 2);
-  const double mu = (2. * j - 1) / j * weight(j) / weight(j - 1);
-  const double nu = -(j - 1.) / j * weight(j) / weight(j - 2);
-  const double mu_tilde = mu * w, gamma_tilde = -(1 - weight(j - 1)) * mu_tilde;
-  return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt};
-}
-
 // Fraction of dt that stage j has reached.
 double stage_time(int j, int stages) {
   const double s = stages;
   return j == 1 ? stage_time(2, stages) / 3 : (double(j) * j + j - 2) / (s * s + s - 2);
 }
 
+kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscosity) {
+  const double w = 4. / (double(stages) * stages + stages - 2);
+  const double mu = (2. * j - 1) / j * weight(j) / weight(j - 1);
+  const double nu = -(j - 1.) / j * weight(j) / weight(j - 2);
+  const double mu_tilde = mu * w, gamma_tilde = -(1 - weight(j - 1)) * mu_tilde;
+  return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt, mu_tilde * dt * stage_time(j - 1, stages) * dt};
+}
+
+// The part of row (j, k) that any phase stresses.
+EULASTIC_INLINE Segment stressed_part(const std::vector<Phase> &phases, int cells, int j, int k) {
+  int begin = cells, end = 0;
+  for (const Phase &phase : phases) {
+    const ActiveSegments::Range range = phase.stressed.row(j, k);
+    if (range.first == range.last) continue;
+    begin = std::min(begin, range.first->i_begin);
+    end = std::max(end, (range.last - 1)->i_end);
+  }
+  return {std::min(begin, std::min(end, cells)), std::min(end, cells), j, k};
+}
+
+struct StageFields {
+  const FieldBlock *now, *rate, *slope;  // slope null: none
+  const std::vector<Phase> *phases;
+  FieldBlock *before;
+};
+
 template <int Dim>
 EULASTIC_INLINE void stage_rows(const Grid &grid, const kernels::RklStage &c, const double *second,
-                                const FieldBlock &now, const FieldBlock &rate, FieldBlock &before) {
+                                const StageFields &f) {
   const Int3 n = grid.owned();
   for (int a = 0; a < Dim; ++a)
     for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) kernels::rkl_stage<Dim>({0, n[0], j, k}, c, now[a], rate[a], second, before[a]);
+      for (int j = 0; j < n[1]; ++j) {
+        const ConstView w = (*f.now)[a], m = (*f.rate)[a];
+        const View out = (*f.before)[a];
+        if (!f.slope) {
+          kernels::rkl_stage<Dim, false>({0, n[0], j, k}, c, w, m, m, second, out);
+          continue;
+        }
+        const Segment part = stressed_part(*f.phases, n[0], j, k);
+        kernels::rkl_stage<Dim, false>({0, part.i_begin, j, k}, c, w, m, m, second, out);
+        kernels::rkl_stage<Dim, true>(part, c, w, m, (*f.slope)[a], second, out);
+        kernels::rkl_stage<Dim, false>({part.i_end, n[0], j, k}, c, w, m, m, second, out);
+      }
 }
 
-EULASTIC_CLONES void stage_2d(const Grid &g, const kernels::RklStage &c, const double *second, const FieldBlock &now,
-                              const FieldBlock &rate, FieldBlock &before) {
-  stage_rows<2>(g, c, second, now, rate, before);
+EULASTIC_CLONES void stage_2d(const Grid &g, const kernels::RklStage &c, const double *second, const StageFields &f) {
+  stage_rows<2>(g, c, second, f);
 }
-EULASTIC_CLONES void stage_3d(const Grid &g, const kernels::RklStage &c, const double *second, const FieldBlock &now,
-                              const FieldBlock &rate, FieldBlock &before) {
-  stage_rows<3>(g, c, second, now, rate, before);
+EULASTIC_CLONES void stage_3d(const Grid &g, const kernels::RklStage &c, const double *second, const StageFields &f) {
+  stage_rows<3>(g, c, second, f);
 }
 
 // to = scale a + b at all owned points; b may be null.
@@ -83,19 +111,22 @@ int rkl_stages(double dt, double dt_explicit) {
 
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const Walls &walls,
                                double kinematic_viscosity, double time, double dt, int stages,
-                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star) {
+                               const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
+                               FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   double second[3];
   for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
   const double first = stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2);  // mu~_1
+  if (work.slope) scale_add(grid, -0.5 * dt, work.slope, &work.rate, work.rate);  // the force at the start
   scale_add(grid, first * dt, work.rate, nullptr, work.now);
   if (stages > 1) clear(grid, work.before);
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 1));
     fill_wall_ghosts_velocity_change(grid, walls, time, time + stage_time(j - 1, stages) * dt, work.now, 1);
     const kernels::RklStage c = stage_coefficients(j, stages, dt, kinematic_viscosity);
-    (grid.dimension() == 2 ? stage_2d : stage_3d)(grid, c, second, work.now, work.rate, work.before);
+    (grid.dimension() == 2 ? stage_2d : stage_3d)(
+        grid, c, second, {&work.now, &work.rate, work.slope ? &work.slope : nullptr, &phases, &work.before});
     work.now.swap(work.before);
   }
   scale_add(grid, 1, work.now, &velocity, velocity_star);

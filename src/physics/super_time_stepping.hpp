@@ -3,6 +3,7 @@
 #pragma once
 
 #include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
 #include "field/walls.hpp"
 
 namespace eulastic {
@@ -11,15 +12,20 @@ namespace eulastic {
 /// dt <= dt_explicit (s^2 + s - 2)/4. (An even s leaves the stiffest mode undamped.)
 int rkl_stages(double dt, double dt_explicit);
 
-/// Work space of super_time_step, three velocity blocks.
+/// Input and work space of super_time_step, velocity blocks.
 struct SuperTimeStepping {
-  FieldBlock rate;           ///< M_0 = dv/dt at the start of the step, viscosity included; in
+  FieldBlock rate;           ///< M_0: dv/dt with the viscous term of the start and all else of the middle of the step
+  FieldBlock slope;          ///< M_1: how the elastic force per mass changes in time; empty = not at all
   FieldBlock now, before;    ///< increments W_j-1 and W_j-2
 };
 
-/// One stage is plain explicit Euler and needs no `before`. v* = v + W_s, where W' = nu lap W + M_0 over dt, W = 0 at the start and U(t) - U(time) on moving walls.
+/// v* = v + W_s, where W' = nu lap W + M_0 + (t - dt/2) M_1 over dt, W = 0 at the start and U(t) - U(time) on moving
+/// walls. Without M_1 the jump of the elastic force at an interface, which the viscous one balances at every moment,
+/// would leave an error of order dt^1.5. M_1 vanishes where no phase is stressed. One stage is plain explicit Euler
+/// and needs no `before`.
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const Walls &walls,
                                double kinematic_viscosity, double time, double dt, int stages,
-                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star);
+                               const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
+                               FieldBlock &velocity_star);
 
 }  // namespace eulastic

@@ -140,7 +140,7 @@ PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   phase.solid.build(grid, phase.fraction[0], rule.centre, 1, 0);
-  phase.stressed.build(grid, phase.fraction[0], rule.stressed, 1, 1);
+  phase.stressed.build(grid, phase.fraction[0], rule.stressed, 2, 2);  // one more: also where it was a step ago
   PetscFunctionReturn(0);
 }
 

@@ -4,10 +4,7 @@
 #include "physics/momentum.hpp"
 #include "physics/transport.hpp"
 #include "pressure/acm.hpp"
-#if __has_include("pressure/acm_sweeps.hpp")
 #include "pressure/acm_sweeps.hpp"
-#define HAVE_SWEEPS
-#endif
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -21,17 +18,15 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   spec_ = spec;
   const int dim = grid.dimension();
   exchange_ = std::make_unique<GhostExchange>(grid);
-  if (spec.pressure == PressureKind::smac)
+  if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
-  else if (spec.acm_of_the_paper())
+  } else if (spec.acm_of_the_paper()) {
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
-#ifdef HAVE_SWEEPS
-  else
-    PetscCall(AcmSweepSolver::create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse},
-                                     &pressure_solver_));
-#else
-  else pressure_solver_ = std::make_unique<AcmSolver>(grid);
-#endif
+  } else {
+    auto sweeps = std::make_unique<AcmSweepSolver>();
+    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}));
+    pressure_solver_ = std::move(sweeps);
+  }
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
@@ -51,22 +46,37 @@ PetscErrorCode Solver::prepare() {
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
+  if (spec_.staggered()) viscous_.slope = FieldBlock(*grid_, grid_->dimension());
   next_fraction_ = FieldBlock(*grid_, 1);
   next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
   if (spec_.interface == InterfaceScheme::thinc) interface_ = std::make_unique<InterfaceTransport>(*grid_);
   for (Phase &phase : now_.phases) {
     PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
-    PetscCall(reset_exterior(*grid_, evolve_rule(), phase));
-    PetscCall(find_solid(*grid_, evolve_rule(), phase));
-    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase.fraction));
+    PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(complete_exterior(phase.tensor));
   }
   PetscFunctionReturn(0);
 }
 
-EvolveRule Solver::evolve_rule() const {
+PetscErrorCode Solver::resume(long stages, long sweeps) {
+  PetscFunctionBeginUser;
+  stages_ = stages;
+  sweeps_before_ = sweeps;
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
+  PetscCall(update_centre_ghosts(now_.pressure, 1));
+  for (Phase &phase : now_.phases) {
+    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
+  }
+  PetscFunctionReturn(0);
+}
+
+EvolveRule Solver::evolve_rule(const Phase &phase) const {
   if (spec_.exterior == SolidExterior::identity) return reset_below_one_per_cent;
-  EvolveRule rule = evolve_above_half;
+  EvolveRule rule = evolve_rule_of(phase.material);
   if (spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
   return rule;
 }
@@ -94,14 +104,14 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
                     increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
-                    viscous_.rate.bytes() + viscous_.now.bytes() + viscous_.before.bytes();
+                    viscous_.rate.bytes() + viscous_.slope.bytes() + viscous_.now.bytes() + viscous_.before.bytes();
   for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
 }
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
-  if (spec_.staggered()) PetscCall(transport(now_.phases, 0.5 * (now_.dt + dt)));                     // (4)(5)
+  if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));                        // (4)(5)
   PetscCall(predict(dt));                                                                             // (7)
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));                                                                             // (8)-(13)
@@ -111,6 +121,17 @@ PetscErrorCode Solver::step(double dt) {
   now_.time += dt;
   now_.dt = dt;
   ++now_.step;
+  PetscFunctionReturn(0);
+}
+
+// Solids move to the middle of the step; the elastic force on the way there says how it changes within the step.
+PetscErrorCode Solver::transport_to_middle(double dt) {
+  PetscFunctionBeginUser;
+  if (now_.phases.empty()) PetscFunctionReturn(0);
+  viscous_.slope.clear();
+  PetscCall(add_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+  PetscCall(transport(now_.phases, dt));
+  PetscCall(add_elastic_force(*grid_, 1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
   PetscFunctionReturn(0);
 }
 
@@ -133,7 +154,7 @@ PetscErrorCode Solver::predict(double dt) {
   if (spec_.viscous == ViscousScheme::rkl)
     stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                            now_.velocity, viscous_, velocity_star_));
+                            now_.phases, now_.velocity, viscous_, velocity_star_));
   stages_ += stages;
   PetscFunctionReturn(0);
 }
@@ -174,8 +195,8 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     phase.fraction.swap(next_fraction_);
   }
   PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
-  PetscCall(find_solid(*grid_, evolve_rule(), phase));
-  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase.fraction));
+  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
   PetscCall(transport_left_cauchy_green(phase, dt));                                                  // (5)
   PetscFunctionReturn(0);
 }
@@ -183,10 +204,10 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
   PetscFunctionBeginUser;
-  PetscCall(transport_tensor(*grid_, {evolve_rule(), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
+  PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
   PetscCall(complete_exterior(next_tensor_));
   if (spec_.staggered()) {
-    PetscCall(transport_tensor(*grid_, {evolve_rule(), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
+    PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase.tensor));
   } else {
     phase.tensor.swap(next_tensor_);

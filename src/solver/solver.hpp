@@ -5,11 +5,7 @@
 #include "field/ghost_exchange.hpp"
 #include "physics/exterior.hpp"
 #include "physics/fluid.hpp"
-#if __has_include("physics/interface.hpp")
 #include "physics/interface.hpp"
-#else
-namespace eulastic { struct InterfaceTransport { explicit InterfaceTransport(const Grid &) {} PetscErrorCode advance(GhostExchange &, double, long, const FieldBlock &, FieldBlock &) { return PETSC_ERR_SUP; } }; }
-#endif
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "pressure/pressure_solver.hpp"
@@ -39,6 +35,9 @@ public:
 
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
   PetscErrorCode prepare();
+  /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
+  /// before, on a scene with the same phases.
+  PetscErrorCode resume(long stages, long sweeps);
   /// Measures the flow: time step limits, WENO5's velocity scale.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;
@@ -52,14 +51,17 @@ public:
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
-  long sweeps() const { return pressure_solver_->sweeps(); }
+  long sweeps() const { return sweeps_before_ + pressure_solver_->sweeps(); }
+  /// What the pressure solver remembers of earlier steps, or null.
+  FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
 
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width);
   double speed_scale(double dt) const;
-  EvolveRule evolve_rule() const;
+  EvolveRule evolve_rule(const Phase &phase) const;
+  PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
@@ -75,12 +77,12 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
-  SuperTimeStepping viscous_;
+  SuperTimeStepping viscous_;   ///< with the slope of the elastic force in time
   ExteriorLayers layers_;
   std::unique_ptr<InterfaceTransport> interface_;
   std::vector<Phase> phases_now_;   ///< copies for phases_now()
   std::int64_t phases_now_step_ = -1;
-  long stages_ = 0;
+  long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };
 
 }  // namespace eulastic

@@ -52,10 +52,11 @@ struct Scene {
   }
 
   /// Adds a phase with the given solid fraction and B = I.
-  Phase &add_phase(double shear_modulus, const Function &fraction) {
+  Phase &add_phase(double shear_modulus, const Function &fraction, bool attached = false) {
     Phase phase;
     phase.species = "solid";
     phase.material.shear_modulus = shear_modulus;
+    phase.material.attached = attached;
     phase.fraction = FieldBlock(grid, 1);
     const auto &components = tensor_components(grid.dimension());
     phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
