@@ -50,7 +50,7 @@ public:
     report.line("ranks", "%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks,
                 cells / ranks);
     if (cells > std::numeric_limits<PetscInt>::max())
-      report.line("warning", "needs a PETSc with 64-bit indices: this one counts to %.0f cells",
+      report.line("warning", "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
                   double(std::numeric_limits<PetscInt>::max()));
     report.line("memory", "%.4g GB for fields, %.4g GB per rank", 1e-9 * bytes_per_rank(parts) * ranks,
                 1e-9 * bytes_per_rank(parts));
@@ -60,6 +60,10 @@ public:
     double box = 1, solid = 0;
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
     for (const SpeciesSpec &spec : config_.species) {
+      if (spec.shape == Shape::state) {
+        report.line("species " + spec.name, "from %s", config_.initial_state.c_str());
+        continue;
+      }
       const double count = body_count(spec), volume = volume_in_box(spec);
       solid += count * volume;
       report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g", count,

@@ -28,15 +28,28 @@ struct OutputControl {
   double series_interval = 0;   ///< simulated time; after parsing never 0: time_end / 200 unless given
 };
 
+struct CheckpointControl {
+  double interval = 0;      ///< simulated time; 0 = none
+  double wall_minutes = 0;  ///< since the last one; 0 = none
+  long keep = 2;
+  double stop_after_minutes = 0;  ///< of wall time; 0 = never
+  std::string restart;            ///< a checkpoint, or a directory with some; empty = begin at t = 0
+
+  /// Whether the run writes any but the one that a signal or stop_after_minutes asks for.
+  bool regular() const { return interval > 0 || wall_minutes > 0; }
+};
+
 struct Config {
   GridSpec grid;
   Walls walls;
   Fluid fluid;
   InitialFlow initial;
+  std::string initial_state;  ///< HDF5 file; empty = none
   std::vector<SpeciesSpec> species;
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;
+  CheckpointControl checkpoint;
   bool check_only = false;
 };
 

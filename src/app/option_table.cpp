@@ -9,7 +9,7 @@ namespace eulastic {
 namespace {
 
 const Names boundary_names{"periodic", "wall"};
-const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab"};
+const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab", "state"};
 const Names method_names{"fast", "classic"};
 const char *const by_method = "set by -method";
 const Names placement_names{"one", "list", "lattice"};
@@ -22,9 +22,11 @@ void add_grid(Rows &rows, Config &config) {
   for (int d = 0; d < 3; ++d)
     rows.choice(std::string("boundary_") + "xyz"[d], config.grid.boundary[d], boundary_names,
                 std::string("both sides in ") + "xyz"[d]);
+  const std::size_t processors = rows.rows.size();
   for (int d = 0; d < 3; ++d)
     rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
                   std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
+  rows.allow_change(processors);
 }
 
 void add_walls(Rows &rows, Config &config) {
@@ -67,10 +69,12 @@ void add_flow(Rows &rows, Config &config) {
            initial.kind != InitialVelocity::couette;
   };
   rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
+  rows.path("initial_state", config.initial_state,
+            "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)");
 }
 
 // One species; its name is the prefix.
-void add_species(Rows &rows, SpeciesSpec &spec) {
+void add_species(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.prefix = spec.name + "_";
   const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
     rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
@@ -78,7 +82,9 @@ void add_species(Rows &rows, SpeciesSpec &spec) {
   const auto for_placement = [&](Placement wanted) {
     rows.restrict(rows.rows.size() - 1, rows.prefix + "placement", spec.placement, placement_names, {wanted});
   };
-  rows.choice("shape", spec.shape, shape_names, "shape; in 2-D its cut at z = 0").required = true;
+  rows.choice("shape", spec.shape, shape_names,
+              "shape; in 2-D its cut at z = 0; state: as in -initial_state, then the default")
+      .required = !from_state;
   rows.real("radius", spec.radius, positive, "length", "radius").required = true;
   Option &diameter = rows.real("diameter", spec.radius, positive, "length", "another way to give the radius");
   diameter.alias_of = rows.prefix + "radius";
@@ -103,8 +109,8 @@ void add_species(Rows &rows, SpeciesSpec &spec) {
               "one body, a list of bodies, or a lattice that fills the box");
   Option &centre = rows.real("centre", spec.centre, any_number, "length", "centre of the body");
   centre.default_note = "centre of the box";
-  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab";
-  centre.applies = [&spec] { return spec.placement == Placement::one && spec.shape != Shape::slab; };
+  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab and state";
+  centre.applies = [&spec] { return spec.placement == Placement::one && spec.shape < Shape::slab; };
   rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
   for_placement(Placement::list);
   rows.integers("count", spec.count.data(), 3, at_least_one, "bodies along x, y, z");
@@ -127,7 +133,7 @@ void add_bodies(Rows &rows, Config &config) {
   };
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
-    add_species(rows, spec);
+    add_species(rows, spec, !config.initial_state.empty());
   }
 }
 
@@ -144,6 +150,7 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
               "B outside bodies: extended, or reset to I").default_note = by_method;
   const Names pressure_names{"acm", "smac"};
+  const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,
               "artificial compressibility, or the exact Poisson solution");
   const std::size_t first = rows.rows.size();
@@ -154,9 +161,11 @@ void add_method(Rows &rows, Config &config) {
       .default_note = by_method;
   rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids").default_note = by_method;
   rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
+  rows.allow_change(pressure);
 }
 
 void add_running(Rows &rows, Config &config) {
+  const std::size_t first = rows.rows.size();
   rows.group = "Time";
   rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
   rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
@@ -175,11 +184,24 @@ void add_running(Rows &rows, Config &config) {
             "time between lines of series.csv; 0 = default")
       .default_note = "time_end/200";
 
+  rows.group = "Checkpoints and restart";
+  CheckpointControl &checkpoint = config.checkpoint;
+  rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
+            "time between checkpoints, and one before the end; 0 = none");
+  rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
+            "wall time between checkpoints, and one before the end; 0 = none");
+  rows.integer("checkpoint_keep", checkpoint.keep, at_least_one, "checkpoints that stay");
+  rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
+            "wall time after which a checkpoint is written and the run ends; 0 = never");
+  rows.path("restart", checkpoint.restart,
+            "checkpoint, or output directory whose newest good one is taken; in the same -output_dir its files go on");
+
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
   rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =
       "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
+  rows.allow_change(first);
 }
 
 }  // namespace

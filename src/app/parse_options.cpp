@@ -127,6 +127,10 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   if (std::string wrong = read_species(sources, config); !wrong.empty()) return wrong;
   if (const Entry *method = last_given(sources, "method"))
     (void)read_method(method->value, config);  // what is wrong with it is reported later
+  if (const Entry *state = last_given(sources, "initial_state")) {
+    config->initial_state = state->value;
+    for (SpeciesSpec &spec : config->species) spec.shape = Shape::state;
+  }
   std::vector<Option> table = option_table(*config);
   Reader reader(table);
   for (const Source &source : sources)

@@ -1,28 +1,55 @@
 #include "app/scene.hpp"
 
+#include "app/initial_state.hpp"
 #include "base/events.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/placement.hpp"
+#include "io/fail_together.hpp"
 
 namespace eulastic {
+namespace {
+
+// Bodies of a file begin at some cell of theirs: moves the references to their centres, in the box.
+PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *bodies) {
+  PetscFunctionBeginUser;
+  for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(grid, state.phases));
+  std::vector<Int3> references = bodies->references();
+  for (Int3 &cell : references)
+    for (int d = 0; d < 3; ++d) cell[d] = (cell[d] % grid.cells()[d] + grid.cells()[d]) % grid.cells()[d];
+  bodies->set_references(references);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver) {
+  PetscFunctionBeginUser;
+  State &state = solver->state();
+  set_initial_velocity(grid, config.walls, config.initial, state.velocity);
+  InitialState file(config, grid);
+  PetscCall(file.open());
+  PetscCall(file.read_flow(&state));
+  int next_label = 1;
+  for (const SpeciesSpec &species : config.species) {
+    std::vector<BodyPlace> places;
+    PetscCall(fail_together(grid.comm(), place_bodies(species, config.grid, &places)));
+    Phase phase;
+    PetscCall(fill_phase(grid, species, places, next_label, &phase));
+    PetscCall(file.read_phase(species, next_label, &phase, &places));
+    next_label += static_cast<int>(places.size());
+    state.phases.push_back(std::move(phase));
+    solver->bodies().add_phase(grid, places);
+  }
+  if (file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
 
 PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
   PetscCall(solver->create(grid, {config.method, config.fluid, config.walls}));
-  State &state = solver->state();
-  set_initial_velocity(grid, config.walls, config.initial, state.velocity);
-  int next_label = 1;
-  for (const SpeciesSpec &species : config.species) {
-    std::vector<BodyPlace> places;
-    *reason = place_bodies(species, config.grid, &places);
-    if (!reason->empty()) PetscFunctionReturn(0);
-    Phase phase;
-    PetscCall(fill_phase(grid, species, places, next_label, &phase));
-    next_label += static_cast<int>(places.size());
-    state.phases.push_back(std::move(phase));
-    solver->bodies().add_phase(grid, places);
-  }
+  PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
+  if (!reason->empty()) PetscFunctionReturn(0);
   PetscCall(solver->prepare());
   PetscFunctionReturn(0);
 }

@@ -22,7 +22,8 @@ std::string check_grid(const Config &config) {
   for (int n : config.grid.cells) cells *= n;
   if (!config.check_only && cells > std::numeric_limits<PetscInt>::max())
     return "-grid_cells: more cells than this PETSc can number; accepted: at most " +
-           std::to_string(std::numeric_limits<PetscInt>::max()) + ", or a PETSc with 64-bit indices";
+           std::to_string(std::numeric_limits<PetscInt>::max()) +
+           ", or a build with a PETSc of 64-bit indices (Debian: libpetsc64-real-dev)";
   return {};
 }
 
@@ -45,6 +46,8 @@ std::string check_walls(const Config &config) {
 std::string check_flow(const Config &config) {
   if (const std::string wrong = check_vector(config, "body_force", config.fluid.body_force.force); !wrong.empty())
     return wrong;
+  if (!config.initial_state.empty() && !std::filesystem::is_regular_file(config.initial_state))
+    return "-initial_state: " + config.initial_state + " is not a file";
   const InitialFlow &initial = config.initial;
   if (const std::string wrong = check_vector(config, "initial_velocity_mean", initial.mean); !wrong.empty())
     return wrong;
@@ -75,6 +78,10 @@ std::vector<SpeciesSpec> to_place(const Config &config, const SpeciesSpec &spec)
 }
 
 std::string check_species(const Config &config, const SpeciesSpec &spec) {
+  if (spec.shape == Shape::state && config.initial_state.empty())
+    return "-" + spec.name + "_shape: state needs -initial_state";
+  if (spec.shape == Shape::state && spec.placement != Placement::one)
+    return "-" + spec.name + "_placement: has no meaning with -" + spec.name + "_shape state; accepted: one";
   if (spec.shape == Shape::slab) {
     const auto [low, high] = spec.interval;
     if (!(low < high)) return "-" + spec.name + "_interval: the low side must be below the high side";
@@ -103,10 +110,16 @@ std::string check_method(const Config &config) {
   return {};
 }
 
+std::string check_restart(const Config &config) {
+  const std::string &path = config.checkpoint.restart;
+  if (!path.empty() && !std::filesystem::exists(path)) return "-restart: there is no file or directory " + path;
+  return {};
+}
+
 }  // namespace
 
 std::string validate(const Config &config) {
-  for (const auto check : {check_grid, check_walls, check_flow, check_method})
+  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;

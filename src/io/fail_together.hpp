@@ -10,4 +10,20 @@ namespace eulastic {
 /// Collective. Succeeds if `problem` is empty on every rank; else fails on all with the text of the lowest rank.
 PetscErrorCode fail_together(MPI_Comm comm, const std::string &problem);
 
+/// Runs `call`, all of whose errors are of fail_together() or fatal; such an error becomes `problem` instead.
+template <class Call>
+PetscErrorCode catch_together(Call call, std::string *problem) {
+  const auto keep = [](MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
+                       const char *message, void *text) {
+    if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+    return code;
+  };
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(keep, problem));
+  const PetscErrorCode code = call();
+  PetscCall(PetscPopErrorHandler());
+  if (code != 0 && code != PETSC_ERR_FILE_UNEXPECTED) PetscCall(code);
+  PetscFunctionReturn(0);
+}
+
 }  // namespace eulastic
