@@ -28,6 +28,18 @@ struct OutputControl {
   double series_interval = 0;   ///< simulated time; after parsing never 0: time_end / 200 unless given
 };
 
+/// One profile: the means over planes of cells, or the values along a line through `line`.
+struct ProfileSpec {
+  enum class Kind { none, mean, line } kind = Kind::none;
+  Real3 line{};
+};
+
+struct SampleControl {
+  std::vector<Real3> probes;
+  std::array<ProfileSpec, 3> profile;  ///< along x, y, z
+  double profile_interval = 0;         ///< simulated time; 0 = only the end
+};
+
 struct CheckpointControl {
   double interval = 0;      ///< simulated time; 0 = none
   double wall_minutes = 0;  ///< since the last one; 0 = none
@@ -49,6 +61,7 @@ struct Config {
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;
+  SampleControl samples;
   CheckpointControl checkpoint;
   bool check_only = false;
 };

@@ -12,10 +12,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string quoted(const std::string &text) { return '"' + text + '"'; }
 
-std::vector<std::string> split(const std::string &text) {
+std::vector<std::string> split(const std::string &text, char separator = ',') {
   std::vector<std::string> items(1);
   for (char c : text) {
-    if (c == ',')
+    if (c == separator)
       items.emplace_back();
     else
       items.back() += c;
@@ -60,6 +60,15 @@ std::string Range::text() const { return low == -infinity ? std::string() : (ope
 
 std::string read_reals(const std::string &text, const Range &range, double *target, std::size_t count) {
   return read_list(text, range, target, count);
+}
+
+std::string read_points(const std::string &text, std::vector<std::array<double, 3>> *target) {
+  std::vector<std::array<double, 3>> points;
+  for (const std::string &item : split(text, ':'))
+    if (const std::string wrong = read_list(item, any_number, points.emplace_back().data(), 3); !wrong.empty())
+      return wrong;
+  *target = points;
+  return {};
 }
 
 std::string read_integers(const std::string &text, const Range &range, int *target, std::size_t count) {

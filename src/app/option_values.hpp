@@ -28,6 +28,8 @@ std::string read_choice(const std::string &text, const std::vector<std::string> 
 /// Comma-separated words, each one of `names` unless that is empty, none twice.
 std::string read_words(const std::string &text, const std::vector<std::string> &names,
                        std::vector<std::string> *target);
+/// Points x,y,z separated by colons.
+std::string read_points(const std::string &text, std::vector<std::array<double, 3>> *target);
 /// A path: no quotes, no control characters.
 std::string read_text(const std::string &text, std::string *target);
 

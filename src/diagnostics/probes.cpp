@@ -1,0 +1,117 @@
+#include "diagnostics/probes.hpp"
+
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+#include "field/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr int values = 5;
+static_assert(sizeof(Sample) == values * sizeof(double), "reduced as doubles");
+
+// The cell that holds a point, and whether this rank owns it.
+class Place {
+public:
+  Place(const Grid &grid, const Real3 &point) : grid_(grid) {
+    for (int d = 0; d < grid.dimension(); ++d) {
+      cells_[d] = point[d] / grid.spacing()[d];
+      cell_[d] = std::clamp(static_cast<int>(std::floor(cells_[d])), 0, grid.cells()[d] - 1);
+    }
+  }
+  bool is_here() const { return grid_.owner(cell_[0], cell_[1], cell_[2]) == grid_.rank(); }
+
+  /// Linear in every direction. `extrapolate`: a centred field is never looked up behind a wall.
+  double interpolate(ConstView q, const Staggering &at, bool extrapolate) const {
+    Int3 base{};
+    Real3 weight{};
+    for (int d = 0; d < grid_.dimension(); ++d) {
+      const double s = cells_[d] - (at[d] ? 0 : 0.5);
+      int low = at[d] || s >= cell_[d] ? cell_[d] : cell_[d] - 1;
+      if (extrapolate && grid_.is_wall(d)) low = std::clamp(low, 0, grid_.cells()[d] - 2);
+      base[d] = low - grid_.layout().begin[d];
+      weight[d] = s - low;
+    }
+    return along(grid_.dimension() - 1, &q(base[0], base[1], base[2]), q, weight);
+  }
+
+private:
+  static double along(int d, const double *p, const ConstView &q, const Real3 &weight) {
+    if (d < 0) return *p;
+    return (1 - weight[d]) * along(d - 1, p, q, weight) + weight[d] * along(d - 1, p + q.stride(d), q, weight);
+  }
+
+  const Grid &grid_;
+  Real3 cells_{};
+  Int3 cell_{};
+};
+
+}  // namespace
+
+PetscErrorCode sample_points(const Grid &grid, const SampledFields &fields, const std::vector<Real3> &points,
+                             std::vector<Sample> *samples) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::sums);
+  samples->assign(points.size(), {});
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Place place(grid, points[n]);
+    if (!place.is_here()) continue;
+    Sample &sample = (*samples)[n];
+    for (int c = 0; c < grid.dimension(); ++c)
+      sample.velocity[c] = place.interpolate(fields.velocity[c], at_face[c], false);
+    sample.pressure = place.interpolate(fields.pressure[0], at_centre, true);
+    for (const Phase &phase : fields.phases)
+      sample.solid_fraction += place.interpolate(phase.fraction[0], at_centre, false);
+    sample.solid_fraction = std::min(sample.solid_fraction, 1.0);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, samples->data(), static_cast<int>(values * points.size()), MPI_DOUBLE,
+                             MPI_SUM, grid.comm()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode sample_planes(const Grid &grid, const SampledFields &fields, int direction,
+                             std::vector<Sample> *samples) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::sums);
+  const int planes = grid.cells()[direction], n = grid.owned()[0], dimension = grid.dimension();
+  const Int3 &begin = grid.layout().begin;
+  ExactSums sums(values * planes);
+  std::vector<double> row(n);
+  const auto add = [&](const Segment &at, int value) {
+    const int plane = direction == 1 ? begin[1] + at.j : begin[2] + at.k;
+    if (direction > 0)
+      sums.add_row(values * plane + value, row.data(), n, begin[0]);
+    else
+      for (int i = 0; i < n; ++i) sums.add(values * (begin[0] + i) + value, row[i]);
+  };
+  for (const Segment &at : grid.rows()) {
+    for (int c = 0; c < dimension; ++c) {
+      const ConstView view = fields.velocity[c];
+      const double *q = view.row(at.j, at.k), *next = q + view.stride(c);
+      for (int i = 0; i < n; ++i) row[i] = 0.5 * (q[i] + next[i]);
+      add(at, c);
+    }
+    std::copy_n(fields.pressure[0].row(at.j, at.k), n, row.begin());
+    add(at, 3);
+    if (fields.phases.empty()) continue;
+    std::fill(row.begin(), row.end(), 0.0);
+    for (const Phase &phase : fields.phases)
+      for (int i = 0; i < n; ++i) row[i] += phase.fraction[0](i, at.j, at.k);
+    for (double &phi : row) phi = std::min(phi, 1.0);
+    add(at, 4);
+  }
+  samples->assign(planes, {});
+  std::vector<double> sum(values * planes);
+  PetscCall(sums.reduce(grid.comm(), sum.data()));
+  const double cells = grid.cell_count() / planes;
+  for (int plane = 0; plane < planes; ++plane) {
+    const double *s = &sum[values * plane];
+    (*samples)[plane] = {{s[0] / cells, s[1] / cells, s[2] / cells}, s[3] / cells, s[4] / cells};
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
