@@ -13,9 +13,7 @@ struct Due {
 
   /// Times that are meant to hit a multiple miss it by round-off.
   double multiple(double time) const { return std::floor(time / interval + 1e-9); }
-  bool at(double time) const {
-    return interval > 0 && (last_time < 0 || multiple(time) > multiple(last_time));
-  }
+  bool at(double time) const { return interval > 0 && (last_time < 0 || multiple(time) > multiple(last_time)); }
 };
 
 }  // namespace eulastic

@@ -108,6 +108,11 @@ public:
     return row;
   }
 
+  /// The rows from `first` on may differ between a checkpoint and the run that goes on from it.
+  void allow_change(std::size_t first) {
+    for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
+  }
+
   /// The rows from `first` on mean something only while `target` has one of the `wanted` values. `names` are those
   /// of `-option`.
   template <class T>

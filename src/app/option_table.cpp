@@ -164,6 +164,47 @@ void add_method(Rows &rows, Config &config) {
   rows.allow_change(pressure);
 }
 
+// `mean`, or where the line cuts the plane of the other two directions.
+void add_profile(Rows &rows, ProfileSpec &profile, int d) {
+  const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+  const std::string plane{"xyz"[a], ',', "xyz"[b]};
+  Option &row = rows.add(std::string("profile_") + "xyz"[d], "length",
+                         std::string("flow along ") + "xyz"[d] + ", at the centres of the cells: averaged over planes, " +
+                             "or along the line through " + plane);
+  row.accepted = "mean, or 2 numbers " + plane;
+  row.default_note = "none";
+  row.read = [&profile, a, b](const std::string &value) {
+    profile.kind = ProfileSpec::Kind::mean;
+    if (value == "mean") return std::string();
+    profile.kind = ProfileSpec::Kind::line;
+    double place[2];
+    std::string wrong = read_reals(value, any_number, place, 2);
+    if (wrong.empty()) profile.line[a] = place[0], profile.line[b] = place[1];
+    return wrong;
+  };
+  row.text = [&profile, a, b] {
+    if (profile.kind == ProfileSpec::Kind::none) return std::string();
+    if (profile.kind == ProfileSpec::Kind::mean) return std::string("mean");
+    return to_text(profile.line[a]) + "," + to_text(profile.line[b]);
+  };
+}
+
+void add_samples(Rows &rows, Config &config) {
+  SampleControl &samples = config.samples;
+  Option &probes = rows.add("probe_points", "length", "points where probes.csv records the flow, with series.csv");
+  probes.accepted = "points x,y,z separated by colons, x,y,z:x,y,z";
+  probes.default_note = "none";
+  probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
+  probes.text = [&samples] {
+    Names points;
+    for (const Real3 &p : samples.probes) points.push_back(to_text(p[0]) + "," + to_text(p[1]) + "," + to_text(p[2]));
+    return join(points, ":");
+  };
+  for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
+  rows.real("profile_interval", samples.profile_interval, not_negative, "time",
+            "time between profiles, the start and the end included; 0 = only at the end");
+}
+
 void add_running(Rows &rows, Config &config) {
   const std::size_t first = rows.rows.size();
   rows.group = "Time";
@@ -178,11 +219,12 @@ void add_running(Rows &rows, Config &config) {
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
             "time between snapshots, the start and the end included; 0 = none");
   rows.words("snapshot_fields", output.snapshot_fields,
-             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green"}, "fields in snapshots");
+             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"}, "fields in snapshots");
   rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
   rows.real("series_interval", output.series_interval, not_negative, "time",
             "time between lines of series.csv; 0 = default")
       .default_note = "time_end/200";
+  add_samples(rows, config);
 
   rows.group = "Checkpoints and restart";
   CheckpointControl &checkpoint = config.checkpoint;

@@ -19,6 +19,7 @@ struct Option {
   std::string accepted;  ///< in words, e.g. "3 numbers > 0, separated by commas"
   bool bare = false;     ///< may stand without a value
   bool required = false;
+  bool may_change = false;   ///< at a restart
   std::string alias_of;      ///< another way to give that option
   std::string default_note;  ///< what happens when it is not given, if the initial value does not say it
 

@@ -8,16 +8,39 @@
 namespace eulastic {
 namespace {
 
-const std::vector<std::string> series_columns{
-    "time",           "step",         "dt",           "kinetic_energy", "elastic_energy", "viscous_dissipation",
-    "bulk_velocity_x", "bulk_velocity_y", "bulk_velocity_z", "speed_max", "divergence_rms", "divergence_max",
-    "solid_volume",   "volume_drift"};
+const std::vector<std::string> series_columns{"time",
+                                              "step",
+                                              "dt",
+                                              "kinetic_energy",
+                                              "elastic_energy",
+                                              "viscous_dissipation",
+                                              "bulk_velocity_x",
+                                              "bulk_velocity_y",
+                                              "bulk_velocity_z",
+                                              "speed_max",
+                                              "divergence_rms",
+                                              "divergence_max",
+                                              "solid_volume",
+                                              "volume_drift"};
+
+bool wants(const OutputControl &output, const char *name) {
+  const auto &fields = output.snapshot_fields;
+  return std::find(fields.begin(), fields.end(), name) != fields.end();
+}
+
+SnapshotField as_field(const WallStress &wall, Stored precision) {
+  SnapshotField field;
+  field.format.name =
+      std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
+  field.format.stored = precision;
+  field.format.plane = wall.direction;
+  field.format.plane_high = wall.high;
+  field.components = {wall.view(0), wall.view(1), wall.view(2)};
+  return field;
+}
 
 SnapshotSelection selection(const OutputControl &output) {
-  const auto wanted = [&](const char *name) {
-    return std::find(output.snapshot_fields.begin(), output.snapshot_fields.end(), name) !=
-           output.snapshot_fields.end();
-  };
+  const auto wanted = [&](const char *name) { return wants(output, name); };
   SnapshotSelection s;
   s.velocity = wanted("velocity");
   s.pressure = wanted("pressure");
@@ -30,28 +53,35 @@ SnapshotSelection selection(const OutputControl &output) {
 
 }  // namespace
 
-bool Outputs::Due::now(double time, bool last) {
-  if (interval <= 0 || time == last_time) return false;
-  // Times that are meant to hit a multiple miss it by round-off.
-  if (time < next - 1e-9 * interval && !last) return false;
-  next = interval * (std::floor(time / interval + 1e-9) + 1);
-  last_time = time;
-  return true;
+PetscErrorCode Outputs::open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory) {
+  PetscFunctionBeginUser;
+  PetscCall(resume(config, grid, solver, directory, {}, false));
+  PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory) {
+PetscErrorCode Outputs::resume(const Config &config, const Grid &grid, Solver *solver, const std::string &directory,
+                               const OutputsPosition &position, bool same_directory) {
   PetscFunctionBeginUser;
   config_ = config;
   grid_ = &grid;
   solver_ = solver;
   directory_ = directory;
-  series_due_.interval = config.output.series_interval;
-  snapshot_due_.interval = config.output.snapshot_interval;
-  PetscCall(series_.open(grid.comm(), directory + "/series.csv", series_columns));
-  if (solver->bodies().bodies() > 0) bodies_file_ = std::make_unique<BodiesFile>(grid.comm(), directory + "/bodies.h5");
+  series_due_ = {config.output.series_interval, position.series_time};
+  snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
+  first_volume_ = position.first_volume;
+  PetscCall(
+      series_.open(grid.comm(), directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
+  PetscCall(samples_.open(config.samples, grid, directory, solver->state().time));
+  if (solver->bodies().bodies() > 0) {
+    bodies_file_ = std::make_unique<BodiesFile>(grid.comm(), directory + "/bodies.h5");
+    bodies_rows_ = same_directory ? position.bodies_rows : 0;
+    if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
+  }
+  snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
     snapshots_ = std::make_unique<SnapshotWriter>(grid, directory);
     snapshot_fields_ = std::make_unique<SnapshotFields>(grid);
+    PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
 }
@@ -66,8 +96,7 @@ PetscErrorCode Outputs::measure() {
   const Real3 &f = fluid.body_force.force;
   PetscCall(measure_flow(*grid_, state.velocity, *phases,
                          {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &flow_));
-  if (solver_->bodies().bodies() > 0)
-    PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &bodies_));
+  if (solver_->bodies().bodies() > 0) PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &bodies_));
   if (first_volume_.empty())
     for (const BodyMeasure &body : bodies_) first_volume_.push_back(body.volume);
   volume_drift_ = 0;
@@ -97,10 +126,21 @@ std::vector<BodyRecord> Outputs::records() const {
 PetscErrorCode Outputs::write_due(bool last) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
-  const bool series = series_due_.now(state.time, last), snapshot = snapshot_due_.now(state.time, last);
-  if (!series && !snapshot) PetscFunctionReturn(0);
+  const auto now = [&](Due *due) {
+    if (due->interval <= 0 || due->last_time == state.time || !(last || due->at(state.time))) return false;
+    due->last_time = state.time;
+    return true;
+  };
+  const bool series = now(&series_due_), snapshot = now(&snapshot_due_);
+  const bool samples = samples_.due(state.time, series, last);
+  if (!series && !snapshot && !samples) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
+  const std::vector<Phase> *phases = nullptr;
+  if (samples) {
+    PetscCall(solver_->phases_now(&phases));
+    PetscCall(samples_.write(state.time, series, last, {state.velocity, state.pressure, *phases}));
+  }
   if (series) {
     PetscCall(measure());
     double solid = 0;
@@ -109,15 +149,34 @@ PetscErrorCode Outputs::write_due(bool last) {
                              flow_.viscous_dissipation, flow_.bulk_velocity[0], flow_.bulk_velocity[1],
                              flow_.bulk_velocity[2], flow_.speed_max, flow_.divergence_rms, flow_.divergence_max, solid,
                              volume_drift_}));
-    if (bodies_file_) PetscCall(bodies_file_->add(state.time, records()));
+    if (bodies_file_) {
+      PetscCall(bodies_file_->add(state.time, records()));
+      ++bodies_rows_;
+    }
   }
   if (snapshot) {
-    const std::vector<Phase> *phases = nullptr;
     PetscCall(solver_->phases_now(&phases));
-    PetscCall(snapshots_->write(
-        state.time, static_cast<long>(state.step),
-        snapshot_fields_->collect(selection(config_.output), state.velocity, state.pressure, *phases)));
+    const SnapshotSelection wanted = selection(config_.output);
+    std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
+    std::vector<WallStress> walls;
+    if (wants(config_.output, "wall_shear_stress"))
+      walls = wall_shear_stress(*grid_, config_.walls, state.time, config_.fluid.viscosity, state.velocity, *phases);
+    for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
+    PetscCall(snapshots_->write(state.time, static_cast<long>(state.step), fields));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::sync(OutputsPosition *position) {
+  PetscFunctionBeginUser;
+  PetscCall(series_.sync());
+  if (bodies_file_) PetscCall(bodies_file_->flush());
+  position->series_rows = series_.rows();
+  position->bodies_rows = bodies_rows_;
+  position->snapshots = snapshots_ ? snapshots_->count() : snapshots_before_;
+  position->series_time = series_due_.last_time;
+  position->snapshot_time = snapshot_due_.last_time;
+  position->first_volume = first_volume_;
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "app/due.hpp"
+#include "app/sample_files.hpp"
 #include "diagnostics/flow_measures.hpp"
+#include "diagnostics/wall_shear_stress.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
 #include "io/snapshot.hpp"
@@ -14,22 +17,28 @@
 
 namespace eulastic {
 
+/// How far the files of a run have come: what a restart needs to go on with them.
+struct OutputsPosition {
+  long series_rows = 0, bodies_rows = 0, snapshots = 0;
+  double series_time = -1, snapshot_time = -1;  ///< of the last one; negative: none yet
+  std::vector<double> first_volume;             ///< of every body, at t = 0
+};
+
 class Outputs {
 public:
   /// Opens the files in `directory`, which exists and is ours.
   PetscErrorCode open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory);
+  /// Instead: opens them where a run goes on. In the directory of that run its files are cut back to `position`.
+  PetscErrorCode resume(const Config &config, const Grid &grid, Solver *solver, const std::string &directory,
+                        const OutputsPosition &position, bool same_directory);
+  /// Brings all rows to the disk and says how far they are.
+  PetscErrorCode sync(OutputsPosition *position);
   /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time.
   PetscErrorCode write_due(bool last);
   /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
   PetscErrorCode write_summary(Summary summary);
 
 private:
-  /// The next multiple of an interval, passed or not.
-  struct Due {
-    double interval = 0, next = 0;
-    bool now(double time, bool last);
-    double last_time = -1;
-  };
   PetscErrorCode measure();
   std::vector<BodyRecord> records() const;
 
@@ -38,6 +47,7 @@ private:
   Solver *solver_ = nullptr;
   std::string directory_;
   Series series_;
+  SampleFiles samples_;
   std::unique_ptr<BodiesFile> bodies_file_;
   std::unique_ptr<SnapshotWriter> snapshots_;
   std::unique_ptr<SnapshotFields> snapshot_fields_;
@@ -45,6 +55,7 @@ private:
   FlowMeasures flow_;
   std::vector<BodyMeasure> bodies_;
   std::vector<double> first_volume_;
+  long bodies_rows_ = 0, snapshots_before_ = 0;
   double measured_time_ = -1, mach_max_ = 0, volume_drift_ = 0;
 };
 

@@ -1,20 +1,23 @@
 #include "app/run.hpp"
 
-#include "app/outputs.hpp"
+#include "app/checkpoints.hpp"
 #include "app/scene.hpp"
+#include "app/signals.hpp"
 #include "app/time_step_control.hpp"
 #include "base/events.hpp"
 #include "base/progress.hpp"
+#include "io/fail_together.hpp"
 #include "io/run_directory.hpp"
 #include "io/text_file.hpp"
-
-#include <cmath>
 
 namespace eulastic {
 namespace {
 
-struct Loop {
-  double wall = 0;  // seconds in the loop, output excluded
+struct Run {
+  Solver solver;
+  Outputs outputs;
+  Checkpoints checkpoints;
+  RunPosition position;
   std::string exit_reason, message;
 };
 
@@ -30,31 +33,84 @@ void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", warning.c_str());
 }
 
-PetscErrorCode time_loop(const Config &config, Solver *solver, Outputs *outputs, Progress *progress, Loop *loop) {
+PetscErrorCode stop_not_finite(Run *run) {
+  run->exit_reason = "nonfinite";
+  run->message = "a field is not finite at t = " + format_double(run->solver.state().time);
+  return 0;
+}
+
+PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *control, Progress *progress, Run *run) {
   PetscFunctionBeginUser;
-  const State &state = solver->state();
-  TimeStepControl control(config.time);
-  const double begin = MPI_Wtime();
-  while (!finished(state, config.time, &loop->exit_reason)) {
-    const double step_begin = MPI_Wtime();
+  Solver &solver = run->solver;
+  const State &state = solver.state();
+  const double total = run->position.wall_seconds_total, loop_begin = MPI_Wtime();
+  while (run->exit_reason.empty() && !finished(state, config.time, &run->exit_reason)) {
+    double step_begin = MPI_Wtime(), dt = 0;
+    std::string warning;
     {
       StageScope stage(Stage::step);
-      double dt = 0;
-      std::string warning;
-      PetscCall(control.choose(solver, &dt, &loop->message, &warning));
-      if (!loop->message.empty()) {
-        loop->exit_reason = "nonfinite";
-        break;
-      }
-      print_warning(solver->grid().comm(), warning);
-      PetscCall(solver->step(dt));
+      PetscCall(control->choose(&solver, &dt, &run->message, &warning));
     }
-    loop->wall += MPI_Wtime() - step_begin;
-    std::string ignored;
-    PetscCall(outputs->write_due(finished(state, config.time, &ignored)));
-    progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - begin);
+    if (!run->message.empty()) {
+      run->exit_reason = "nonfinite";
+      break;
+    }
+    print_warning(solver.grid().comm(), warning);
+    run->position.dt = control->dt();
+    run->position.wall_seconds += MPI_Wtime() - step_begin;
+    // A shortened step is no part of a longer run.
+    if (control->ends()) PetscCall(run->checkpoints.before_end(run->position));
+    step_begin = MPI_Wtime();
+    {
+      StageScope stage(Stage::step);
+      PetscCall(solver.step(dt));
+    }
+    run->position.wall_seconds += MPI_Wtime() - step_begin;
+    run->position.wall_seconds_total = total + MPI_Wtime() - begin;
+    PetscCall(run->outputs.write_due(false));
+    if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason));
+    progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   }
-  progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - begin);
+  if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position));
+  if (run->checkpoints.not_finite()) PetscCall(stop_not_finite(run));
+  if (run->exit_reason == "steps" || run->exit_reason == "time_end") PetscCall(run->outputs.write_due(true));
+  progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
+  PetscFunctionReturn(0);
+}
+
+// The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
+PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirectory *directory, Run *run,
+                         std::string *refusal) {
+  PetscFunctionBeginUser;
+  const Config &config = parsed.config;
+  const std::string &path = config.output.directory, &source = config.checkpoint.restart;
+  const bool in_place = !source.empty() && restarts_in_place(config);
+  std::string restarted_from;
+  PetscCall(build_scene(config, grid, &run->solver, refusal));
+  if (refusal->empty() && in_place) PetscCall(directory->reopen(grid.comm(), path, refusal));
+  if (refusal->empty() && !source.empty())
+    PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
+  if (refusal->empty() && !in_place) PetscCall(directory->open(grid.comm(), path, config.output.overwrite, refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  ParseResult whole = parsed;
+  if (in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
+  PetscCall(write_text_file(grid.comm(), directory->file("options.txt"), options_text(whole)));
+  PetscCall(run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, restarted_from));
+  PetscCall(run->outputs.resume(config, grid, &run->solver, directory->path(), run->position.outputs, in_place));
+  if (source.empty()) PetscCall(run->outputs.write_due(false));
+  if (!source.empty())
+    PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
+                          run->solver.state().time, static_cast<long long>(run->solver.state().step)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode write_summary(double begin, double total_before, Run *run) {
+  PetscFunctionBeginUser;
+  Summary summary;
+  summary.exit_reason = run->exit_reason;
+  summary.wall_seconds = run->position.wall_seconds;
+  summary.wall_seconds_total = total_before + MPI_Wtime() - begin;
+  PetscCall(run->outputs.write_summary(summary));
   PetscFunctionReturn(0);
 }
 
@@ -64,35 +120,34 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   PetscFunctionBeginUser;
   const Config &config = parsed.config;
   const double begin = MPI_Wtime();
-  const MPI_Comm comm = PETSC_COMM_WORLD;
   *code = exit_usage;
+  catch_signals();
   Grid grid;
-  PetscCall(grid.create(comm, config.grid));
-  Solver solver;
-  PetscCall(build_scene(config, grid, &solver, refusal));
-  if (!refusal->empty()) PetscFunctionReturn(0);
+  PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   RunDirectory directory;
-  PetscCall(directory.open(comm, config.output.directory, config.output.overwrite, refusal));
+  Run run;
+  PetscCall(begin_run(parsed, grid, &directory, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
-  *code = exit_failed;
-  PetscCall(write_text_file(comm, directory.file("options.txt"), options_text(parsed)));
-  Outputs outputs;
-  PetscCall(outputs.open(config, grid, &solver, directory.path()));
-  PetscCall(outputs.write_due(false));
-
+  const State &state = run.solver.state();
+  const double total_before = run.position.wall_seconds_total;
+  TimeStepControl control(config.time);
+  if (!config.checkpoint.restart.empty()) control.resume(run.position.dt);
   Progress progress(stdout, Progress::style_of(stdout, grid.rank()),
-                    {solver.state().time, config.time.end, static_cast<long>(solver.state().step),
+                    {state.time, config.time.end, static_cast<long>(state.step),
                      config.time.steps_max > 0 ? config.time.steps_max : -1, grid.cell_count()});
-  Loop loop;
-  PetscCall(time_loop(config, &solver, &outputs, &progress, &loop));
-
-  Summary summary;
-  summary.exit_reason = loop.exit_reason;
-  summary.wall_seconds = loop.wall;
-  summary.wall_seconds_total = MPI_Wtime() - begin;
-  PetscCall(outputs.write_summary(summary));
-  *refusal = loop.message;
-  *code = loop.exit_reason == "nonfinite" ? exit_nonfinite : exit_fine;
+  PetscCall(catch_together([&] { return time_loop(config, begin, &control, &progress, &run); }, refusal));
+  if (!refusal->empty()) {
+    // A full disk may have room for the few bytes that say so.
+    std::string ignored;
+    run.exit_reason = "output_failed";
+    *code = exit_failed;
+    PetscCall(catch_together([&] { return write_summary(begin, total_before, &run); }, &ignored));
+    PetscFunctionReturn(0);
+  }
+  *code = exit_failed;
+  PetscCall(write_summary(begin, total_before, &run));
+  *refusal = run.message;
+  *code = run.exit_reason == "nonfinite" ? exit_nonfinite : exit_fine;
   PetscFunctionReturn(0);
 }
 

@@ -7,8 +7,9 @@
 namespace eulastic {
 namespace {
 
-constexpr int euler_interval = 10;  // steps between measurements; the large steps of the staggered scheme look each time
-constexpr double growth = 1.05;     // most that dt grows from one measurement to the next
+constexpr int euler_interval =
+    10;                          // steps between measurements; the large steps of the staggered scheme look each time
+constexpr double growth = 1.05;  // most that dt grows from one measurement to the next
 
 std::string not_finite(const Solver &solver, double cell, double dt, const TimeStepLimits &limits) {
   const Int3 &n = solver.grid().cells();
@@ -55,7 +56,8 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, double *dt, std::string *
   *dt = dt_;
   if (time_.end > 0) {
     const double left = time_.end - state.time;
-    if (left <= *dt * (1 + 1e-9)) *dt = left;
+    ends_ = left <= *dt * (1 + 1e-9);
+    if (ends_) *dt = left;
   }
   PetscFunctionReturn(0);
 }

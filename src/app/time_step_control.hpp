@@ -14,10 +14,16 @@ public:
   /// user forces beyond a limit makes `warning` one line, once.
   PetscErrorCode choose(Solver *solver, double *dt, std::string *stop, std::string *warning);
 
+  /// The dt of the last choose() ends the run exactly at -time_end.
+  bool ends() const { return ends_; }
+  /// dt since the last measurement: with the state, all a restart needs.
+  double dt() const { return dt_; }
+  void resume(double dt) { dt_ = dt; }
+
 private:
   TimeControl time_;
   double dt_ = 0;  ///< since the last measurement
-  bool warned_ = false;
+  bool warned_ = false, ends_ = false;
 };
 
 }  // namespace eulastic

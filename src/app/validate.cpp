@@ -104,6 +104,27 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
+std::string check_point(const Config &config, const std::string &option, const Real3 &point) {
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d)
+    if (!(point[d] >= 0 && point[d] <= config.grid.length[d]))
+      return "-" + option + ": " + "xyz"[d] + " = " + to_text(point[d]) + " is outside the box; accepted: 0 ... " +
+             to_text(config.grid.length[d]);
+  return {};
+}
+
+std::string check_samples(const Config &config) {
+  for (const Real3 &point : config.samples.probes)
+    if (const std::string wrong = check_point(config, "probe_points", point); !wrong.empty()) return wrong;
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("profile_") + "xyz"[d];
+    const ProfileSpec &profile = config.samples.profile[d];
+    if (const std::string wrong = check_point(config, name, profile.line); !wrong.empty()) return wrong;
+    if (d == 2 && flat(config) && profile.kind != ProfileSpec::Kind::none)
+      return "-profile_z: needs more than one cell in z";
+  }
+  return {};
+}
+
 std::string check_method(const Config &config) {
   if (config.method.pressure == PressureKind::smac && !SmacSolver::available())
     return "-pressure_solver: smac needs FFTW, which this build has not; accepted: acm";
@@ -119,7 +140,7 @@ std::string check_restart(const Config &config) {
 }  // namespace
 
 std::string validate(const Config &config) {
-  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_restart})
+  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_samples, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;

@@ -7,12 +7,20 @@
 #include "io/text_file.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 namespace eulastic {
 namespace {
 
 constexpr std::size_t waiting_bytes_max = 64u << 20;
+
+// The directory is locked, and not all file systems can.
+Hdf5Property unlocked_access() {
+  Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+  (void)H5Pset_file_locking(access.get(), false, true);
+  return access;
+}
 
 bool write_text_attribute(hid_t object, const char *name, const std::string &text) {
   const Hdf5Type type = hdf5_string(text.size());
@@ -70,6 +78,32 @@ bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsi
          write_text_attribute(dataset.get(), "checksum", sum) && dataset.close();
 }
 
+// Shortens a dataset to its first `rows` rows; its checksum loses what the others had given.
+bool cut_rows(hid_t file, const char *name, hsize_t rows, std::uint64_t *sum) {
+  Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+  std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+  char text[17] = "";
+  const Hdf5Attribute attribute(H5Aopen(dataset.get(), "checksum", H5P_DEFAULT));
+  if (shape.empty() || shape[0] < rows || H5Aread(attribute.get(), hdf5_string(16).get(), text) < 0) return false;
+  *sum = std::strtoull(text, nullptr, 16);
+  hsize_t row = 1, start[3] = {rows, 0, 0};
+  for (std::size_t d = 1; d < shape.size(); ++d) row *= shape[d];
+  std::vector<hsize_t> one = shape;
+  one[0] = 1;
+  std::vector<double> values(row);
+  const Hdf5Space file_space(H5Dget_space(dataset.get()));
+  const Hdf5Space memory_space(H5Screate_simple(static_cast<int>(one.size()), one.data(), nullptr));
+  for (; start[0] < shape[0]; ++start[0]) {
+    if (H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, one.data(), nullptr) < 0 ||
+        H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) < 0)
+      return false;
+    *sum -= checksum(values.data(), row, start[0] * row);
+  }
+  shape[0] = rows;
+  return H5Dset_extent(dataset.get(), shape.data()) >= 0 &&
+         write_text_attribute(dataset.get(), "checksum", checksum_text(*sum)) && dataset.close();
+}
+
 }  // namespace
 
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
@@ -105,6 +139,36 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
   PetscFunctionReturn(0);
 }
 
+std::string BodiesFile::cut(std::size_t rows) {
+  std::error_code error;
+  if (rows == 0) {
+    std::filesystem::remove(path_, error);
+    return error ? path_ + ": cannot be removed (" + error.message() + ")" : "";
+  }
+  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const std::string target = temporary_name(path_);
+  std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) return path_ + ": cannot be copied (" + error.message() + ")";
+  Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
+  bool fine = bool(file);
+  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
+  if (!file.close() || !fine) {
+    std::filesystem::remove(target, error);
+    return path_ +
+           ": damaged, or has fewer rows than the checkpoint says; moving it away lets the restart begin a new one";
+  }
+  written_ = rows;
+  return replace_file(path_);
+}
+
+PetscErrorCode BodiesFile::resume(long *rows) {
+  PetscFunctionBeginUser;
+  if (rank_ == 0 && !std::filesystem::exists(path_)) *rows = 0;
+  PetscCallMPI(MPI_Bcast(rows, 1, MPI_LONG, 0, comm_));
+  PetscCall(fail_together(comm_, rank_ == 0 ? cut(static_cast<std::size_t>(*rows)) : std::string()));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesFile::flush() {
   PetscFunctionBeginUser;
   PetscCall(fail_together(comm_, rank_ == 0 && waiting_ > 0 ? write_waiting() : std::string()));
@@ -118,8 +182,7 @@ std::string BodiesFile::write_waiting() {
   std::error_code error;
   if (written_ > 0) std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
   if (error) return path_ + ": cannot be copied (" + error.message() + ")";
-  const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
-  (void)H5Pset_file_locking(access.get(), false, true);  // the directory is locked, and not all file systems can
+  const Hdf5Property access = unlocked_access();
   Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                     : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
   bool fine = file && (written_ > 0 || write_bodies(file.get(), first_));

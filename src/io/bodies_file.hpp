@@ -20,6 +20,9 @@ public:
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
   /// Collective. All rows so far are on disk when this returns.
   PetscErrorCode flush();
+  /// Collective, before the first add(): goes on with the file that is there, after its first `rows` rows. If it has
+  /// been taken away a new one begins and `rows` becomes 0.
+  PetscErrorCode resume(long *rows);
 
 private:
   struct Column {
@@ -28,7 +31,8 @@ private:
     std::vector<double> waiting;
     std::uint64_t checksum;
   };
-  std::string write_waiting();  ///< rank 0; empty, or what went wrong
+  std::string cut(std::size_t rows);  ///< rank 0; empty, or what went wrong
+  std::string write_waiting();        ///< rank 0; empty, or what went wrong
 
   MPI_Comm comm_;
   int rank_ = 0;

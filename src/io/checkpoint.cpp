@@ -75,10 +75,10 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
   PetscCall(fail_together(comm, found == kind ? "" : path + ": not a checkpoint of this program"));
   PetscCall(file_.read_attribute("/", "format", &number));
   PetscCall(file_.read_attribute("/", "version", &version_));
-  PetscCall(fail_together(comm, number == format ? ""
-                                                 : path + ": has format " + std::to_string(long(number)) +
-                                                       " (written by version " + version_ +
-                                                       "), this program reads format " + std::to_string(format)));
+  PetscCall(fail_together(comm, number == format
+                                    ? ""
+                                    : path + ": has format " + std::to_string(long(number)) + " (written by version " +
+                                          version_ + "), this program reads format " + std::to_string(format)));
   PetscFunctionReturn(0);
 }
 

@@ -3,11 +3,32 @@
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
+#include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace eulastic {
+namespace {
+
+// The bytes of the header and the first `rows` complete rows, or of all there are if there are fewer: then `rows`
+// says how many.
+std::uintmax_t bytes_of(const std::string &path, long *rows) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  std::uintmax_t bytes = 0;
+  long found = -1;
+  while (found < *rows && std::getline(file, line) && !file.eof()) {
+    bytes += line.size() + 1;
+    ++found;
+  }
+  *rows = std::max(found, 0L);
+  return bytes;
+}
+
+}  // namespace
 
 std::string Series::append(const std::string &line) {
   const bool written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
@@ -15,7 +36,8 @@ std::string Series::append(const std::string &line) {
   return "cannot write " + path_ + ": " + std::strerror(errno);
 }
 
-PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns) {
+PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns,
+                            long rows_kept) {
   int rank;
   std::string problem, header;
   PetscFunctionBeginUser;
@@ -27,14 +49,18 @@ PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::v
   if (rank == 0) {
     std::string first;
     std::getline(std::ifstream(path), first);
+    std::error_code error;
+    if (first == header) std::filesystem::resize_file(path, bytes_of(path, &rows_kept), error);
+    if (first == header) rows_ = rows_kept;
     file_.reset(std::fopen(path.c_str(), "ae"));
-    if (!file_)
-      problem = "cannot open " + path + ": " + std::strerror(errno);
+    if (error || !file_)
+      problem = "cannot open " + path + ": " + (error ? error.message() : std::strerror(errno));
     else if (first.empty())
       problem = append(header + "\n");
     else if (first != header)
       problem = path + ": has other columns (" + first + "), expected " + header;
   }
+  PetscCallMPI(MPI_Bcast(&rows_, 1, MPI_LONG, 0, comm));
   PetscCall(fail_together(comm, problem));
   PetscFunctionReturn(0);
 }
@@ -50,6 +76,14 @@ PetscErrorCode Series::write(const std::vector<double> &values) {
     problem = append(line + "\n");
   }
   PetscCall(fail_together(comm_, problem));
+  ++rows_;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Series::sync() {
+  PetscFunctionBeginUser;
+  const bool synced = !file_ || ::fsync(::fileno(file_.get())) == 0 || errno == EINVAL;
+  PetscCall(fail_together(comm_, synced ? "" : "cannot sync " + path_ + ": " + std::strerror(errno)));
   PetscFunctionReturn(0);
 }
 

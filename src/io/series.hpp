@@ -4,6 +4,7 @@
 #include "base/petsc.hpp"
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,9 +14,15 @@ namespace eulastic {
 class Series {
 public:
   /// Collective. Opens `path` for appending on rank 0; a new file gets the header, an old one must have the same.
-  PetscErrorCode open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns);
+  /// Of an old one only the first `rows_kept` rows stay.
+  PetscErrorCode open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns,
+                      long rows_kept = std::numeric_limits<long>::max());
   /// Collective. One value per column, rank 0's count; 17 digits, and in the file when this returns.
   PetscErrorCode write(const std::vector<double> &values);
+  /// Collective. All rows survive a power cut when this returns.
+  PetscErrorCode sync();
+  /// In the file.
+  long rows() const { return rows_; }
 
 private:
   struct Close {
@@ -26,6 +33,7 @@ private:
   MPI_Comm comm_ = MPI_COMM_NULL;
   std::string path_;
   std::size_t columns_ = 0;
+  long rows_ = 0;
   std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -2,8 +2,12 @@
 
 #include "base/events.hpp"
 #include "io/text_file.hpp"
+#include "io/wall_index.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 namespace eulastic {
 namespace {
@@ -17,6 +21,12 @@ constexpr const char *index_tail = "</Grid>\n</Domain>\n</Xdmf>\n";
 template <class T, class Text>
 std::string zyx(const std::array<T, 3> &xyz, Text text) {
   return text(xyz[2]) + " " + text(xyz[1]) + " " + text(xyz[0]);
+}
+
+std::string file_name(int n) {
+  char name[32];
+  std::snprintf(name, sizeof name, "snapshot_%06d", n);
+  return name;
 }
 
 std::string number_type(Stored stored) {
@@ -41,7 +51,7 @@ std::string SnapshotWriter::index_entry(const std::string &name, double time,
                      zyx(grid_->spacing(), format_double) + "</DataItem>\n</Geometry>\n";
   for (const SnapshotField &field : fields) {
     const Staggering &s = field.format.staggering;
-    if (s[0] + s[1] + s[2] == 1) continue;
+    if (s[0] + s[1] + s[2] == 1 || field.format.plane >= 0) continue;
     const bool vector = field.components.size() == 3;
     text += "<Attribute Name=\"" + field.format.name + "\" AttributeType=\"" + (vector ? "Vector" : "Scalar") +
             "\" Center=\"Cell\"><DataItem Dimensions=\"" + cells + (vector ? " 3" : "") + "\" " +
@@ -51,11 +61,28 @@ std::string SnapshotWriter::index_entry(const std::string &name, double time,
   return text + "</Grid>\n";
 }
 
+PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
+  PetscFunctionBeginUser;
+  count_ = count;
+  if (!same_directory || grid_->rank() > 0) PetscFunctionReturn(0);
+  std::stringstream text;
+  text << std::ifstream(directory_ + "/snapshots.xdmf").rdbuf();
+  const std::string head = index_head, entry_tail = "</Grid>\n";
+  std::size_t end = text.str().compare(0, head.size(), head) == 0 ? head.size() : 0;
+  for (int n = 0; n < count && end != 0; ++n) {
+    const std::size_t tail = text.str().find(entry_tail, end);
+    end = tail == std::string::npos ? 0 : tail + entry_tail.size();
+  }
+  if (end != 0) index_ = text.str().substr(head.size(), end - head.size());
+  std::error_code error;  // one that stays is written over
+  for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n) continue;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<SnapshotField> &fields) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::write);
-  char name[32];
-  std::snprintf(name, sizeof name, "snapshot_%06d", count_);
+  const std::string name = file_name(count_);
   const Real3 &h = grid_->spacing(), &length = grid_->spec().length;
   Hdf5File file;
   PetscCall(file.create(grid_->comm(), directory_ + "/" + name + ".h5"));
@@ -69,6 +96,8 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   ++count_;
   index_ += index_entry(name, time, fields);
   PetscCall(write_text_file(grid_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
+  const std::string walls = wall_index(*grid_, index_, fields);
+  if (!walls.empty()) PetscCall(write_text_file(grid_->comm(), directory_ + "/walls.xdmf", walls));
   PetscFunctionReturn(0);
 }
 

@@ -15,6 +15,10 @@ class SnapshotWriter {
 public:
   SnapshotWriter(const Grid &grid, std::string directory) : grid_(&grid), directory_(std::move(directory)) {}
 
+  /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
+  /// index goes on too, and later ones are removed.
+  PetscErrorCode resume(int count, bool same_directory);
+  int count() const { return count_; }
   /// Collective. Writes one file with its attributes, then the index anew.
   PetscErrorCode write(double time, long step, const std::vector<SnapshotField> &fields);
 

@@ -1,0 +1,93 @@
+#include "app/checkpoints.hpp"
+
+#include "app/signals.hpp"
+#include "base/events.hpp"
+#include "physics/limits.hpp"
+
+#include <filesystem>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum Wish : int { wish_checkpoint = 1, wish_wall_limit = 2, wish_signal = 4 };
+
+}  // namespace
+
+PetscErrorCode Checkpoints::open(const ParseResult &parsed, const std::string &directory, Solver *solver,
+                                 Outputs *outputs, const std::string &restarted_from) {
+  PetscFunctionBeginUser;
+  control_ = parsed.config.checkpoint;
+  directory_ = directory;
+  options_ = options_text(parsed);
+  solver_ = solver;
+  outputs_ = outputs;
+  due_ = {control_.interval, solver->state().time};
+  begin_ = last_wall_ = MPI_Wtime();
+  if (restarted_from.empty() || !restarts_in_place(parsed.config)) PetscFunctionReturn(0);
+  last_step_ = solver->state().step;
+  if (solver->grid().rank() > 0) PetscFunctionReturn(0);
+  std::error_code error;
+  for (const std::string &path : list_checkpoints(directory_))  // newest first: what is left always fits the series
+    if (checkpoint_step(path) > last_step_) fs::remove(path, error);
+  PetscFunctionReturn(0);
+}
+
+int Checkpoints::wishes() const {
+  const double now = MPI_Wtime();
+  int wishes = signal_caught() ? wish_signal : 0;
+  if (solver_->grid().rank() > 0) return wishes;
+  if (control_.wall_minutes > 0 && now - last_wall_ >= 60 * control_.wall_minutes) wishes |= wish_checkpoint;
+  if (control_.stop_after_minutes > 0 && now - begin_ >= 60 * control_.stop_after_minutes) wishes |= wish_wall_limit;
+  return wishes;
+}
+
+PetscErrorCode Checkpoints::after_step(const RunPosition &position, std::string *exit_reason) {
+  PetscFunctionBeginUser;
+  int wish = wishes();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wish, 1, MPI_INT, MPI_BOR, solver_->grid().comm()));
+  if (wish & wish_wall_limit) *exit_reason = "wall_limit";
+  if (wish & wish_signal) *exit_reason = "signal";
+  if (wish == 0 && !due_.at(solver_->state().time)) PetscFunctionReturn(0);
+  PetscCall(write(position));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Checkpoints::before_end(const RunPosition &position) {
+  PetscFunctionBeginUser;
+  if (control_.regular()) PetscCall(write(position));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Checkpoints::write(RunPosition position) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  if (state.step == last_step_) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  // The last good one must not give way to one that is good for nothing.
+  FlowExtremes extremes;
+  PetscCall(measure_extremes(solver_->grid(), state.velocity, state.phases, &extremes));
+  not_finite_ = extremes.first_bad >= 0;
+  if (not_finite_) PetscFunctionReturn(0);
+  PetscCall(outputs_->sync(&position.outputs));
+  PetscCallMPI(MPI_Bcast(&position.wall_seconds, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
+  PetscCallMPI(MPI_Bcast(&position.wall_seconds_total, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
+  PetscCall(save_state(solver_, position, options_, directory_ + "/" + checkpoint_name(static_cast<long>(state.step))));
+  last_step_ = state.step;
+  due_.last_time = state.time;
+  last_wall_ = MPI_Wtime();
+  PetscCall(remove_old());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Checkpoints::remove_old() {
+  PetscFunctionBeginUser;
+  if (solver_->grid().rank() > 0) PetscFunctionReturn(0);
+  const std::vector<std::string> paths = list_checkpoints(directory_);
+  std::error_code error;  // one that stays does no harm
+  for (std::size_t n = static_cast<std::size_t>(control_.keep); n < paths.size(); ++n) fs::remove(paths[n], error);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

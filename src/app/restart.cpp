@@ -1,0 +1,133 @@
+#include "app/restart.hpp"
+
+#include "app/option_table.hpp"
+#include "io/fail_together.hpp"
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::map<std::string, std::string> values_of(const std::string &options) {
+  std::map<std::string, std::string> values;
+  std::istringstream lines(options);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.find(' ');
+    if (line[0] == '-' && space != std::string::npos) values[line.substr(1, space - 1)] = line.substr(space + 1);
+  }
+  return values;
+}
+
+std::string shown(const std::string &value) { return value.empty() ? "not given" : value; }
+
+// Rank 0's answer counts: others may see the directory a moment later.
+PetscErrorCode list_everywhere(MPI_Comm comm, const std::string &directory, std::vector<std::string> *paths) {
+  int rank;
+  std::string text;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0)
+    for (const std::string &path : list_checkpoints(directory)) text += path + "\n";
+  int length = static_cast<int>(text.size());
+  PetscCallMPI(MPI_Bcast(&length, 1, MPI_INT, 0, comm));
+  text.resize(length);
+  PetscCallMPI(MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm));
+  std::istringstream lines(text);
+  paths->clear();
+  for (std::string line; std::getline(lines, line);) paths->push_back(line);
+  PetscFunctionReturn(0);
+}
+
+// `refusal`: the file is whole but this run must not go on from it.
+PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *solver, RunPosition *position,
+                    std::string *refusal) {
+  CheckpointFile file;
+  std::string options;
+  PetscFunctionBeginUser;
+  PetscCall(file.open(solver->grid().comm(), path));
+  PetscCall(file.read_options(&options));
+  *refusal = changed_option(options, parsed);
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  PetscCall(load_state(&file, path, solver, position));
+  if (file.version() != EULASTIC_VERSION)
+    (void)PetscFPrintf(solver->grid().comm(), stderr,
+                       "eulastic: warning: %s was written by version %s: the same bits are not certain\n", path.c_str(),
+                       file.version().c_str());
+  PetscFunctionReturn(0);
+}
+
+// A run that is beyond its end already.
+std::string beyond_end(const State &state, const TimeControl &time) {
+  char text[160];
+  if (time.end > 0 && state.time > time.end * (1 + 1e-12))
+    std::snprintf(text, sizeof text, "-time_end: the checkpoint is at t = %.9g already; accepted: a later end",
+                  state.time);
+  else if (time.steps_max > 0 && state.step > time.steps_max)
+    std::snprintf(text, sizeof text, "-time_steps_max: the checkpoint is at step %lld already; accepted: more steps",
+                  static_cast<long long>(state.step));
+  else
+    return {};
+  return text;
+}
+
+}  // namespace
+
+bool restarts_in_place(const Config &config) {
+  const fs::path source = config.checkpoint.restart;
+  std::error_code error;
+  const fs::path directory = fs::is_directory(source, error) ? source : fs::absolute(source, error).parent_path();
+  return fs::equivalent(directory, config.output.directory, error);
+}
+
+std::string changed_option(const std::string &before, const ParseResult &now) {
+  const auto then = values_of(before), here = values_of(options_text(now));
+  const auto value = [](const std::map<std::string, std::string> &values, const std::string &name) {
+    const auto found = values.find(name);
+    return found == values.end() ? std::string() : found->second;
+  };
+  Config config = now.config;
+  for (const Option &option : option_table(config)) {
+    const std::string a = value(then, option.name), b = value(here, option.name);
+    if (!option.may_change && a != b)
+      return "-" + option.name + ": cannot change at a restart; in the checkpoint: " + shown(a) + ", now: " + shown(b);
+  }
+  return {};
+}
+
+PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *position, std::string *path,
+                       std::string *refusal) {
+  const MPI_Comm comm = solver->grid().comm();
+  const fs::path source = parsed.config.checkpoint.restart;
+  std::error_code error;
+  const bool is_directory = fs::is_directory(source, error);
+  std::vector<std::string> all;
+  PetscFunctionBeginUser;
+  PetscCall(list_everywhere(comm, is_directory ? source : fs::absolute(source, error).parent_path(), &all));
+  const std::vector<std::string> candidates = is_directory ? all : std::vector<std::string>{source};
+  if (candidates.empty()) *refusal = "-restart: there is no checkpoint in " + source.string();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    std::string damage;
+    *path = candidates[c];
+    PetscCall(catch_together([&] { return load(parsed, *path, solver, position, refusal); }, &damage));
+    if (damage.empty()) {
+      if (refusal->empty()) *refusal = beyond_end(solver->state(), parsed.config.time);
+      PetscFunctionReturn(0);
+    }
+    std::string older;
+    for (const std::string &other : all)
+      if (older.empty() && (checkpoint_step(*path) < 0 || checkpoint_step(other) < checkpoint_step(*path)) &&
+          !fs::equivalent(other, *path, error))
+        older = other;
+    *refusal = "-restart: " + damage + (older.empty() ? "; there is no older one" : "; the next older one is " + older);
+    if (!is_directory || older.empty()) PetscFunctionReturn(0);
+    (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", refusal->c_str());
+    refusal->clear();
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

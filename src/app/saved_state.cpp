@@ -1,0 +1,127 @@
+#include "app/saved_state.hpp"
+
+#include "io/fail_together.hpp"
+
+namespace eulastic {
+namespace {
+
+constexpr const char *axes[3] = {"_x", "_y", "_z"};
+
+// Every field that is carried on; of 2-D tensors the components that are there.
+std::vector<CheckpointField> fields_of(Solver &solver) {
+  State &state = solver.state();
+  std::vector<CheckpointField> fields;
+  for (int d = 0; d < state.velocity.count(); ++d)
+    fields.push_back({std::string("velocity") + axes[d], at_face[d], state.velocity[d]});
+  fields.push_back({"pressure", at_centre, state.pressure[0]});
+  for (int d = 0; d < state.advection.count(); ++d)
+    fields.push_back({std::string("advection") + axes[d], at_face[d], state.advection[d]});
+  const auto &components = tensor_components(solver.grid().dimension());
+  for (Phase &phase : state.phases) {
+    const std::string species = "_" + phase.species;
+    fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
+    for (int c = 0; c < phase.tensor.count(); ++c) {
+      const std::string name{"xyz"[components[c].a], "xyz"[components[c].b]};
+      fields.push_back({"left_cauchy_green_" + name + species, components[c].staggering(), phase.tensor[c]});
+    }
+    if (phase.label) fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
+  }
+  // May be missing: the pressure solver can be changed at a restart.
+  if (FieldBlock *memory = solver.pressure_memory())
+    for (int f = 0; f < memory->count(); ++f)
+      fields.push_back({"pressure_increment_" + std::to_string(f), at_centre, (*memory)[f], Stored::float64, true});
+  return fields;
+}
+
+// Everything else; the arrays of bodies only where there are some.
+CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::uint64_t hash) {
+  const State &s = solver.state();
+  const OutputsPosition &o = position.outputs;
+  CheckpointNumbers numbers;
+  auto &reals = numbers.reals;
+  auto &integers = numbers.integers;
+  reals["time"] = {s.time};
+  reals["time_step"] = {s.dt, position.dt};
+  reals["flow_scales"] = {s.speed_scale, s.crossing_rate, s.travel};
+  reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
+  reals["output_times"] = {o.series_time, o.snapshot_time};
+  integers["step"] = {static_cast<long>(s.step)};
+  integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
+  integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
+  integers["state_hash"] = {static_cast<long>(hash)};
+  if (solver.bodies().bodies() == 0) return numbers;
+  reals["body_first_volumes"] = o.first_volume;
+  for (const Int3 &cell : solver.bodies().references())
+    integers["body_references"].insert(integers["body_references"].end(), cell.begin(), cell.end());
+  return numbers;
+}
+
+// Null, or the array that has not the length it is expected to have.
+const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumbers &found) {
+  for (const auto &[name, values] : expected.reals)
+    if (found.reals.at(name).size() != values.size()) return name.c_str();
+  for (const auto &[name, values] : expected.integers)
+    if (found.integers.at(name).size() != values.size()) return name.c_str();
+  return nullptr;
+}
+
+void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *position) {
+  State &s = solver->state();
+  OutputsPosition &o = position->outputs;
+  auto &reals = numbers.reals;
+  auto &integers = numbers.integers;
+  s.time = reals["time"][0];
+  s.dt = reals["time_step"][0];
+  position->dt = reals["time_step"][1];
+  s.speed_scale = reals["flow_scales"][0];
+  s.crossing_rate = reals["flow_scales"][1];
+  s.travel = reals["flow_scales"][2];
+  position->wall_seconds = reals["wall_seconds"][0];
+  position->wall_seconds_total = reals["wall_seconds"][1];
+  o.series_time = reals["output_times"][0];
+  o.snapshot_time = reals["output_times"][1];
+  s.step = integers["step"][0];
+  o.series_rows = integers["output_rows"][0];
+  o.bodies_rows = integers["output_rows"][1];
+  o.snapshots = integers["output_rows"][2];
+  if (solver->bodies().bodies() == 0) return;
+  o.first_volume = reals["body_first_volumes"];
+  std::vector<Int3> cells(solver->bodies().references().size());
+  for (std::size_t n = 0; n < 3 * cells.size(); ++n)
+    cells[n / 3][n % 3] = static_cast<int>(integers["body_references"][n]);
+  solver->bodies().set_references(cells);
+}
+
+}  // namespace
+
+PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
+                          const std::string &path) {
+  std::uint64_t hash = 0;
+  PetscFunctionBeginUser;
+  PetscCall(state_hash(solver->grid(), solver->state(), &hash));
+  PetscCall(write_checkpoint(solver->grid(), path, options, numbers_of(*solver, position, hash), fields_of(*solver)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
+  const Grid &grid = solver->grid();
+  position->outputs.first_volume.assign(solver->bodies().references().size(), 0);
+  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
+  CheckpointNumbers numbers = expected;
+  std::uint64_t hash = 0;
+  PetscFunctionBeginUser;
+  PetscCall(file->read_numbers(&numbers));
+  const char *wrong = wrong_length(expected, numbers);
+  PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
+  if (FieldBlock *memory = solver->pressure_memory()) memory->clear();  // the file may know of fewer
+  PetscCall(file->read_fields(grid, fields_of(*solver)));
+  take_numbers(numbers, solver, position);
+  PetscCall(state_hash(grid, solver->state(), &hash));
+  PetscCall(fail_together(grid.comm(), hash == static_cast<std::uint64_t>(numbers.integers["state_hash"][0])
+                                           ? ""
+                                           : path + ": damaged (the hash of its state differs)"));
+  PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
