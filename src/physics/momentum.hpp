@@ -29,7 +29,7 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
                                 const FieldBlock &velocity, const FieldBlock &pressure,
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star);
 
-/// The rate dv/dt itself, for super time stepping. `advection` holds v.grad v of the last step (read when its weight
+/// The rate dv/dt itself, for super time stepping. `advection` holds -v.grad v of the last step (read when its weight
 /// is not 0) and gets that of this one; it may be empty when the weight is 0.
 PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
                              const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,

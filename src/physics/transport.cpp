@@ -56,55 +56,82 @@ constexpr int position(int x, int y) {
   return x == y ? x : Dim == 2 ? 2 : 6 - x - y;
 }
 
+// One component on one segment: rate, then the stage.
 template <int Dim>
-EULASTIC_INLINE void tensor_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                      FieldBlock &out, RowScratch &scratch) {
+EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
+                                    const Segment &s, double *const *carried, FieldBlock &out, double *rate) {
   const FieldBlock &v = *t.velocity;
   const ConstView phi = phase.fraction[0];
   const int f = position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;                        // second direction
   const int third = Dim == 3 ? 3 - a - other : other;                  // and the remaining one
-  const bool at[3] = {a != b && (a == 0 || b == 0), a != b && (a == 1 || b == 1), a != b && (a == 2 || b == 2)};
-  const kernels::Directions d{phi.stride(a),  phi.stride(other),  phi.stride(third),
-                              t.inverse[a], t.inverse[other], t.inverse[third]};
+  const kernels::Directions d{phi.stride(a), phi.stride(other),  phi.stride(third),
+                              t.inverse[a],  t.inverse[other], t.inverse[third]};
+  for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
+  kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
+  if (a == b)
+    kernels::add_diagonal_stretch<Dim>(s, B[f], B[position<Dim>(a, other)], B[position<Dim>(a, third)], v[a], d, rate);
+  else
+    kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)], v[a],
+                                    v[b], d, rate);
   const double exterior = a == b ? 1.0 : 0.0, threshold = a == b ? t.rule.centre : t.rule.edge;
-  const double before = t.second_of_heun ? 0.5 : 0.0, share = t.second_of_heun ? 0.5 : 1.0;
-  const int end = t.grid->points_end(0, at[0]);
-  double *rate = scratch.row(0);
-  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
-  for (int k = 0; k < t.grid->points_end(2, at[2]); ++k)
-    for (int j = 0; j < t.grid->points_end(1, at[1]); ++j) {
-      const double *now = B[f].row(j, k), *solid = phi.row(j, k);
-      double *next = out[f].row(j, k);
-      int done = 0;
-      for (const Segment &segment : phase.solid.row(j, k)) {
-        const Segment s{segment.i_begin, segment.i_end < end ? segment.i_end : end, j, k};
-        for (int i = done; i < s.i_begin; ++i) next[i] = exterior;
-        for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
-        for (int e = 0; e < Dim; ++e) kernels::carry_velocity(s, v[e], e, at, Dim, carried[e]);
-        kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
-        if (a == b)
-          kernels::add_diagonal_stretch<Dim>(s, B[f], B[position<Dim>(a, other)], B[position<Dim>(a, third)], v[a], d,
-                                             rate);
-        else
-          kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)],
-                                          v[a], v[b], d, rate);
+  const double *now = B[f].row(s.j, s.k), *solid = phi.row(s.j, s.k);
+  double *next = out[f].row(s.j, s.k);
+  if (t.second_of_heun) {
 #pragma omp simd
-        for (int i = s.i_begin; i < s.i_end; ++i) {
-          const double moved = kernels::fma(before, next[i], share * kernels::fma(t.dt, rate[i], now[i]));
-          next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
-        }
-        done = s.i_end;
-      }
-      for (int i = done; i < end; ++i) next[i] = exterior;
+    for (int i = s.i_begin; i < s.i_end; ++i) {
+      const double moved = 0.5 * (next[i] + kernels::fma(t.dt, rate[i], now[i]));
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
     }
+  } else {
+#pragma omp simd
+    for (int i = s.i_begin; i < s.i_end; ++i) {
+      const double moved = kernels::fma(t.dt, rate[i], now[i]);
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
+    }
+  }
+}
+
+// The components that live at one location (all diagonal ones, or one off-diagonal) on row (j, k).
+template <int Dim>
+EULASTIC_INLINE void tensor_row(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b, int j,
+                                int k, FieldBlock &out, RowScratch &scratch) {
+  const bool centre = a == b;
+  const bool at[3] = {!centre && (a == 0 || b == 0), !centre && (a == 1 || b == 1), !centre && (a == 2 || b == 2)};
+  if (j >= t.grid->points_end(1, at[1]) || k >= t.grid->points_end(2, at[2])) return;
+  const int end = t.grid->points_end(0, at[0]);
+  const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
+  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  int done = 0;
+  const auto set_exterior = [&](int begin, int stop) {
+    for (int f = first; f < last; ++f) {
+      double *next = out[f].row(j, k);
+      for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
+    }
+  };
+  for (const Segment &segment : phase.solid.row(j, k)) {
+    const Segment s{segment.i_begin, segment.i_end < end ? segment.i_end : end, j, k};
+    if (s.i_begin >= s.i_end) continue;
+    set_exterior(done, s.i_begin);
+    for (int e = 0; e < Dim; ++e) kernels::carry_velocity(s, (*t.velocity)[e], e, at, Dim, carried[e]);
+    if (centre)
+      for (int c = 0; c < Dim; ++c) tensor_segment<Dim>(t, phase, B, c, c, s, carried, out, scratch.row(0));
+    else
+      tensor_segment<Dim>(t, phase, B, a, b, s, carried, out, scratch.row(0));
+    done = s.i_end;
+  }
+  set_exterior(done, end);
 }
 
 template <int Dim>
 EULASTIC_INLINE void tensor_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
                                  RowScratch &scratch) {
-  for (int a = 0; a < Dim; ++a)
-    for (int b = a; b < Dim; ++b) tensor_component<Dim>(t, phase, B, a, b, out, scratch);
+  for (int k = 0; k < phase.solid.rows_z(); ++k)
+    for (int j = 0; j < phase.solid.rows_y(); ++j) {
+      tensor_row<Dim>(t, phase, B, 0, 0, j, k, out, scratch);
+      for (int a = 0; a < Dim; ++a)
+        for (int b = a + 1; b < Dim; ++b) tensor_row<Dim>(t, phase, B, a, b, j, k, out, scratch);
+    }
 }
 
 EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
