@@ -102,7 +102,12 @@ PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &for
   PetscFunctionBeginUser;
   Int3 extra{};
   for (int d = 0; d < 3; ++d) extra[d] = format.high_wall && format.staggering[d] && grid.is_wall(d);
-  const Box box = owned_box(grid, extra, components.size());
+  Box box = owned_box(grid, extra, components.size());
+  if (const int d = format.plane; d >= 0) {
+    box.total[2 - d] = 1;
+    box.begin[2 - d] = 0;
+    box.count[2 - d] = (format.plane_high ? grid.touches_high(d) : grid.touches_low(d)) ? 1 : 0;
+  }
   std::vector<T> values;
   values.reserve(box.count[0] * box.count[1] * box.count[2] * components.size());
   for (int k = 0; k < int(box.count[0]); ++k)
@@ -110,7 +115,10 @@ PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &for
       for (int i = 0; i < int(box.count[2]); ++i)
         for (const ConstView &component : components) values.push_back(static_cast<T>(component(i, j, k)));
   PetscCall(write_values(format.name, box, file_type, values));
-  PetscCall(write_attribute(format.name, "location", location_name(format.staggering)));
+  PetscCall(write_attribute(format.name, "location",
+                            format.plane < 0 ? location_name(format.staggering)
+                                             : std::string("wall_") + "xyz"[format.plane] +
+                                                   (format.plane_high ? "max" : "min")));
   PetscFunctionReturn(0);
 }
 

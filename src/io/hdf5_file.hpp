@@ -21,6 +21,8 @@ struct FieldFormat {
   Staggering staggering = at_centre;
   Stored stored = Stored::float64;
   bool high_wall = false;  ///< also index N (the high wall) where the field is staggered
+  int plane = -1;          ///< 0, 1, 2: only the cells on the wall normal to x, y, z, held by the ranks that touch it
+  bool plane_high = false;
 };
 
 /// "centre", "face_x", "edge_xy", ...: the attribute `location`.

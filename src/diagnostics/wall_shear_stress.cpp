@@ -1,0 +1,93 @@
+#include "diagnostics/wall_shear_stress.hpp"
+
+#include "base/events.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+class OneWall {
+public:
+  OneWall(const Grid &grid, int direction, bool high)
+      : grid_(grid), d_(direction), high_(high), last_(grid.owned()[direction] - 1) {}
+
+  /// Adds to the traction along c at the low c-face of the wall's cells and at that of their upper neighbours, each
+  /// with half its weight.
+  template <class Value>
+  void add(int c, WallStress *stress, Value value) const {
+    Int3 end = grid_.owned();
+    end[d_] = 1;
+    double *to = stress->components[c].data();
+    for (int k = 0; k < end[2]; ++k)
+      for (int j = 0; j < end[1]; ++j)
+        for (int i = 0; i < end[0]; ++i) {
+          Int3 cell{i, j, k};
+          cell[d_] = high_ ? last_ : 0;
+          const double low = value(cell);
+          ++cell[c];
+          *to++ += 0.5 * (low + value(cell));
+        }
+  }
+
+  void add_viscous(int c, double viscosity, double wall, ConstView q, WallStress *stress) const {
+    const std::ptrdiff_t inward = high_ ? -q.stride(d_) : q.stride(d_);
+    const double factor = viscosity / (3 * grid_.spacing()[d_]);
+    add(c, stress, [=](const Int3 &cell) {
+      const double *p = &q(cell[0], cell[1], cell[2]);
+      return factor * (9 * p[0] - p[inward] - 8 * wall);
+    });
+  }
+
+  void add_elastic(int c, const Phase &phase, WallStress *stress) const {
+    const auto &components = tensor_components(grid_.dimension());
+    int shear = 0;
+    while (components[shear].a != std::min(c, d_) || components[shear].b != std::max(c, d_)) ++shear;
+    const ConstView phi = phase.fraction[0], b = phase.tensor[shear];
+    const std::ptrdiff_t back = phi.stride(c);
+    const double factor = (high_ ? -0.5 : 0.5) * phase.material.shear_modulus;
+    add(c, stress, [=, d = d_, up = high_ ? 1 : 0](const Int3 &cell) {
+      const double *p = &phi(cell[0], cell[1], cell[2]);
+      Int3 edge = cell;
+      edge[d] += up;
+      return factor * (p[0] + p[-back]) * b(edge[0], edge[1], edge[2]);
+    });
+  }
+
+private:
+  const Grid &grid_;
+  int d_;
+  bool high_;
+  int last_;
+};
+
+}  // namespace
+
+std::vector<WallStress> wall_shear_stress(const Grid &grid, const Walls &walls, double time, double viscosity,
+                                          const FieldBlock &velocity, const std::vector<Phase> &phases) {
+  const VerbScope scope(Verb::sums);
+  std::vector<WallStress> all;
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true}) {
+      if (!grid.is_wall(d)) continue;
+      WallStress &stress = all.emplace_back();
+      stress.direction = d;
+      stress.high = high;
+      Int3 n = grid.owned();
+      n[d] = (high ? grid.touches_high(d) : grid.touches_low(d)) ? 1 : 0;
+      stress.sy = n[0];
+      stress.sz = std::ptrdiff_t(n[0]) * n[1];
+      for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
+      if (n[d] == 0) continue;
+      const OneWall wall(grid, d, high);
+      const Real3 speed = walls.motion[d][high].at(time);
+      for (int c = 0; c < grid.dimension(); ++c) {
+        if (c == d) continue;
+        wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);
+        for (const Phase &phase : phases) wall.add_elastic(c, phase, &stress);
+      }
+    }
+  return all;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,47 @@
+#include "io/wall_index.hpp"
+
+#include "io/text_file.hpp"
+
+#include <regex>
+
+namespace eulastic {
+namespace {
+
+// One wall of one snapshot: a box of cells without thickness.
+std::string one_wall(const Grid &grid, const std::string &file, const SnapshotField &field) {
+  const FieldFormat &format = field.format;
+  Int3 cells = grid.cells(), points{cells[0] + 1, cells[1] + 1, cells[2] + 1};
+  cells[format.plane] = points[format.plane] = 1;
+  Real3 origin{};
+  if (format.plane_high) origin[format.plane] = grid.spec().length[format.plane];
+  const auto zyx = [](const auto &x, auto text) { return text(x[2]) + " " + text(x[1]) + " " + text(x[0]); };
+  const auto integer = [](int n) { return std::to_string(n); };
+  const std::string triple = "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">";
+  return "<Grid Name=\"" + format.name + "\" GridType=\"Uniform\"><Topology TopologyType=\"3DCoRectMesh\" " +
+         "Dimensions=\"" + zyx(points, integer) + "\"/><Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple +
+         zyx(origin, format_double) + "</DataItem>" + triple + zyx(grid.spacing(), format_double) +
+         "</DataItem></Geometry><Attribute Name=\"wall_shear_stress\" AttributeType=\"Vector\" Center=\"Cell\">" +
+         "<DataItem Dimensions=\"" + zyx(cells, integer) + " 3\" NumberType=\"Float\" Precision=\"" +
+         (format.stored == Stored::float32 ? "4" : "8") + "\" Format=\"HDF\">" + file + ".h5:/" + format.name +
+         "</DataItem></Attribute></Grid>\n";
+}
+
+}  // namespace
+
+std::string wall_index(const Grid &grid, const std::string &index, const std::vector<SnapshotField> &fields) {
+  static const std::regex entry("<Grid Name=\"([^\"]*)\"[^>]*>\\s*(<Time [^>]*>)");
+  std::string text;
+  for (std::sregex_iterator it(index.begin(), index.end(), entry), end; it != end; ++it) {
+    std::string walls;
+    for (const SnapshotField &field : fields)
+      if (field.format.plane >= 0) walls += one_wall(grid, (*it)[1], field);
+    if (walls.empty()) return {};
+    text += "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Spatial\">" + (*it)[2].str() + "\n" + walls +
+            "</Grid>\n";
+  }
+  return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
+         "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+         text + "</Grid>\n</Domain>\n</Xdmf>\n";
+}
+
+}  // namespace eulastic

@@ -1,0 +1,12 @@
+// walls.xdmf: the planes of cells on the walls in each snapshot, for ParaView.
+#pragma once
+
+#include "io/snapshot.hpp"
+
+namespace eulastic {
+
+/// The index of the fields on walls (SnapshotField with a plane) in all snapshots that `index`, the entries of
+/// snapshots.xdmf, names; empty if there are none.
+std::string wall_index(const Grid &grid, const std::string &index, const std::vector<SnapshotField> &fields);
+
+}  // namespace eulastic
