@@ -69,6 +69,7 @@ class Run:
     summary    summary.json
     series     numpy record array, one entry per line of series.csv, fields named by its header
     bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
+    probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ...: those that are there
     snapshots  list of Snapshot in the order of time
     """
 
@@ -79,6 +80,9 @@ class Run:
         self.options = read_options(self.directory / "options.txt")
         self.summary = self._if_there("summary.json", lambda path: json.loads(path.read_text()), {})
         self.series = self._if_there("series.csv", read_series, None)
+        self.probes = self._if_there("probes.csv", read_series, None)
+        self.profile = {d: read_series(self.directory / f"profile_{d}.csv") for d in "xyz"
+                        if (self.directory / f"profile_{d}.csv").exists()}
         self.bodies = self._if_there("bodies.h5", read_bodies, None)
         self.snapshots = sorted((Snapshot(p, self) for p in self.directory.glob("snapshot_*.h5")), key=lambda s: s.time)
 

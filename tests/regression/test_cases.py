@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+"""Every case of options/ for a few steps, coarse and with both methods: it ends well, leaves its files, all of them
+finite, and the same state on one rank and on two. Cases whose start or first moments are exact are compared."""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from read_run import Run, read_options  # noqa: E402
+
+BINARY = os.environ["EULASTIC"]
+MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+CASES = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
+STEPS = 3
+
+
+def environment(options=""):
+    return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", PETSC_OPTIONS=options)
+
+
+def coarse(case):
+    """The case's cells, at most 16 (3-D) or 32 (2-D) in a direction."""
+    cells = [int(n) for n in read_options(ROOT / f"options/{case}.opts")["grid_cells"].split(",")]
+    most = 32 if cells[2] == 1 else 16
+    return ",".join(str(min(n, most)) for n in cells)
+
+
+class Cases(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        room = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(room.cleanup)
+        cls.room = pathlib.Path(room.name)
+
+    def run_case(self, case, *options, ranks=1, name="run"):
+        directory = self.room / f"{case}_{name}"
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        done = subprocess.run([*command, BINARY, ROOT / f"options/{case}.opts", *options, "-output_dir", directory],
+                              capture_output=True, text=True, env=environment(), timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("error", done.stderr)
+        return Run(directory)
+
+    def check_files(self, run):
+        summary = run.summary
+        self.assertEqual((summary["exit_reason"], summary["steps"]), ("steps", STEPS))
+        for name in ("kinetic_energy", "elastic_energy", "divergence_rms", "time", "bulk_velocity"):
+            self.assertTrue(math.isfinite(summary[name]), name)
+        self.assertGreater(summary["kinetic_energy"], 0)
+        self.assertLess(summary["volume_drift"], 0.01)
+        self.assertEqual(len(summary["bodies"]) > 0, "species" in run.options)
+        for name in run.series.dtype.names:
+            self.assertTrue(numpy.isfinite(run.series[name]).all(), name)
+        self.assertEqual(run.series.time[-1], summary["time"])
+        for snapshot in run.snapshots:
+            with h5py.File(snapshot.path) as file:
+                for name in file:
+                    self.assertTrue(numpy.isfinite(file[name][...]).all(), name)
+        if "snapshot_interval" in run.options and float(run.options["snapshot_interval"]) > 0:
+            self.assertEqual(run.snapshots[-1].time, summary["time"])
+            self.assertTrue((run.directory / "snapshots.xdmf").exists())
+        for axis in "xyz":
+            if f"profile_{axis}" in run.options:
+                self.assertTrue((run.directory / f"profile_{axis}.csv").exists())
+
+    def first_steps(self, method):
+        for case in CASES:
+            with self.subTest(case):
+                options = ["-grid_cells", coarse(case), "-method", method, "-time_steps_max", str(STEPS),
+                           "-time_step", "0"]
+                one = self.run_case(case, *options, name=method)
+                self.check_files(one)
+                two = self.run_case(case, *options, ranks=2, name=method + "2")
+                self.assertEqual(two.summary["ranks"], 2)
+                self.assertEqual(two.summary["state_hash"], one.summary["state_hash"])
+
+    def test_there_are_twelve(self):
+        self.assertGreaterEqual(len(CASES), 12)
+
+    def test_first_steps_classic(self):
+        self.first_steps("classic")
+
+    def test_first_steps_fast(self):
+        self.first_steps("fast")
+
+    def test_shear_wave_decays_as_it_must(self):
+        run = self.run_case("shear_wave", "-time_end", "0.5", name="half")
+        amplitude = 2 * run.profile["y"].velocity_x[-64:] @ numpy.sin(2 * numpy.pi * run.profile["y"].y[-64:]) / 64
+        a, w, t = 0.19739209, 6.28008391, 0.5  # at first V' = -nu k^2 V = -2 a V
+        exact = 1.5 * math.exp(-a * t) * (math.cos(w * t) - a / w * math.sin(w * t))
+        self.assertAlmostEqual(amplitude, exact, delta=0.01)
+
+    def test_start_of_the_poiseuille_flow(self):
+        run = self.run_case("poiseuille_startup", "-time_end", "0.1", name="start")
+        self.assertAlmostEqual(run.probes.velocity_x[-1], 0.0769191, delta=1e-4)
+        self.assertEqual(run.probes.time[-1], 0.1)
+
+
+if __name__ == "__main__":
+    unittest.main()
