@@ -30,8 +30,7 @@ bool wants(const OutputControl &output, const char *name) {
 
 SnapshotField as_field(const WallStress &wall, Stored precision) {
   SnapshotField field;
-  field.format.name =
-      std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
+  field.format.name = std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
   field.format.stored = precision;
   field.format.plane = wall.direction;
   field.format.plane_high = wall.high;
@@ -71,7 +70,7 @@ PetscErrorCode Outputs::resume(const Config &config, const Grid &grid, Solver *s
   first_volume_ = position.first_volume;
   PetscCall(
       series_.open(grid.comm(), directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config.samples, grid, directory, solver->state().time));
+  PetscCall(samples_.open(config.samples, grid, directory, position.series_time, position.profile_time));
   if (solver->bodies().bodies() > 0) {
     bodies_file_ = std::make_unique<BodiesFile>(grid.comm(), directory + "/bodies.h5");
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
@@ -170,12 +169,14 @@ PetscErrorCode Outputs::write_due(bool last) {
 PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionBeginUser;
   PetscCall(series_.sync());
+  PetscCall(samples_.sync());
   if (bodies_file_) PetscCall(bodies_file_->flush());
   position->series_rows = series_.rows();
   position->bodies_rows = bodies_rows_;
   position->snapshots = snapshots_ ? snapshots_->count() : snapshots_before_;
   position->series_time = series_due_.last_time;
   position->snapshot_time = snapshot_due_.last_time;
+  position->profile_time = samples_.profile_time();
   position->first_volume = first_volume_;
   PetscFunctionReturn(0);
 }

@@ -20,7 +20,7 @@ namespace eulastic {
 /// How far the files of a run have come: what a restart needs to go on with them.
 struct OutputsPosition {
   long series_rows = 0, bodies_rows = 0, snapshots = 0;
-  double series_time = -1, snapshot_time = -1;  ///< of the last one; negative: none yet
+  double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
   std::vector<double> first_volume;             ///< of every body, at t = 0
 };
 

@@ -18,23 +18,24 @@ long rows_until(const std::string &path, double end) {
 }  // namespace
 
 PetscErrorCode SampleFiles::open(const SampleControl &samples, const Grid &grid, const std::string &directory,
-                                 double begin) {
+                                 double probes_time, double profile_time) {
   PetscFunctionBeginUser;
   grid_ = &grid;
-  profile_due_ = {samples.profile_interval, begin > 0 ? begin : -1};
-  if (!samples.probes.empty()) PetscCall(add(-1, false, samples.probes, directory + "/probes.csv", begin));
+  profile_due_ = {samples.profile_interval, profile_time};
+  if (!samples.probes.empty()) PetscCall(add(-1, false, samples.probes, directory + "/probes.csv", probes_time));
   for (int d = 0; d < 3; ++d) {
     const ProfileSpec &spec = samples.profile[d];
     if (spec.kind == ProfileSpec::Kind::none) continue;
     std::vector<Real3> points(grid.cells()[d], spec.line);
     for (int n = 0; n < grid.cells()[d]; ++n) points[n][d] = (n + 0.5) * grid.spacing()[d];
-    PetscCall(add(d, spec.kind == ProfileSpec::Kind::mean, points, directory + "/profile_" + "xyz"[d] + ".csv", begin));
+    PetscCall(add(d, spec.kind == ProfileSpec::Kind::mean, points, directory + "/profile_" + "xyz"[d] + ".csv",
+                  profile_time));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SampleFiles::add(int direction, bool mean, std::vector<Real3> points, const std::string &path,
-                                double begin) {
+                                double end) {
   PetscFunctionBeginUser;
   std::vector<std::string> columns{"time"};
   if (direction < 0)
@@ -43,7 +44,13 @@ PetscErrorCode SampleFiles::add(int direction, bool mean, std::vector<Real3> poi
     columns.push_back(std::string(1, "xyz"[direction]));
   columns.insert(columns.end(), {"velocity_x", "velocity_y", "velocity_z", "pressure", "solid_fraction"});
   File &file = files_.emplace_back(File{direction, mean, std::move(points), {}});
-  PetscCall(file.table.open(grid_->comm(), path, columns, begin > 0 ? rows_until(path, begin) : 0));
+  PetscCall(file.table.open(grid_->comm(), path, columns, rows_until(path, end)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SampleFiles::sync() {
+  PetscFunctionBeginUser;
+  for (File &file : files_) PetscCall(file.table.sync());
   PetscFunctionReturn(0);
 }
 

@@ -10,8 +10,14 @@ namespace eulastic {
 
 class SampleFiles {
 public:
-  /// Opens what `samples` asks for. A run that goes on at time `begin` > 0 keeps the rows until then.
-  PetscErrorCode open(const SampleControl &samples, const Grid &grid, const std::string &directory, double begin);
+  /// Opens what `samples` asks for. Of older rows in these files those of probes until `probes_time` and those of
+  /// profiles until `profile_time` stay; negative: none.
+  PetscErrorCode open(const SampleControl &samples, const Grid &grid, const std::string &directory, double probes_time,
+                      double profile_time);
+  /// Collective. All rows survive a power cut when this returns.
+  PetscErrorCode sync();
+  /// Of the last profiles, negative if there are none yet.
+  double profile_time() const { return profile_due_.last_time; }
   /// Whether write() would write something; `series`: series.csv gets a row now.
   bool due(double time, bool series, bool last) const;
   PetscErrorCode write(double time, bool series, bool last, const SampledFields &fields);
@@ -23,7 +29,7 @@ private:
     std::vector<Real3> points;
     Series table;
   };
-  PetscErrorCode add(int direction, bool mean, std::vector<Real3> points, const std::string &path, double begin);
+  PetscErrorCode add(int direction, bool mean, std::vector<Real3> points, const std::string &path, double end);
   bool profiles_due(double time, bool last) const {
     return time != profile_due_.last_time && (last || profile_due_.at(time));
   }

@@ -44,7 +44,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   reals["time_step"] = {s.dt, position.dt};
   reals["flow_scales"] = {s.speed_scale, s.crossing_rate, s.travel};
   reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
-  reals["output_times"] = {o.series_time, o.snapshot_time};
+  reals["output_times"] = {o.series_time, o.snapshot_time, o.profile_time};
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
@@ -80,6 +80,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   position->wall_seconds_total = reals["wall_seconds"][1];
   o.series_time = reals["output_times"][0];
   o.snapshot_time = reals["output_times"][1];
+  o.profile_time = reals["output_times"][2];
   s.step = integers["step"][0];
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];
