@@ -2,6 +2,7 @@
 #include "app/check_only.hpp"
 #include "app/run.hpp"
 #include "base/events.hpp"
+#include "io/hdf5_file.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +42,11 @@ int act(ParseResult &parsed) {
   (void)register_events();
   const PetscErrorCode failed = run(parsed, &code, &refusal);
   (void)PetscPopErrorHandler();
+  // Files are everybody's: all ranks know (io/fail_together.hpp).
+  if (failed == PETSC_ERR_FILE_UNEXPECTED) {
+    print_error(kept);
+    return exit_failed;
+  }
   if (failed) {
     // A rank that fails alone must not leave the others waiting in a collective call.
     std::fprintf(stderr, "eulastic: error: %s\n", kept.empty() ? "internal error" : kept.c_str());
@@ -64,6 +70,7 @@ int main(int argc, char **argv) {
   char **petsc_arguments = petsc.data();
   if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
   const int code = act(parsed);
+  if (Hdf5File::left_open()) MPI_Abort(PETSC_COMM_WORLD, code);
   if (PetscFinalize() && code == exit_fine) return exit_failed;
   return code;
 }

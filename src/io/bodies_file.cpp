@@ -148,7 +148,7 @@ std::string BodiesFile::cut(std::size_t rows) {
   (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string target = temporary_name(path_);
   std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) return path_ + ": cannot be copied (" + error.message() + ")";
+  if (error) return path_ + ": cannot be copied (disk full? " + error.message() + ")";
   Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
   bool fine = bool(file);
   for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
@@ -181,7 +181,7 @@ std::string BodiesFile::write_waiting() {
   const std::string target = temporary_name(path_);
   std::error_code error;
   if (written_ > 0) std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) return path_ + ": cannot be copied (" + error.message() + ")";
+  if (error) return path_ + ": cannot be copied (disk full? " + error.message() + ")";
   const Hdf5Property access = unlocked_access();
   Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                     : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));

@@ -73,6 +73,8 @@ PetscErrorCode Hdf5File::commit() {
   PetscFunctionReturn(0);
 }
 
+bool Hdf5File::left_open_ = false;
+
 // HDF5 1.10 crashes in MPI_Finalize if a file cannot be closed. So an unfinished one first gives its space back: then
 // there is room for what a full disk had no room for.
 Hdf5File::~Hdf5File() {
@@ -80,7 +82,7 @@ Hdf5File::~Hdf5File() {
     if (mpi_rank_ == 0) (void)!::truncate(temporary_name(path_).c_str(), 0);
     (void)MPI_Barrier(comm_);
   }
-  (void)file_.close();
+  if (!file_.close()) left_open_ = true;
   if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
 }
 
