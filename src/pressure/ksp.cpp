@@ -1,0 +1,215 @@
+#include "pressure/ksp.hpp"
+
+#include "field/exact_sum.hpp"
+#include "field/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr double relative_tolerance = 1e-10;
+constexpr int most_iterations = 1000;
+constexpr int fewest_levels = 3;     // of the geometric preset
+constexpr double dense_cells = 512;  // the largest coarsest grid that is solved by singular values
+
+double shortest(const Grid &grid) {
+  const Real3 &h = grid.spacing();
+  return *std::min_element(h.begin(), h.begin() + grid.dimension());
+}
+
+// A in A q = b: minus the Laplacian times the cell volume, on the cells of any level. In units of V/h^2 (V the volume,
+// h the shortest side of the finest cells), so that PETSc's absolute thresholds know no length.
+PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
+  const Grid &grid = *static_cast<const Grid *>(context);
+  DM dm;
+  DMDALocalInfo info;
+  Handle<MatNullSpace, MatNullSpaceDestroy> constants;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetDM(ksp, &dm));
+  PetscCall(DMDAGetLocalInfo(dm, &info));
+  const PetscInt cells[3] = {info.mx, info.my, info.mz};
+  double volume = 1, coupling[3] = {};
+  for (int d = 0; d < info.dim; ++d) {
+    volume *= double(grid.cells()[d]) / double(cells[d]);
+    coupling[d] = std::pow(shortest(grid) / grid.spec().length[d] * double(cells[d]), 2);
+  }
+  PetscCall(MatZeroEntries(matrix));
+  for (PetscInt k = info.zs; k < info.zs + info.zm; ++k)
+    for (PetscInt j = info.ys; j < info.ys + info.ym; ++j)
+      for (PetscInt i = info.xs; i < info.xs + info.xm; ++i) {
+        const PetscInt cell[3] = {i, j, k};
+        const MatStencil row{k, j, i, 0};
+        MatStencil column[7] = {row};
+        double value[7] = {};
+        PetscInt count = 1;
+        for (int d = 0; d < info.dim; ++d)
+          for (const PetscInt way : {-1, 1}) {
+            const PetscInt other = cell[d] + way;
+            if (grid.is_wall(d) && (other < 0 || other >= cells[d])) continue;
+            column[count] = row;
+            (d == 0 ? column[count].i : d == 1 ? column[count].j : column[count].k) = other;
+            value[count++] = -volume * coupling[d];
+            value[0] += volume * coupling[d];
+          }
+        // Added: of two cells around a periodic direction each is the other's neighbour on both sides.
+        PetscCall(MatSetValuesStencil(matrix, 1, &row, count, column, value, ADD_VALUES));
+      }
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatNullSpaceCreate(grid.comm(), PETSC_TRUE, 0, nullptr, constants.put()));
+  PetscCall(MatSetNullSpace(matrix, constants.get()));
+  PetscFunctionReturn(0);
+}
+
+// Beyond this ratio of spacings halving all directions alike converges badly (29 iterations at 2, 57 at 4): GAMG,
+// which coarsens along the strong couplings only.
+constexpr double about_equal = 1.5;
+
+bool about_equal_spacing(const Grid &grid) {
+  const Real3 &h = grid.spacing();
+  return *std::max_element(h.begin(), h.begin() + grid.dimension()) <= about_equal * shortest(grid);
+}
+
+// Grids, while every direction can be halved and leaves every rank a cell; and the cells of the coarsest.
+int geometric_levels(const Grid &grid, double *coarsest) {
+  Int3 cells = grid.cells();
+  const auto halves = [&](int d) { return cells[d] % 2 == 0 && cells[d] / 2 >= std::max(2, grid.processors(d)); };
+  int levels = 1;
+  for (; halves(0) && halves(1) && (grid.dimension() == 2 || halves(2)); ++levels)
+    for (int d = 0; d < grid.dimension(); ++d) cells[d] /= 2;
+  *coarsest = double(cells[0]) * cells[1] * cells[2];
+  return levels;
+}
+
+}  // namespace
+
+PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
+  PetscFunctionBeginUser;
+  grid_ = &grid;
+  exchange_ = &exchange;
+  PetscCall(create_cells());
+  PetscCall(DMCreateGlobalVector(cells_.get(), rhs_.put()));
+  PetscCall(VecDuplicate(rhs_.get(), solution_.put()));
+  PetscCall(KSPCreate(grid.comm(), ksp_.put()));
+  PetscCall(KSPSetOptionsPrefix(ksp_.get(), "pressure_"));
+  PetscCall(KSPSetDM(ksp_.get(), cells_.get()));
+  PetscCall(KSPSetComputeOperators(ksp_.get(), assemble, const_cast<Grid *>(&grid)));
+  PetscCall(set_preset());
+  PetscCall(KSPSetFromOptions(ksp_.get()));
+  PetscCall(KSPSetUp(ksp_.get()));
+  PetscCall(KSPSetUpOnBlocks(ksp_.get()));
+  PetscFunctionReturn(0);
+}
+
+// The grid's own DMDA has a wide box stencil: its matrix would have rows of hundreds of entries.
+PetscErrorCode KspSolver::create_cells() {
+  std::array<std::vector<PetscInt>, 3> counts;
+  std::array<DMBoundaryType, 3> type{};
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; ++d) {
+    const int stride = d == 0 ? 1 : d == 1 ? grid_->processors(0) : grid_->processors(0) * grid_->processors(1);
+    for (int p = 0; p < grid_->processors(d); ++p) counts[d].push_back(grid_->layout_of(p * stride).cells[d]);
+    type[d] = grid_->is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
+  }
+  const Int3 &n = grid_->cells();
+  PetscCall(DMDACreate(grid_->comm(), cells_.put()));
+  const DM dm = cells_.get();
+  PetscCall(DMSetDimension(dm, grid_->dimension()));
+  PetscCall(DMDASetSizes(dm, n[0], n[1], n[2]));
+  PetscCall(DMDASetNumProcs(dm, grid_->processors(0), grid_->processors(1), grid_->processors(2)));
+  PetscCall(DMDASetOwnershipRanges(dm, counts[0].data(), counts[1].data(), counts[2].data()));
+  PetscCall(DMDASetBoundaryType(dm, type[0], type[1], type[2]));
+  PetscCall(DMDASetDof(dm, 1));
+  PetscCall(DMDASetStencilType(dm, DMDA_STENCIL_STAR));
+  PetscCall(DMDASetStencilWidth(dm, 1));
+  PetscCall(DMDASetInterpolationType(dm, DMDA_Q0));
+  PetscCall(DMSetUp(dm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode KspSolver::set_preset() {
+  double coarsest;
+  const int levels = geometric_levels(*grid_, &coarsest);
+  PC pc, smoother;
+  KSP level;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetType(ksp_.get(), KSPCG));
+  PetscCall(KSPSetSupportedNorm(ksp_.get(), KSP_NORM_UNPRECONDITIONED, PC_LEFT, 4));  // that of div v: preferred
+  PetscCall(KSPSetTolerances(ksp_.get(), relative_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
+  PetscCall(KSPGetPC(ksp_.get(), &pc));
+  if (levels < fewest_levels || !about_equal_spacing(*grid_)) {
+    PetscCall(PCSetType(pc, PCGAMG));
+    PetscReal threshold = 0.05;
+    if (!about_equal_spacing(*grid_)) PetscCall(PCGAMGSetThreshold(pc, &threshold, 1));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PCSetType(pc, PCMG));
+  PetscCall(PCMGSetLevels(pc, levels, nullptr));
+  for (int l = 1; l < levels; ++l) {
+    PetscCall(PCMGGetSmoother(pc, l, &level));
+    PetscCall(KSPSetType(level, KSPCHEBYSHEV));
+    PetscCall(KSPGetPC(level, &smoother));
+    PetscCall(PCSetType(smoother, PCJACOBI));
+  }
+  PetscCall(PCMGGetCoarseSolve(pc, &level));
+  PetscCall(KSPSetType(level, KSPPREONLY));
+  PetscCall(KSPGetPC(level, &smoother));
+  PetscCall(PCSetType(smoother, coarsest > dense_cells ? PCGAMG : PCSVD));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
+  const int nx = grid_->owned()[0], ny = grid_->owned()[1];
+  const double factor = -shortest(*grid_) * shortest(*grid_) / dt;
+  ExactSums sum(1);
+  double mean, rest;
+  double *b;
+  const double *q;
+  PetscFunctionBeginUser;
+  for (const Segment &s : grid_->rows()) sum.add_row(0, divergence[0].row(s.j, s.k), nx, grid_->layout().begin[0]);
+  PetscCall(sum.reduce(grid_->comm(), &mean));
+  mean /= grid_->cell_count();
+  PetscCall(VecGetArray(rhs_.get(), &b));
+  for (const Segment &s : grid_->rows())
+    for (int i = 0; i < nx; ++i)
+      b[i + nx * (s.j + std::ptrdiff_t(ny) * s.k)] = factor * (divergence[0](i, s.j, s.k) - mean);
+  PetscCall(VecRestoreArray(rhs_.get(), &b));
+  PetscCall(VecNorm(rhs_.get(), NORM_2, &rest));
+  // D is a constant, but for the rounding of its mean: no increment removes it.
+  if (rest <= 1e-15 * std::abs(factor * mean) * std::sqrt(grid_->cell_count()))
+    PetscCall(VecSet(solution_.get(), 0));
+  else if (!std::isfinite(rest))
+    PetscCall(VecSet(solution_.get(), NAN));
+  else
+    PetscCall(iterate());
+  PetscCall(VecGetArrayRead(solution_.get(), &q));
+  for (const Segment &s : grid_->rows())
+    std::copy_n(q + nx * (s.j + std::ptrdiff_t(ny) * s.k), nx, increment[0].row(s.j, s.k));
+  PetscCall(VecRestoreArrayRead(solution_.get(), &q));
+  PetscCall(exchange_->update(increment, 1));
+  fill_wall_ghosts_even(*grid_, at_centre, increment[0], 1);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode KspSolver::iterate() {
+  PetscInt iterations, limit;
+  PetscReal residual;
+  KSPConvergedReason reason;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSolve(ksp_.get(), rhs_.get(), solution_.get()));
+  PetscCall(KSPGetIterationNumber(ksp_.get(), &iterations));
+  iterations_ += static_cast<long>(iterations);
+  PetscCall(KSPGetConvergedReason(ksp_.get(), &reason));
+  if (reason >= 0) PetscFunctionReturn(0);
+  PetscCall(KSPGetTolerances(ksp_.get(), nullptr, nullptr, nullptr, &limit));
+  PetscCall(KSPGetResidualNorm(ksp_.get(), &residual));
+  SETERRQ(
+      grid_->comm(), PETSC_ERR_NOT_CONVERGED,
+      "-pressure_solver ksp did not converge (%s, residual %g); accepted: a larger -pressure_ksp_max_it (now %ld) or "
+      "-pressure_ksp_rtol, another -pressure_ksp_type or -pressure_pc_type",
+      KSPConvergedReasons[reason], residual, static_cast<long>(limit));
+}
+
+}  // namespace eulastic
