@@ -63,7 +63,7 @@ PetscErrorCode Solver::prepare() {
 PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscFunctionBeginUser;
   stages_ = stages;
-  sweeps_before_ = sweeps;
+  sweeps_before_ = sweeps - pressure_solver_->sweeps();
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
