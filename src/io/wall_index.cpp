@@ -7,13 +7,14 @@
 namespace eulastic {
 namespace {
 
-// One wall of one snapshot: a box of cells without thickness.
+// One wall of one snapshot: a plate of cells behind the wall. One without thickness ParaView's older reader cannot.
 std::string one_wall(const Grid &grid, const std::string &file, const SnapshotField &field) {
   const FieldFormat &format = field.format;
   Int3 cells = grid.cells(), points{cells[0] + 1, cells[1] + 1, cells[2] + 1};
-  cells[format.plane] = points[format.plane] = 1;
+  cells[format.plane] = 1;
+  points[format.plane] = 2;
   Real3 origin{};
-  if (format.plane_high) origin[format.plane] = grid.spec().length[format.plane];
+  origin[format.plane] = format.plane_high ? grid.spec().length[format.plane] : -grid.spacing()[format.plane];
   const auto zyx = [](const auto &x, auto text) { return text(x[2]) + " " + text(x[1]) + " " + text(x[0]); };
   const auto integer = [](int n) { return std::to_string(n); };
   const std::string triple = "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">";
