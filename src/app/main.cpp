@@ -42,8 +42,8 @@ int act(ParseResult &parsed) {
   (void)register_events();
   const PetscErrorCode failed = run(parsed, &code, &refusal);
   (void)PetscPopErrorHandler();
-  // Files are everybody's: all ranks know (io/fail_together.hpp).
-  if (failed == PETSC_ERR_FILE_UNEXPECTED) {
+  // Files (io/fail_together.hpp) and linear systems are everybody's: all ranks know.
+  if (failed == PETSC_ERR_FILE_UNEXPECTED || failed == PETSC_ERR_NOT_CONVERGED) {
     print_error(kept);
     return exit_failed;
   }
@@ -63,6 +63,9 @@ int main(int argc, char **argv) {
   const char *environment = std::getenv("PETSC_OPTIONS");
   ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
   unsetenv("PETSC_OPTIONS");
+  // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
+  // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
+  setenv("OMPI_MCA_sharedfp", "^sm,lockedfile,individual", 0);
   std::vector<char *> petsc{argv[0]};
   for (std::string &argument : parsed.petsc_arguments) petsc.push_back(argument.data());
   petsc.push_back(nullptr);
