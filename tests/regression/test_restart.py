@@ -392,6 +392,15 @@ class BrokenPlaces(Restart):
 
 
 class Kills(Restart):
+    def test_semaphore_of_a_killed_run(self):
+        # As Open MPI leaves it in shared memory: 32 bytes, locked.
+        left = pathlib.Path("/dev/shm/sem.OMPIO_checkpoint_00000003.h5.tmp")
+        if not left.parent.is_dir():
+            self.skipTest("no /dev/shm")
+        left.write_bytes(bytes(32))
+        self.addCleanup(left.unlink)
+        self.run_case("run", *FLAT, "-time_steps_max", 4, *OFTEN, ranks=2)
+
     def test_kills(self):
         result = subprocess.run([sys.executable, ROOT / "scripts/kill_test", "20", "--seed", "5"], env=self.environment,
                                 capture_output=True, text=True)
