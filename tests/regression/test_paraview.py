@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """snapshots.xdmf and walls.xdmf as ParaView sees them. Every item is followed to its dataset: shape, type, place and
-values. Where pvpython is installed, ParaView's own two XDMF readers must see the same (Debian's python3-vtk9 has none)."""
+values. Where pvpython is installed, ParaView's own two XDMF readers must see the same; Debian's VTK has none."""
 import json
 import os
 import pathlib

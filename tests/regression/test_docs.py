@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""Every command of README.md and docs/ as written, in a copy of the project. The runs are shortened from outside,
+through PETSC_OPTIONS (which wins over options files): few cells and few steps; what the commands write, and that they
+end well, is what is tested. Commands that install, compile or test everything are named in NOT_RUN."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BINARY = os.environ["EULASTIC"]
+SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
+PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake", "git", ".ci/", "sbatch", "srun")
+NOT_RUN = {
+    "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
+    "scripts/test": "this very test is part of it",
+    "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
+    "scripts/work_precision": "many long runs", ".ci/": "scripts/test again", "cmake": "compiles",
+    "git": "a clone is there", "sbatch": "needs SLURM",
+    "srun": "needs SLURM",
+}
+
+
+def pages():
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(page):
+    """Indented or fenced blocks of a page, each with the words that end the line before it."""
+    block, before, fenced = [], "", False
+    lines = page.read_text().splitlines() + ["end"]
+    for n, line in enumerate(lines):
+        fence = line.startswith("```")
+        fenced ^= fence
+        indented = line.startswith("    ") or not line and any(x for x in lines[n:]) and \
+            next(x for x in lines[n:] if x).startswith("    ")
+        if not fence and (fenced or block and indented or line.startswith("    ")):
+            block.append(line if fenced else line[4:])
+        elif block:
+            yield before, block
+            block = []
+        if line and not fence and not block:
+            before = line
+
+
+def commands(block):
+    """The block's commands without comments, continued lines joined; none if it is no shell."""
+    text = re.sub(r"\\\n\s*", "", "\n".join(block))
+    found = [re.sub(r"\s+#.*", "", line).strip() for line in text.splitlines()]
+    return [line for line in found if line.startswith(PROGRAMS) and not re.search(r"\[|\bDIRECTORY\b|\bCASE\b", line)]
+
+
+def reason_not_to_run(command):
+    return next((why for name, why in NOT_RUN.items() if command.startswith(name)), None)
+
+
+class Docs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        room = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(room.cleanup)
+        cls.room = pathlib.Path(room.name)
+        for name in ("scripts", "options"):
+            shutil.copytree(ROOT / name, cls.room / name, ignore=shutil.ignore_patterns("__pycache__"))
+        (cls.room / "build/release").mkdir(parents=True)
+        (cls.room / "build/release/eulastic").symlink_to(BINARY)
+        cls.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                               OMPI_MCA_rmaps_base_oversubscribe="1", PETSC_OPTIONS=SHORT)
+        cls.environment.pop("EULASTIC", None)
+        cls.environment["PATH"] = f"{cls.room / 'build/release'}:{os.environ['PATH']}"
+
+    def run_line(self, command):
+        done = subprocess.run(command, shell=True, cwd=self.room, env=self.environment, capture_output=True, text=True,
+                              timeout=300)
+        self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
+
+    def run_python(self, block):
+        program = "import sys\nsys.path.insert(0, 'scripts')\n" + "\n".join(block)
+        done = subprocess.run([sys.executable, "-B", "-c", program], cwd=self.room, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, "\n".join(block) + done.stderr)
+
+    def test_commands(self):
+        ran = 0
+        for page in pages():
+            shutil.rmtree(self.room / "output", ignore_errors=True)
+            for before, block in blocks(page):
+                if re.search(r"\b\w+\.opts:$", before) and any(line.startswith("-") for line in block):
+                    (self.room / re.search(r"(\w+\.opts):$", before)[1]).write_text("\n".join(block) + "\n")
+                for command in commands(block):
+                    with self.subTest(page=page.name, command=command):
+                        if reason_not_to_run(command):
+                            self.assertTrue(not command.startswith(("scripts/", ".ci/")) or
+                                            (ROOT / command.split()[0]).exists())
+                            continue
+                        self.run_line(command)
+                        ran += 1
+                if block[0].startswith(("from ", "import ")):
+                    with self.subTest(page=page.name, python=block[0]):
+                        self.run_python(block)
+                        ran += 1
+        self.assertGreaterEqual(ran, 5)
+
+    def test_scripts_that_are_mentioned_exist(self):
+        for page in pages():
+            for name in set(re.findall(r"\bscripts/[a-z_.]+[a-z_]", page.read_text())):
+                self.assertTrue((ROOT / name).exists(), f"{page.name}: {name}")
+
+    def test_options_that_are_mentioned_exist(self):
+        known = {name.replace("NAME_", "") for name in
+                 re.findall(r"^\| `-(\w+)`", (ROOT / "docs/options.md").read_text(), re.MULTILINE)}
+        petsc = ("log_", "ksp_", "pc_", "pressure_", "malloc", "info", "mat_", "vec_", "sf_", "options_", "memory_",
+                 "mg_", "ff", "fno", "fopenmp", "march")  # of the compiler
+        for page in pages():
+            for name in set(re.findall(r"`-([a-z]\w+)", page.read_text())):
+                plain = re.sub(r"^(rbc|cell|disc|gel|layer|a|b|vessel)_", "", name)
+                self.assertTrue(plain in known or name in known or name.startswith(petsc) or
+                                any(k.startswith(name) for k in known) or name in ("help", "version", "n"),
+                                f"{page.name}: -{name}")
+
+
+if __name__ == "__main__":
+    unittest.main()
