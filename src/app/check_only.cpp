@@ -116,13 +116,22 @@ public:
   }
 
 private:
-  /// Doubles per cell: velocity and predictor, pressure, divergence, increment (SMAC: two copies to transform);
-  /// per phase fraction, label and B; one fraction and B being computed.
+  /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
+  /// of the method add; per phase fraction, label and B; one fraction and B being computed.
   double fields() const {
-    const double tensor = dimension_ == 2 ? 3 : 6;
-    const double phases = config_.species.size();
-    return 2 * dimension_ + 3 + (config_.method.pressure == PressureKind::smac ? 2 : 0) + phases * (2 + tensor) +
-           (phases > 0 ? 1 + tensor : 0);
+    const Method &method = config_.method;
+    const double tensor = dimension_ == 2 ? 3 : 6, phases = double(config_.species.size());
+    double sum = 2 * dimension_ + 3;
+    if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
+    if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
+    if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
+      sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension_ == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
+    const bool rkl = method.viscous == ViscousScheme::rkl;
+    if (method.staggered() || rkl) sum += 2 * dimension_;                       // rate, increment
+    if (rkl) sum += dimension_;                                                 // increment before
+    if (method.staggered()) sum += dimension_ * (int(config_.fluid.inertia) + (phases > 0));  // history, slope
+    if (phases > 0) sum += phases * (2 + tensor) + 1 + tensor + (method.interface == InterfaceScheme::thinc ? 3 : 0);
+    return sum;
   }
   double bytes_per_rank(const Int3 &parts) const {
     double ghosted = sizeof(double);

@@ -149,15 +149,16 @@ void add_method(Rows &rows, Config &config) {
               "solid fraction: sharp and conservative, or WENO5").default_note = by_method;
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
               "B outside bodies: extended, or reset to I").default_note = by_method;
-  const Names pressure_names{"acm", "smac"};
+  const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,
-              "artificial compressibility, or the exact Poisson solution");
+              "artificial compressibility, the exact Poisson solution, or that of any KSP of PETSc by -pressure_ksp_*, "
+              "-pressure_pc_*");
   const std::size_t first = rows.rows.size();
   rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step").default_note =
       by_method;
   rows.real("acm_tolerance", method.acm_tolerance, positive, "", "sweep until rms(div v) h/U is below");
-  rows.integers("acm_memory", &method.acm_memory, 1, {0, false}, "increments of earlier steps used as directions")
+  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4}, "increments of earlier steps used as directions")
       .default_note = by_method;
   rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids").default_note = by_method;
   rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});

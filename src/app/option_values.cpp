@@ -56,7 +56,12 @@ std::string read_list(const std::string &text, const Range &range, T *target, st
 
 const Range any_number{-infinity, false}, positive{0, true}, not_negative{0, false}, at_least_one{1, false};
 
-std::string Range::text() const { return low == -infinity ? std::string() : (open ? " > " : " >= ") + to_text(low); }
+std::string Range::text() const {
+  std::string text;
+  if (low > -infinity) text += (open ? " > " : " >= ") + to_text(low);
+  if (high < infinity) text += (text.empty() ? " <= " : " and <= ") + to_text(high);
+  return text;
+}
 
 std::string read_reals(const std::string &text, const Range &range, double *target, std::size_t count) {
   return read_list(text, range, target, count);

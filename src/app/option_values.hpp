@@ -4,6 +4,7 @@
 #include "grid/grid.hpp"
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace eulastic {
 struct Range {
   double low;
   bool open;
-  bool contains(double value) const { return open ? value > low : value >= low; }
+  double high = std::numeric_limits<double>::infinity();
+  bool contains(double value) const { return (open ? value > low : value >= low) && value <= high; }
   std::string text() const;  ///< " > 0", or nothing when unbounded
 };
 extern const Range any_number, positive, not_negative, at_least_one;

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace eulastic {
@@ -188,7 +189,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   PetscCall(measure());
   if (bodies_file_) PetscCall(bodies_file_->flush());
   summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
-  summary.pressure_solver = config_.method.pressure == PressureKind::smac ? "smac" : "acm";
+  summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];
   summary.cells = static_cast<long>(grid_->cell_count());
   summary.ranks = grid_->ranks();
   summary.steps = static_cast<long>(state.step);
@@ -196,7 +197,9 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;
   if (state.step > 0) {
     summary.rkl_stages_per_step = double(solver_->stages()) / double(state.step);
-    summary.acm_sweeps_per_step = double(solver_->sweeps()) / double(state.step);
+    const double sweeps = double(solver_->sweeps()) / double(state.step);
+    (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
+        sweeps;
   }
   summary.divergence_rms = flow_.divergence_rms;
   summary.divergence_max = flow_.divergence_max;

@@ -136,6 +136,11 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   for (const Source &source : sources)
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
+  if (config->method.pressure != PressureKind::ksp)
+    for (const Source &source : sources)
+      for (const Entry &entry : source)
+        if (is_pressure_ksp_option(entry.name))
+          return "-" + entry.name + ": has a meaning only with -pressure_solver ksp" + entry.where;
   for (SpeciesSpec &spec : config->species) {
     spec.centre_given = reader.given(spec.name + "_centre");
     const Real3 &length = config->grid.length;
@@ -192,15 +197,21 @@ std::string options_text(const ParseResult &result) {
     for (char c : result.petsc_options) text += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
     text += "\n";
   }
+  const auto line = [&](const std::string &name, const std::string &value) {
+    const bool quotes = value.find_first_of(" #") != std::string::npos;
+    text += "-" + name + (value.empty() ? "" : quotes ? " \"" + value + '"' : " " + value) + "\n";
+  };
   std::string group;
   for (const Option &option : option_table(config)) {
     if (!option.text || (option.applies && !option.applies())) continue;
-    std::string value = option.text();
+    const std::string value = option.text();
     if (value.empty()) continue;
-    if (value.find_first_of(" #") != std::string::npos) value = '"' + value + '"';
     if (option.group != group) text += "\n# " + (group = option.group) + "\n";
-    text += "-" + option.name + " " + value + "\n";
+    line(option.name, value);
   }
+  const PetscOptionValues petsc = pressure_ksp_options(result.petsc_arguments);
+  if (!petsc.empty()) text += "\n# PETSc's part of the pressure solver\n";
+  for (const auto &[name, value] : petsc) line(name, value);
   return text;
 }
 

@@ -1,5 +1,7 @@
 #include "app/petsc_options.hpp"
 
+#include <petscsys.h>
+
 #include <algorithm>
 
 namespace eulastic {
@@ -22,6 +24,9 @@ const std::vector<std::string> &petsc_option_names() {
                                               "debugger_",
                                               "pressure_ksp_",
                                               "pressure_pc_",
+                                              "pressure_mg_",
+                                              "pressure_sub_",
+                                              "pressure_redundant_",
                                               "info",
                                               "malloc",
                                               "options_left",
@@ -40,6 +45,36 @@ bool is_petsc_option(const std::string &name) {
   return std::any_of(known.begin(), known.end(), [&](const std::string &k) {
     return k.back() == '_' ? name.size() > k.size() && name.compare(0, k.size(), k) == 0 : name == k;
   });
+}
+
+bool is_pressure_ksp_option(const std::string &name) {
+  return name.rfind("pressure_", 0) == 0 && is_petsc_option(name);
+}
+
+PetscOptionValues pressure_ksp_options(const std::vector<std::string> &petsc_arguments) {
+  const auto name_at = [&](std::size_t a) {
+    const std::string &word = petsc_arguments[a];
+    return word[0] == '-' && is_petsc_option(word.substr(1)) ? word.substr(1) : std::string();
+  };
+  PetscOptionValues options;
+  for (std::size_t a = 0; a < petsc_arguments.size(); ++a) {
+    const std::string name = name_at(a);
+    if (!is_pressure_ksp_option(name)) continue;
+    options[name] = a + 1 < petsc_arguments.size() && name_at(a + 1).empty() ? petsc_arguments[a + 1] : "";
+  }
+  return options;
+}
+
+PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal) {
+  PetscFunctionBeginUser;
+  for (const auto &[name, value] : options) {
+    PetscBool read;
+    PetscCall(PetscOptionsUsed(nullptr, name.c_str(), &read));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &read, 1, MPIU_BOOL, MPI_LOR, PETSC_COMM_WORLD));  // some on one rank only
+    if (!read && refusal->empty())
+      *refusal = "-" + name + ": unknown to PETSc, or to the KSP and PC chosen; -pressure_ksp_view shows them";
+  }
+  PetscFunctionReturn(0);
 }
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 #include "app/run.hpp"
 
 #include "app/checkpoints.hpp"
+#include "app/petsc_options.hpp"
 #include "app/scene.hpp"
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
@@ -87,6 +88,7 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   const bool in_place = !source.empty() && restarts_in_place(config);
   std::string restarted_from;
   PetscCall(build_scene(config, grid, &run->solver, refusal));
+  if (refusal->empty()) PetscCall(find_unread_option(pressure_ksp_options(parsed.petsc_arguments), refusal));
   if (refusal->empty() && in_place) PetscCall(directory->reopen(grid.comm(), path, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));

@@ -127,7 +127,7 @@ std::string check_samples(const Config &config) {
 
 std::string check_method(const Config &config) {
   if (config.method.pressure == PressureKind::smac && !SmacSolver::available())
-    return "-pressure_solver: smac needs FFTW, which this build has not; accepted: acm";
+    return "-pressure_solver: smac needs FFTW, which this build has not; accepted: acm, ksp";
   return {};
 }
 

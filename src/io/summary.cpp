@@ -36,6 +36,7 @@ std::string summary_text(const Summary &s) {
       .add("bytes_per_cell", s.bytes_per_cell)
       .add("active_fraction", s.active_fraction)
       .add("acm_sweeps_per_step", s.acm_sweeps_per_step)
+      .add("ksp_iterations_per_step", s.ksp_iterations_per_step)
       .add("rkl_stages_per_step", s.rkl_stages_per_step)
       .add("divergence_rms", s.divergence_rms)
       .add("divergence_max", s.divergence_max)

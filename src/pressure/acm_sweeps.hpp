@@ -30,7 +30,7 @@ public:
   FieldBlock *memory() override;
   /// rms of D that the last solve left, by its own account.
   double residual_rms() const { return residual_rms_; }
-  std::size_t bytes() const;
+  std::size_t bytes() const override;
 
 private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);

@@ -21,6 +21,8 @@ public:
   virtual long sweeps() const { return 0; }
   /// Fields that must survive a restart for the same bits, or null.
   virtual FieldBlock *memory() { return nullptr; }
+  /// Bytes of the solver's own fields on this rank.
+  virtual std::size_t bytes() const { return 0; }
 };
 
 }  // namespace eulastic

@@ -8,7 +8,7 @@ enum class TimeIntegrator { staggered, euler };
 enum class ViscousScheme { rkl, explicit_euler };
 enum class InterfaceScheme { thinc, weno5 };
 enum class SolidExterior { extrapolate, identity };
-enum class PressureKind { acm, smac };
+enum class PressureKind { acm, smac, ksp };
 
 /// The initialisers are the paper's method.
 struct Method {

@@ -5,6 +5,7 @@
 #include "physics/transport.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
+#include "pressure/ksp.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -20,6 +21,10 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   exchange_ = std::make_unique<GhostExchange>(grid);
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
+  } else if (spec.pressure == PressureKind::ksp) {
+    auto ksp = std::make_unique<KspSolver>();
+    PetscCall(ksp->create(grid, *exchange_));
+    pressure_solver_ = std::move(ksp);
   } else if (spec.acm_of_the_paper()) {
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
   } else {
@@ -104,7 +109,8 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
                     increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
-                    viscous_.rate.bytes() + viscous_.slope.bytes() + viscous_.now.bytes() + viscous_.before.bytes();
+                    viscous_.rate.bytes() + viscous_.slope.bytes() + viscous_.now.bytes() + viscous_.before.bytes() +
+                    pressure_solver_->bytes() + (interface_ ? interface_->bytes() : 0);
   for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
 }
@@ -243,6 +249,8 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     if (phase.label) copy.label.copy_from(phase.label);
   }
   PetscCall(transport(phases_now_, 0.5 * now_.dt));
+  for (Phase &copy : phases_now_)
+    if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
   phases_now_step_ = now_.step;
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
   // Channel of height 2: U = f H^2/(8 nu) = 1, shear rate f H/(2 nu) = 2; nu = 1/2, c^2 = 2, S = 2 4^2 = 32.
   const ParseResult result = parse_line(
       "-grid_cells 16,8,1 -grid_length 4,2,1 -boundary_y wall -fluid_density 2 -fluid_viscosity 1 -body_force 1,0,0 "
-      "-time_end 100 -species a -a_shape sphere -a_radius .5 -a_shear_modulus 4 -a_placement lattice -a_count 2,1,1");
+      "-time_end 100 -method classic -species a -a_shape sphere -a_radius .5 -a_shear_modulus 4 -a_placement lattice -a_count 2,1,1");
   ASSERT_EQ(result.error, "");
   const std::string report = check_report(result.config, 2);
   const auto has = [&](const std::string &line) {
@@ -28,7 +28,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
   has("dt limit, viscous: 0.03125");                // 1/(2 nu S)
   has("dt limit, elastic wave: 0.125");             // 1/(c sqrt(S))
   has("dt limit, viscous and elastic: 0.0295085");  // 64 dt^2 + 32 dt = 1
-  has("dt limit, advective: 0.25");
+  has("dt limit, advective: 0.059017");  // 4 dt + 4 dt^2 = 1/4
   has("dt limit, Euler 2 nu/U^2: 1");
   EXPECT_EQ(report.find("warning"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -time_step 1 -check_only");
