@@ -31,7 +31,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
   has("dt limit, advective: 0.059017");  // 4 dt + 4 dt^2 = 1/4
   has("dt limit, Euler 2 nu/U^2: 1");
   EXPECT_EQ(report.find("warning"), std::string::npos);
-  const ParseResult forced = parse_line(scene + " -time_step 1 -check_only");
+  const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
   EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");
   ASSERT_EQ(huge.error, "");
