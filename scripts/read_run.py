@@ -54,6 +54,10 @@ class Snapshot:
         """Velocity at cell centres, (3, nz, ny, nx); velocity_x, _y, _z are the staggered ones."""
         return numpy.moveaxis(self["velocity"].astype(float), -1, 0)
 
+    def wall_shear_stress(self, d, side):
+        """Size of the shear stress on the low (0) or high (1) wall normal to d: (nz, ny, nx), one layer along d."""
+        return numpy.linalg.norm(self[f"wall_shear_stress_{'xyz'[d]}{('min', 'max')[side]}"].astype(float), axis=-1)
+
     def plane(self, z=None):
         """Index k of the plane at height z; by default the one that cuts the most solid, without any the middle."""
         if z is not None:

@@ -113,6 +113,49 @@ class InitialState(WithRoom):
         self.refused(*GRID, *end, "-initial_state", "text.h5", says=["text.h5", "not an HDF5 file"])
 
 
+    def test_strained_slabs_pull_at_their_walls(self):
+        for interval, wall, sign, rows in (("0,.5", "ymin", 1, 20), (".5,1", "ymax", -1, 20), (".5,1", "ymax", -1, 21)):
+            with self.subTest(wall=wall, rows=rows):
+                strain = self.file(left_cauchy_green_xy=numpy.full((1, rows, 24), 0.25))
+                run = self.run_case(*GRID, "-species", "slab", "-slab_shape", "slab", "-slab_interval", interval,
+                                    "-slab_shear_modulus", "2", *strain, "-time_end", "1e-9", "-snapshot_interval", "1")
+                stress = run.snapshots[0]["wall_shear_stress_" + wall]
+                numpy.testing.assert_allclose(stress[..., 0], sign * 0.5, rtol=1e-6)
+
+
+class Scenes(WithRoom):
+    BOX = "-grid_cells 16,16,16 -grid_length 2,2,2 -boundary_y wall -time_step 1e-3 -time_steps_max 2 -time_end 1".split()
+
+    def test_every_shape(self):
+        volume = {"sphere -a_radius .5": numpy.pi / 6, "biconcave -a_diameter 1.6": 100.74 / 5 ** 3,
+                  "ellipsoid -a_semi_axes .4,.5,.6 -a_orientation 0,0,30": 4 / 3 * numpy.pi * .12,
+                  "cylinder -a_radius .5 -a_axis z": numpy.pi / 2, "slab -a_axis y -a_interval 0,.5": 2}
+        for shape, expected in volume.items():
+            with self.subTest(shape):
+                run = self.run_case(*self.BOX, "-species", "a", "-a_shape", *shape.split(), "-a_shear_modulus", "1",
+                                    "-a_initial_stretch", "1.1,1,.909090909090909")
+                self.assertAlmostEqual(run.summary["bodies"][0]["volume"], expected, delta=2e-3 * expected)
+                stretched = 0.5 * expected * (1.1 ** 2 + 1 / 1.1 ** 2 - 2)
+                self.assertAlmostEqual(run.series.elastic_energy[0], stretched, delta=0.3 * stretched)
+
+    def test_every_initial_flow(self):
+        names = ("uniform taylor_green taylor_green_3d shear_layer couette poiseuille shear_wave_xy shear_wave_xz "
+                 "shear_wave_yx shear_wave_yz shear_wave_zx shear_wave_zy random").split()
+        for name in names:
+            with self.subTest(name):
+                takes = name not in ("uniform", "couette")
+                run = self.run_case(*self.BOX, "-initial_velocity", name, "-initial_velocity_mean", "3,0,0",
+                                    *(["-initial_velocity_amplitude", "0.5"] if takes else []))
+                self.assertEqual(run.summary["exit_reason"], "steps")
+                mean = 3 + (0.5 * 2 / 3 if name == "poiseuille" else 2 / numpy.pi * 0.5 if name == "shear_wave_xy" else 0)
+                self.assertAlmostEqual(run.series.bulk_velocity_x[0], mean, delta=0.01)
+
+    def test_phase_of_a_wall(self):
+        run = self.run_case(*self.BOX, "-wall_ymax_velocity", "2,0,0", "-wall_ymax_frequency", "5", "-wall_ymax_phase",
+                            "0.7", "-probe_points", "1,2,1", "-series_interval", "1e-3")
+        numpy.testing.assert_allclose(run.probes.velocity_x, 2 * numpy.cos(5 * run.probes.time + 0.7), atol=1e-12)
+
+
 class Exact(WithRoom):
     def test_unstrained_marked_fluid_is_fluid(self):
         """S12: phi with G = 0 changes nothing; probes and profiles are the same on any ranks."""

@@ -186,6 +186,8 @@ class Pictures(WithFolder):
             wanted = matplotlib.colors.rgb_to_hsv(load("render").colour(body))[0]
             near = (abs(hue[..., 0] - wanted) < 0.03) & (hue[..., 1] > 0.4)
             self.assertGreater(near.sum(), 500, f"body {body}")
+        wall = numpy.abs(pixels - [.08, .38, .28]).max(axis=-1) < 0.02  # the largest stress everywhere
+        self.assertGreater(wall.sum(), 1000)
 
     def test_movie(self):
         done = start(SCRIPTS / "render", self.directory, "--movie", self.folder / "movie", "--size", 200, 160)

@@ -34,6 +34,8 @@ def write_snapshot(path, time, cells, pressure_offset=0.0):
         file["velocity"] = velocity
         for d, axis in enumerate("xyz"):
             file["velocity_" + axis] = velocity[..., d]  # the same on the faces: uniform along x
+        file["wall_shear_stress_ymin"] = numpy.tile([1e-3, 0, 0], (cells[2], 1, cells[0], 1)).astype("f4")
+        file["wall_shear_stress_ymax"] = file["wall_shear_stress_ymin"][...]
         file["pressure"] = (numpy.sin(2 * numpy.pi * x / LENGTH[0]) + pressure_offset).astype("f4")
         file["solid_fraction"] = fraction.astype("f4")
         file["body"] = body.astype("i4")
