@@ -50,7 +50,8 @@ public:
     report.line("ranks", "%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks,
                 cells / ranks);
     if (cells > std::numeric_limits<PetscInt>::max())
-      report.line("warning", "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
+      report.line("warning",
+                  "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
                   double(std::numeric_limits<PetscInt>::max()));
     report.line("memory", "%.4g GB for fields, %.4g GB per rank", 1e-9 * bytes_per_rank(parts) * ranks,
                 1e-9 * bytes_per_rank(parts));
@@ -93,8 +94,9 @@ public:
       modulus = std::max(modulus, spec.shear_modulus);
       extremes.trace = std::max(extremes.trace, l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
     }
-    const TimeStepLimits limits = time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, modulus, extremes,
-                                                    {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
+    const TimeStepLimits limits =
+        time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, modulus, extremes,
+                         {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
     report.line("dt limit, viscous", "%.6g", limits.viscous);
     report.line("dt limit, elastic wave", "%.6g", limits.elastic);
     report.line("dt limit, viscous and elastic", "%.6g", limits.combined);
@@ -127,8 +129,8 @@ private:
     if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
       sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension_ == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
     const bool rkl = method.viscous == ViscousScheme::rkl;
-    if (method.staggered() || rkl) sum += 2 * dimension_;                       // rate, increment
-    if (rkl) sum += dimension_;                                                 // increment before
+    if (method.staggered() || rkl) sum += 2 * dimension_;                                     // rate, increment
+    if (rkl) sum += dimension_;                                                               // increment before
     if (method.staggered()) sum += dimension_ * (int(config_.fluid.inertia) + (phases > 0));  // history, slope
     if (phases > 0) sum += phases * (2 + tensor) + 1 + tensor + (method.interface == InterfaceScheme::thinc ? 3 : 0);
     return sum;

@@ -142,13 +142,16 @@ void add_method(Rows &rows, Config &config) {
   Method &method = config.method;
   rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
   rows.choice("time_integrator", method.integrator, {"staggered", "euler"},
-              "second order with solids at half steps, or explicit Euler").default_note = by_method;
-  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"},
-              "super time stepping RKL2, or one explicit stage").default_note = by_method;
+              "second order with solids at half steps, or explicit Euler")
+      .default_note = by_method;
+  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage")
+      .default_note = by_method;
   rows.choice("interface_scheme", method.interface, {"thinc", "weno5"},
-              "solid fraction: sharp and conservative, or WENO5").default_note = by_method;
+              "solid fraction: sharp and conservative, or WENO5")
+      .default_note = by_method;
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
-              "B outside bodies: extended, or reset to I").default_note = by_method;
+              "B outside bodies: extended, or reset to I")
+      .default_note = by_method;
   const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,
@@ -169,9 +172,10 @@ void add_method(Rows &rows, Config &config) {
 void add_profile(Rows &rows, ProfileSpec &profile, int d) {
   const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
   const std::string plane{"xyz"[a], ',', "xyz"[b]};
-  Option &row = rows.add(std::string("profile_") + "xyz"[d], "length",
-                         std::string("flow along ") + "xyz"[d] + ", at the centres of the cells: averaged over planes, " +
-                             "or along the line through " + plane);
+  Option &row =
+      rows.add(std::string("profile_") + "xyz"[d], "length",
+               std::string("flow along ") + "xyz"[d] + ", at the centres of the cells: averaged over planes, " +
+                   "or along the line through " + plane);
   row.accepted = "mean, or 2 numbers " + plane;
   row.default_note = "none";
   row.read = [&profile, a, b](const std::string &value) {
@@ -220,7 +224,8 @@ void add_running(Rows &rows, Config &config) {
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
             "time between snapshots, the start and the end included; 0 = none");
   rows.words("snapshot_fields", output.snapshot_fields,
-             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"}, "fields in snapshots");
+             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"},
+             "fields in snapshots");
   rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
   rows.real("series_interval", output.series_interval, not_negative, "time",
             "time between lines of series.csv; 0 = default")

@@ -124,7 +124,8 @@ class InitialState(WithRoom):
 
 
 class Scenes(WithRoom):
-    BOX = "-grid_cells 16,16,16 -grid_length 2,2,2 -boundary_y wall -time_step 1e-3 -time_steps_max 2 -time_end 1".split()
+    BOX = ("-grid_cells 16,16,16 -grid_length 2,2,2 -boundary_y wall -time_step 1e-3 -time_steps_max 2 "
+           "-time_end 1").split()
 
     def test_every_shape(self):
         volume = {"sphere -a_radius .5": numpy.pi / 6, "biconcave -a_diameter 1.6": 100.74 / 5 ** 3,
@@ -147,7 +148,7 @@ class Scenes(WithRoom):
                 run = self.run_case(*self.BOX, "-initial_velocity", name, "-initial_velocity_mean", "3,0,0",
                                     *(["-initial_velocity_amplitude", "0.5"] if takes else []))
                 self.assertEqual(run.summary["exit_reason"], "steps")
-                mean = 3 + (0.5 * 2 / 3 if name == "poiseuille" else 2 / numpy.pi * 0.5 if name == "shear_wave_xy" else 0)
+                mean = 3 + 0.5 * {"poiseuille": 2 / 3, "shear_wave_xy": 2 / numpy.pi}.get(name, 0)
                 self.assertAlmostEqual(run.series.bulk_velocity_x[0], mean, delta=0.01)
 
     def test_phase_of_a_wall(self):
@@ -159,8 +160,8 @@ class Scenes(WithRoom):
 class Exact(WithRoom):
     def test_unstrained_marked_fluid_is_fluid(self):
         """S12: phi with G = 0 changes nothing; probes and profiles are the same on any ranks."""
-        watch = ("-time_end .05 -body_force 1,.5,0 -initial_velocity random -probe_points .3,.2,0:0,1,0 -profile_y mean "
-                 "-profile_x .5,0").split()
+        watch = ("-time_end .05 -body_force 1,.5,0 -initial_velocity random -probe_points .3,.2,0:0,1,0 "
+                 "-profile_y mean -profile_x .5,0").split()
         disc = "-species cell -cell_shape sphere -cell_radius .2 -cell_shear_modulus 0".split()
         for method in ("classic", "fast"):
             fluid = self.run_case(*GRID, *watch, "-method", method)
@@ -187,7 +188,8 @@ class Grids(WithRoom):
         self.refused("-grid_cells", "8,8,1", "-da_processors_y", "3", *end, ranks=3,
                      says=["3 ranks", "8 x 8 x 1", "0 x 3 x 0", "at least 3 cells"])
         self.refused("-grid_cells", "4,4,1", *end, ranks=2, says=["2 ranks", "4 x 4 x 1", "at least 3 cells"])
-        self.refused("-grid_cells", "16,16,1", "-probe_points", "2,0,0", *end, says=["-probe_points", "x = 2", "0 ... 1"])
+        self.refused("-grid_cells", "16,16,1", "-probe_points", "2,0,0", *end,
+                     says=["-probe_points", "x = 2", "0 ... 1"])
         self.refused("-grid_cells", "16,16,1", "-probe_points", "2,0", *end, says=["-probe_points", "2 items"])
         self.refused("-grid_cells", "16,16,1", "-profile_z", "mean", *end, says=["-profile_z"])
 
