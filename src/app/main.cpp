@@ -42,10 +42,10 @@ int act(ParseResult &parsed) {
   (void)register_events();
   const PetscErrorCode failed = run(parsed, &code, &refusal);
   (void)PetscPopErrorHandler();
-  // Files (io/fail_together.hpp) and linear systems are everybody's: all ranks know.
-  if (failed == PETSC_ERR_FILE_UNEXPECTED || failed == PETSC_ERR_NOT_CONVERGED) {
+  // Files (io/fail_together.hpp), linear systems and options are everybody's: all ranks know.
+  if (failed == PETSC_ERR_FILE_UNEXPECTED || failed == PETSC_ERR_NOT_CONVERGED || failed == PETSC_ERR_USER_INPUT) {
     print_error(kept);
-    return exit_failed;
+    return failed == PETSC_ERR_USER_INPUT ? exit_usage : exit_failed;
   }
   if (failed) {
     // A rank that fails alone must not leave the others waiting in a collective call.

@@ -155,8 +155,8 @@ void add_method(Rows &rows, Config &config) {
   const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,
-              "artificial compressibility, the exact Poisson solution, or that of any KSP of PETSc by -pressure_ksp_*, "
-              "-pressure_pc_*");
+              "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
+              "-pressure_pc_type");
   const std::size_t first = rows.rows.size();
   rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step").default_note =
       by_method;

@@ -69,6 +69,7 @@ PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string 
   PetscFunctionBeginUser;
   for (const auto &[name, value] : options) {
     PetscBool read;
+    if (name.find("_view") != std::string::npos || name.find("_converged_reason") != std::string::npos) continue;
     PetscCall(PetscOptionsUsed(nullptr, name.c_str(), &read));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &read, 1, MPIU_BOOL, MPI_LOR, PETSC_COMM_WORLD));  // some on one rank only
     if (!read && refusal->empty())

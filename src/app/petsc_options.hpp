@@ -20,7 +20,8 @@ bool is_pressure_ksp_option(const std::string &name);
 using PetscOptionValues = std::map<std::string, std::string>;
 /// Those of the KSP among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.
 PetscOptionValues pressure_ksp_options(const std::vector<std::string> &petsc_arguments);
-/// Collective; after the KSP has been set up. `refusal`: one line about an option that no rank's PETSc has read.
+/// Collective; after the KSP has been set up. `refusal`: one line about an option that no rank's PETSc has read. What
+/// shows things is exempt: PETSc reads that when it solves.
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal);
 
 }  // namespace eulastic

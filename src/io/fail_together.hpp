@@ -22,7 +22,8 @@ PetscErrorCode catch_together(Call call, std::string *problem) {
   PetscCall(PetscPushErrorHandler(keep, problem));
   const PetscErrorCode code = call();
   PetscCall(PetscPopErrorHandler());
-  if (code != 0 && code != PETSC_ERR_FILE_UNEXPECTED) PetscCall(code);
+  if (code != 0 && code != PETSC_ERR_FILE_UNEXPECTED)
+    SETERRQ(PETSC_COMM_SELF, code, "%s", std::exchange(*problem, std::string()).c_str());
   PetscFunctionReturn(0);
 }
 

@@ -83,6 +83,24 @@ int geometric_levels(const Grid &grid, double *coarsest) {
   return levels;
 }
 
+PetscErrorCode keep_first(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
+                          const char *message, void *text) {
+  if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+  return code;
+}
+
+// Wrong values are the user's, and the same on all ranks.
+PetscErrorCode set_from_options(KSP ksp) {
+  std::string wrong;
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(keep_first, &wrong));
+  const PetscErrorCode code = KSPSetFromOptions(ksp);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!code, PetscObjectComm(reinterpret_cast<PetscObject>(ksp)), PETSC_ERR_USER_INPUT,
+             "-pressure_ksp_* or -pressure_pc_*: %s", wrong.c_str());
+  PetscFunctionReturn(0);
+}
+
 }  // namespace
 
 PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
@@ -97,7 +115,7 @@ PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
   PetscCall(KSPSetDM(ksp_.get(), cells_.get()));
   PetscCall(KSPSetComputeOperators(ksp_.get(), assemble, const_cast<Grid *>(&grid)));
   PetscCall(set_preset());
-  PetscCall(KSPSetFromOptions(ksp_.get()));
+  PetscCall(set_from_options(ksp_.get()));
   PetscCall(KSPSetUp(ksp_.get()));
   PetscCall(KSPSetUpOnBlocks(ksp_.get()));
   PetscFunctionReturn(0);

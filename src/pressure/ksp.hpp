@@ -16,7 +16,8 @@ using KspHandle = Handle<KSP, KSPDestroy>;
 class KspSolver final : public PressureSolver {
 public:
   /// Collective; `grid` and `exchange` must outlive the solver. Everything is set up here, so that afterwards PETSc
-  /// can tell which options it has read. Fails with PETSc's message where it cannot do what the options say.
+  /// can tell which options it has read. Fails with PETSC_ERR_USER_INPUT and PETSc's message where it cannot take the
+  /// value of an option.
   PetscErrorCode create(const Grid &grid, GhostExchange &exchange);
 
   /// The increment with lap(increment) = (divergence - its mean) / dt, up to the tolerance of the KSP on rms(D); its

@@ -89,7 +89,8 @@ TEST(Options, Booleans) {
 
 TEST(Options, PetscOptionsPassThrough) {
   const ParseResult result = parse_line(
-      scene + " -log_view :log.txt -pressure_ksp_type cg -info -malloc_debug -memory_view", "-ksp_rtol 1e-3");
+      scene + " -log_view :log.txt -pressure_solver ksp -pressure_ksp_type cg -info -malloc_debug -memory_view",
+      "-ksp_rtol 1e-3");
   ASSERT_EQ(result.error, "");
   EXPECT_EQ(result.petsc_arguments, (Words{"-skip_petscrc", "-ksp_rtol", "1e-3", "-log_view", ":log.txt",
                                            "-pressure_ksp_type", "cg", "-info", "-malloc_debug", "-memory_view"}));
@@ -135,6 +136,8 @@ TEST(Options, TextReadsBackTheSame) {
                      scene + " -wall_ymax_velocity 1,0,0 -wall_ymax_phase 2 -initial_velocity random -time_steps_max 7",
                      scene + " -cell_placement list -cell_positions " + list.path() + " -cell_orientation 10,20,30",
                      "-time_end 1 -grid_cells 8,8,1 -pressure_solver acm -snapshot_precision double",
+                     scene + " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
+                             "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
                      "-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
                      "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1"};
   for (const std::string &line : scenes) {

@@ -131,6 +131,7 @@ TEST(Summary, HasEveryKey) {
                                           "bytes_per_cell",
                                           "active_fraction",
                                           "acm_sweeps_per_step",
+                                          "ksp_iterations_per_step",
                                           "rkl_stages_per_step",
                                           "divergence_rms",
                                           "divergence_max",
