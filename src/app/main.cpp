@@ -65,7 +65,7 @@ int main(int argc, char **argv) {
   unsetenv("PETSC_OPTIONS");
   // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
   // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
-  setenv("OMPI_MCA_sharedfp", "^sm,lockedfile,individual", 0);
+  setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
   std::vector<char *> petsc{argv[0]};
   for (std::string &argument : parsed.petsc_arguments) petsc.push_back(argument.data());
   petsc.push_back(nullptr);
