@@ -59,12 +59,15 @@ class Restart(unittest.TestCase):
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
+        self.wait_until(lambda: self.series("run").count("\n") > 1 or process.poll() is not None)
+        self.assertIsNone(process.poll(), "ended too early")
+        return process
+
+    def wait_until(self, condition):
         limit = time.monotonic() + 60
-        while not self.series("run").count("\n") > 1:
-            self.assertIsNone(process.poll(), "ended too early")
+        while not condition():
             self.assertLess(time.monotonic(), limit)
             time.sleep(0.01)
-        return process
 
     def run_case(self, directory, *arguments, ranks=0):
         result = self.call(*arguments, "-output_dir", directory, ranks=ranks)
@@ -325,8 +328,7 @@ class Ends(Restart):
 
     def test_one_run_per_directory(self):
         process = self.start_endless(options=OFTEN)
-        while not self.checkpoints():
-            time.sleep(0.01)
+        self.wait_until(self.checkpoints)
         for more in (["-restart", "run"], ["-output_overwrite"]):
             self.refused(*FLAT, "-output_dir", "run", *more, says=["run", "in use by another run"])
         process.kill()
@@ -370,8 +372,7 @@ class BrokenPlaces(Restart):
 
     def test_files_that_may_not_grow(self):
         process = self.start(*FLAT, *ENDLESS[:2], *OFTEN)
-        while not self.checkpoints():
-            time.sleep(0.01)
+        self.wait_until(self.checkpoints)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (10000, 10000))
         self.check_full(process.wait(60), process.stderr.read())
         self.assertEqual(self.summary("run")["exit_reason"], "output_failed")
