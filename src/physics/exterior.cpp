@@ -19,6 +19,14 @@ struct Reach {
       end[d] = grid.touches_high(d) ? grid.points_end(d, at[d]) : grid.owned()[d] + ghosts;
     }
   }
+  bool contains(const Int3 &p) const {
+    return p[0] >= begin[0] && p[0] < end[0] && p[1] >= begin[1] && p[1] < end[1] && p[2] >= begin[2] && p[2] < end[2];
+  }
+};
+
+struct Point {
+  Int3 index;
+  std::ptrdiff_t offset;
 };
 
 // What the neighbour at `step` says of b[0]: its own value, or the line through it and the next.
@@ -39,7 +47,7 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
         locations_.back().staggering = c.staggering();
       }
   }
-  mask_.assign(static_cast<std::size_t>(grid.layout().size), outside);
+  mask_.resize(static_cast<std::size_t>(grid.layout().size));
   for (Location &location : locations_) build_location(grid, phase, &location);
   PetscFunctionReturn(0);
 }
@@ -67,38 +75,51 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
       }
     }
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+  std::vector<Point> front, next;
+  // Claims the unclaimed face neighbours of a point for layer L.
+  const auto claim = [&](const Int3 &from, const Reach &box, unsigned char L) {
+    for (int d = 0; d < grid.dimension(); ++d)
+      for (const int side : {-1, 1}) {
+        Point p{from, 0};
+        p.index[d] += side;
+        if (p.index[d] < box.begin[d] || p.index[d] >= box.end[d]) continue;
+        p.offset = layout.offset(p.index[0], p.index[1], p.index[2]);
+        if (mask[p.offset] != outside || !box.contains(p.index)) continue;
+        mask[p.offset] = L;
+        next.push_back(p);
+      }
+  };
   for (int L = 1; L <= layers; ++L) {
+    const Reach box(grid, at, layers - L);
+    next.clear();
+    if (L == 1) {
+      for (int k = all.begin[2]; k < all.end[2]; ++k)
+        for (int j = all.begin[1]; j < all.end[1]; ++j) {
+          const unsigned char *row = mask + layout.offset(0, j, k);
+          for (int i = all.begin[0]; i < all.end[0]; ++i)
+            if (row[i] == 0) claim({i, j, k}, box, 1);
+        }
+    } else {
+      for (const Point &point : front) claim(point.index, box, static_cast<unsigned char>(L));
+    }
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
-    const Reach box(grid, at, layers - L);
-    for (int k = box.begin[2]; k < box.end[2]; ++k)
-      for (int j = box.begin[1]; j < box.end[1]; ++j) {
-        const std::ptrdiff_t row = layout.offset(0, j, k);
-        for (int i = box.begin[0]; i < box.end[0]; ++i) {
-          const std::ptrdiff_t p = row + i;
-          if (mask[p] != outside) continue;
-          unsigned neighbours = 0, second = 0;
-          const Int3 point{i, j, k};
-          for (int d = 0; d < grid.dimension(); ++d) {
-            const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
-            if (point[d] > all.begin[d] && mask[p - stride[d]] < L) neighbours |= low;
-            if (point[d] + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= high;
-            if (!phase.material.attached) continue;
-            if (neighbours & low && point[d] > all.begin[d] + 1 && mask[p - 2 * stride[d]] < L) second |= low;
-            if (neighbours & high && point[d] + 2 < all.end[d] && mask[p + 2 * stride[d]] < L) second |= high;
-          }
-          if (neighbours)
-            entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
-        }
+    for (const Point &point : next) {
+      const std::ptrdiff_t p = point.offset;
+      unsigned neighbours = 0, second = 0;
+      for (int d = 0; d < grid.dimension(); ++d) {
+        const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
+        const int i = point.index[d];
+        if (i > all.begin[d] && mask[p - stride[d]] < L) neighbours |= low;
+        if (i + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= high;
+        if (!phase.material.attached) continue;
+        if (neighbours & low && i > all.begin[d] + 1 && mask[p - 2 * stride[d]] < L) second |= low;
+        if (neighbours & high && i + 2 < all.end[d] && mask[p + 2 * stride[d]] < L) second |= high;
       }
-    for (const Entry &entry : entries) mask[entry.offset] = static_cast<unsigned char>(L);
-  }
-  // Leave the mask clean for the next location.
-  for (int k = all.begin[2]; k < all.end[2]; ++k)
-    for (int j = all.begin[1]; j < all.end[1]; ++j) {
-      unsigned char *row = mask + layout.offset(0, j, k);
-      for (int i = all.begin[0]; i < all.end[0]; ++i) row[i] = outside;
+      entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
     }
+    front.swap(next);
+  }
 }
 
 PetscErrorCode ExteriorLayers::extend(const Grid &grid, FieldBlock &tensor) const {
