@@ -26,42 +26,48 @@ kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscos
   return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt, mu_tilde * dt * stage_time(j - 1, stages) * dt};
 }
 
-// The part of row (j, k) that any phase stresses.
-EULASTIC_INLINE Segment stressed_part(const std::vector<Phase> &phases, int cells, int j, int k) {
-  int begin = cells, end = 0;
-  for (const Phase &phase : phases) {
-    const ActiveSegments::Range range = phase.stressed.row(j, k);
-    if (range.first == range.last) continue;
-    begin = std::min(begin, range.first->i_begin);
-    end = std::max(end, (range.last - 1)->i_end);
+// The part of every row that any phase stresses, whole vectors where the row is long enough.
+std::vector<Segment> stressed_parts(const Grid &grid, const std::vector<Phase> *phases) {
+  std::vector<Segment> parts = grid.rows();
+  for (Segment &part : parts) {
+    const int cells = part.i_end;
+    int begin = cells, end = 0;
+    for (std::size_t p = 0; phases && p < phases->size(); ++p) {
+      const ActiveSegments::Range range = (*phases)[p].stressed.row(part.j, part.k);
+      if (range.first == range.last) continue;
+      begin = std::min(begin, range.first->i_begin);
+      end = std::max(end, (range.last - 1)->i_end);
+    }
+    part.i_end = std::min((end + 7) / 8 * 8, cells);
+    part.i_begin = std::min(begin, part.i_end);
   }
-  return {std::min(begin, std::min(end, cells)), std::min(end, cells), j, k};
+  return parts;
 }
 
 struct StageFields {
-  const FieldBlock *now, *rate, *slope;  // slope null: none
-  const std::vector<Phase> *phases;
+  const FieldBlock *now, *rate, *slope;
+  const std::vector<Segment> *stressed;  // one part per row; slope is read there
   FieldBlock *before;
 };
 
 template <int Dim>
 EULASTIC_INLINE void stage_rows(const Grid &grid, const kernels::RklStage &c, const double *second,
                                 const StageFields &f) {
-  const Int3 n = grid.owned();
-  for (int a = 0; a < Dim; ++a)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const ConstView w = (*f.now)[a], m = (*f.rate)[a];
-        const View out = (*f.before)[a];
-        if (!f.slope) {
-          kernels::rkl_stage<Dim, false>({0, n[0], j, k}, c, w, m, m, second, out);
-          continue;
-        }
-        const Segment part = stressed_part(*f.phases, n[0], j, k);
-        kernels::rkl_stage<Dim, false>({0, part.i_begin, j, k}, c, w, m, m, second, out);
-        kernels::rkl_stage<Dim, true>(part, c, w, m, (*f.slope)[a], second, out);
-        kernels::rkl_stage<Dim, false>({part.i_end, n[0], j, k}, c, w, m, m, second, out);
+  const int n = grid.owned()[0];
+  for (int a = 0; a < Dim; ++a) {
+    const ConstView w = (*f.now)[a], m = (*f.rate)[a];
+    const View out = (*f.before)[a];
+    for (const Segment &part : *f.stressed) {
+      const int j = part.j, k = part.k;
+      if (part.size() == 0) {
+        kernels::rkl_stage<Dim, false>({0, n, j, k}, c, w, m, m, second, out);
+        continue;
       }
+      kernels::rkl_stage<Dim, false>({0, part.i_begin, j, k}, c, w, m, m, second, out);
+      kernels::rkl_stage<Dim, true>(part, c, w, m, (*f.slope)[a], second, out);
+      kernels::rkl_stage<Dim, false>({part.i_end, n, j, k}, c, w, m, m, second, out);
+    }
+  }
 }
 
 EULASTIC_CLONES void stage_2d(const Grid &g, const kernels::RklStage &c, const double *second, const StageFields &f) {
@@ -121,12 +127,13 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   if (work.slope) scale_add(grid, -0.5 * dt, work.slope, &work.rate, work.rate);  // the force at the start
   scale_add(grid, first * dt, work.rate, nullptr, work.now);
   if (stages > 1) clear(grid, work.before);
+  const std::vector<Segment> stressed = stressed_parts(grid, work.slope ? &phases : nullptr);
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 1));
     fill_wall_ghosts_velocity_change(grid, walls, time, time + stage_time(j - 1, stages) * dt, work.now, 1);
     const kernels::RklStage c = stage_coefficients(j, stages, dt, kinematic_viscosity);
     (grid.dimension() == 2 ? stage_2d : stage_3d)(
-        grid, c, second, {&work.now, &work.rate, work.slope ? &work.slope : nullptr, &phases, &work.before});
+        grid, c, second, {&work.now, &work.rate, &work.slope, &stressed, &work.before});
     work.now.swap(work.before);
   }
   scale_add(grid, 1, work.now, &velocity, velocity_star);
