@@ -24,6 +24,11 @@ struct Reach {
   }
 };
 
+// Whether the way from mask[0] leads towards the body beyond the neighbour.
+bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
+  return mask[2 * step] == 0 || mask[2 * step] < mask[step];
+}
+
 struct Point {
   Int3 index;
   std::ptrdiff_t offset;
@@ -47,6 +52,7 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
         locations_.back().staggering = c.staggering();
       }
   }
+  linear_ = phase.material.attached;
   mask_.resize(static_cast<std::size_t>(grid.layout().size));
   for (Location &location : locations_) build_location(grid, phase, &location);
   PetscFunctionReturn(0);
@@ -104,7 +110,9 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
     }
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
+    const Reach owned(grid, at, 0);
     for (const Point &point : next) {
+      if (linear_ && !owned.contains(point.index)) continue;
       const std::ptrdiff_t p = point.offset;
       unsigned neighbours = 0, second = 0;
       for (int d = 0; d < grid.dimension(); ++d) {
@@ -112,9 +120,9 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
         const int i = point.index[d];
         if (i > all.begin[d] && mask[p - stride[d]] < L) neighbours |= low;
         if (i + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= high;
-        if (!phase.material.attached) continue;
-        if (neighbours & low && i > all.begin[d] + 1 && mask[p - 2 * stride[d]] < L) second |= low;
-        if (neighbours & high && i + 2 < all.end[d] && mask[p + 2 * stride[d]] < L) second |= high;
+        if (!linear_) continue;
+        if (neighbours & low && i > all.begin[d] + 1 && leads_in(mask + p, -stride[d])) second |= low;
+        if (neighbours & high && i + 2 < all.end[d] && leads_in(mask + p, stride[d])) second |= high;
       }
       entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
     }
@@ -122,18 +130,18 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
   }
 }
 
-PetscErrorCode ExteriorLayers::extend(const Grid &grid, FieldBlock &tensor) const {
+PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
   const Layout &layout = grid.layout();
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
   const auto &components = tensor_components(grid.dimension());
-  int next_edge = 1;
-  for (int c = 0; c < tensor.count(); ++c) {
-    const Location &location = locations_[components[c].a == components[c].b ? 0 : next_edge++];
-    double *B = tensor.data() + c * layout.size;
-    for (const std::vector<Entry> &entries : location.layer)
-      for (const Entry &entry : entries) {
+  for (int L = 1; L <= layers; ++L) {
+    int next_edge = 1;
+    for (int c = 0; c < tensor.count(); ++c) {
+      const Location &location = locations_[components[c].a == components[c].b ? 0 : next_edge++];
+      double *B = tensor.data() + c * layout.size;
+      for (const Entry &entry : location.layer[L - 1]) {
         double sum = 0;
         int count = 0;
         for (int d = 0; d < grid.dimension(); ++d) {
@@ -146,6 +154,8 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, FieldBlock &tensor) cons
         }
         B[entry.offset] = sum / count;
       }
+    }
+    if (linear_ && L < layers) PetscCall(exchange.update(tensor, 2));
   }
   PetscFunctionReturn(0);
 }

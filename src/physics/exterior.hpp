@@ -7,6 +7,7 @@
 #pragma once
 
 #include "field/phase.hpp"
+#include "field/ghost_exchange.hpp"
 #include "physics/transport.hpp"
 
 namespace eulastic {
@@ -27,8 +28,9 @@ public:
 
   /// phi of the phase needs five valid ghost layers.
   PetscErrorCode build(const Grid &grid, const Phase &phase);
-  /// Extends all components of B. Points outside every layer are left alone (they hold I).
-  PetscErrorCode extend(const Grid &grid, FieldBlock &tensor) const;
+  /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees two
+  /// points in, so that attached bodies exchange ghosts after every layer.
+  PetscErrorCode extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
 
@@ -44,6 +46,7 @@ private:
   };
   void build_location(const Grid &grid, const Phase &phase, Location *location);
 
+  bool linear_ = false;
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
   std::vector<unsigned char> mask_;
 };

@@ -226,7 +226,7 @@ PetscErrorCode Solver::complete_exterior(FieldBlock &tensor) {
   PetscFunctionBeginUser;
   if (spec_.exterior == SolidExterior::extrapolate) {
     PetscCall(exchange_->update(tensor, ExteriorLayers::layers));
-    PetscCall(layers_.extend(*grid_, tensor));
+    PetscCall(layers_.extend(*grid_, *exchange_, tensor));
   }
   PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width));
   PetscFunctionReturn(0);
