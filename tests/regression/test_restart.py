@@ -1,108 +1,19 @@
 #!/usr/bin/python3
-"""Checkpoints, restarts, signals and what a run does when something breaks.
+"""Restarts give the bits of the uninterrupted run, or are refused.
 
 Needs EULASTIC=path of the binary and EULASTIC_MPIEXEC.
 """
-import contextlib
-import json
-import os
 import pathlib
 import random
-import resource
 import shutil
-import signal
-import subprocess
 import sys
-import tempfile
-import time
 import unittest
 
 import h5py
 import numpy
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-FLAT = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -wall_ymax_frequency .9 "
-        "-fluid_viscosity .3 -body_force .1,0,0 -species cell,bead -cell_shape sphere -cell_radius .8 "
-        "-cell_centre .3,2.2,0 -cell_shear_modulus 1 -bead_shape sphere -bead_radius .6 -bead_centre 2.9,1.5,0 "
-        "-bead_shear_modulus 2 -time_end 100 -series_interval .11").split()
-SOLID = ("-grid_cells 12,10,9 -grid_length 3,2.5,2.2 -boundary_y wall -boundary_z wall -wall_zmax_velocity .3,.1,0 "
-         "-fluid_viscosity .3 -initial_velocity_mean .5,0,0 -species cell -cell_shape sphere -cell_radius .7 "
-         "-cell_centre .2,1.2,1 -cell_shear_modulus 1 -time_end 100 -series_interval .11").split()
-SLAB = ("-species cell,plate -plate_shape slab -plate_axis y -plate_interval 0,.6 -plate_shear_modulus 2").split()
-ATTACHED = [w for w in FLAT[:FLAT.index("-species")]] + SLAB + FLAT[FLAT.index("-cell_shape"):
-                                                                 FLAT.index("-bead_shape")] + FLAT[-4:]
-OFTEN = "-checkpoint_interval 1e-9".split()  # after every step
-ENDLESS = "-time_step 1e-5 -series_interval 1".split()
-
-
-class Restart(unittest.TestCase):
-    def setUp(self):
-        room = tempfile.TemporaryDirectory()
-        self.addCleanup(room.cleanup)
-        self.room = pathlib.Path(room.name)
-        self.environment = {k: v for k, v in os.environ.items() if k != "PETSC_OPTIONS"}
-        self.environment.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
-
-    def command(self, arguments, ranks):
-        return [*([MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks else []), BINARY, *map(str, arguments)]
-
-    def call(self, *arguments, ranks=0, **more):
-        return subprocess.run(self.command(arguments, ranks), cwd=self.room, env=self.environment, timeout=120,
-                              capture_output=True, text=True, **more)
-
-    def start(self, *arguments, ranks=0):
-        """A run in the background, in its time loop."""
-        process = subprocess.Popen(self.command([*arguments, "-output_dir", "run"], ranks), cwd=self.room,
-                                   env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        self.wait_until(lambda: self.series("run").count("\n") > 1 or process.poll() is not None)
-        self.assertIsNone(process.poll(), "ended too early")
-        return process
-
-    def wait_until(self, condition):
-        limit = time.monotonic() + 60
-        while not condition():
-            self.assertLess(time.monotonic(), limit)
-            time.sleep(0.01)
-
-    def run_case(self, directory, *arguments, ranks=0):
-        result = self.call(*arguments, "-output_dir", directory, ranks=ranks)
-        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
-        return self.summary(directory)
-
-    def refused(self, *arguments, says, code=2):
-        result = self.call(*arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        self.assertRegex(result.stderr, r"\Aeulastic: error: [^\n]+\n\Z")
-        for piece in says:
-            self.assertIn(piece, result.stderr)
-
-    def summary(self, directory):
-        return json.loads((self.room / directory / "summary.json").read_text())
-
-    def series(self, directory):
-        path = self.room / directory / "series.csv"
-        return path.read_text() if path.exists() else ""
-
-    def checkpoints(self, directory="run"):
-        return sorted((self.room / directory).glob("checkpoint_*.h5"))
-
-    def assert_same(self, one, other, outputs=True):
-        """The same state, and the same rows in series.csv and bodies.h5."""
-        a, b = self.summary(one), self.summary(other)
-        for key in ("state_hash", "steps", "time", "bodies", "acm_sweeps_per_step", "rkl_stages_per_step"):
-            self.assertEqual(a[key], b[key], key)
-        if not outputs:
-            return
-        self.assertEqual(self.series(one), self.series(other))
-        with h5py.File(self.room / one / "bodies.h5") as x, h5py.File(self.room / other / "bodies.h5") as y:
-            for name in x:
-                numpy.testing.assert_array_equal(x[name][()], y[name][()], name)
-                self.assertEqual(x[name].attrs.get("checksum"), y[name].attrs.get("checksum"), name)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from restart_case import FLAT, SOLID, ATTACHED, OFTEN, Restart  # noqa: E402
 
 
 class SameBits(Restart):
@@ -279,134 +190,6 @@ class Refusals(Restart):
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertRegex(result.stderr, r"\Aeulastic: error: -restart: [^\n]+\n\Z")
         self.assertGreater(refused, 6)
-
-
-class Ends(Restart):
-    def check_stopped(self, process, reason="signal"):
-        self.assertEqual(process.wait(60), 0, process.stderr.read())
-        summary = self.summary("run")
-        self.assertEqual(summary["exit_reason"], reason)
-        with h5py.File(self.checkpoints()[-1]) as file:
-            self.assertEqual((file["step"][0], file["time"][0]), (summary["steps"], summary["time"]))
-        steps = summary["steps"] + 5
-        self.run_case("run", *FLAT, *ENDLESS[:2], "-time_steps_max", steps, "-restart", "run")
-        self.run_case("whole", *FLAT, *ENDLESS[:2], "-time_steps_max", steps)
-        self.assert_same("whole", "run")
-
-    def start_endless(self, ranks=0, options=()):
-        return self.start(*FLAT[:-2], *ENDLESS[:2], *options, "-series_interval", ".11", ranks=ranks)
-
-    def test_user_signal_to_mpiexec(self):
-        process = self.start_endless(ranks=2)
-        process.send_signal(signal.SIGUSR1)
-        self.check_stopped(process)
-
-    def test_term_to_one_rank(self):
-        process = self.start_endless(ranks=2)
-        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-        rank = [int(pid) for pid in children if os.readlink(f"/proc/{pid}/exe") == os.path.realpath(BINARY)][-1]
-        os.kill(rank, signal.SIGTERM)
-        self.check_stopped(process)
-
-    def test_interrupt_without_mpiexec(self):
-        process = self.start_endless()
-        process.send_signal(signal.SIGINT)
-        self.check_stopped(process)
-
-    def test_wall_limit(self):
-        process = self.start_endless(options=["-stop_after_minutes", ".01", "-checkpoint_wall_minutes", ".002"])
-        self.check_stopped(process, "wall_limit")
-
-    def test_not_finite(self):
-        result = self.call(*FLAT, "-method", "classic", "-time_step", "3", *OFTEN, "-output_dir", "run")
-        self.assertEqual(result.returncode, 3)
-        self.assertIn("not finite", result.stderr)
-        self.assertEqual(self.summary("run")["exit_reason"], "nonfinite")
-        for path in self.checkpoints():
-            with h5py.File(path) as file:
-                self.assertTrue(numpy.isfinite(file["velocity_x"][()]).all())
-
-    def test_one_run_per_directory(self):
-        process = self.start_endless(options=OFTEN)
-        self.wait_until(self.checkpoints)
-        for more in (["-restart", "run"], ["-output_overwrite"]):
-            self.refused(*FLAT, "-output_dir", "run", *more, says=["run", "in use by another run"])
-        process.kill()
-        process.wait()
-        with h5py.File(self.checkpoints()[-1]) as file:
-            step = int(file["step"][0])
-        self.run_case("run", *FLAT, *ENDLESS[:2], "-time_steps_max", step + 3, "-restart", "run")
-
-
-class BrokenPlaces(Restart):
-    @contextlib.contextmanager
-    def tmpfs(self, options):
-        (self.room / "disk").mkdir()
-        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", options, "none", self.room / "disk"], capture_output=True,
-                               text=True)
-        if mount.returncode != 0:
-            self.skipTest("cannot mount a tmpfs: " + mount.stderr.strip())
-        try:
-            yield
-        finally:
-            subprocess.run(["umount", self.room / "disk"], check=True)
-
-    def check_full(self, returncode, errors):
-        self.assertEqual(returncode, 1, errors)
-        lines = [line for line in errors.splitlines() if line.startswith("eulastic: error:")]
-        self.assertEqual(len(lines), 1, errors)
-        self.assertRegex(lines[0], "No space left|disk full|File too large")
-
-    def check_goes_on(self, directory, *options):
-        steps = int(self.checkpoints(directory)[-1].stem.split("_")[1]) + 3
-        self.run_case("whole", *FLAT, *options, "-time_steps_max", steps)
-        self.run_case("new", *FLAT, *options, "-time_steps_max", steps, "-restart", directory)
-        self.assert_same("whole", "new", outputs=False)
-
-    def test_full_disk(self):
-        with self.tmpfs("size=700k"):
-            result = self.call(*FLAT, "-time_steps_max", 400, *OFTEN, "-snapshot_interval", ".02", "-output_dir",
-                               "disk/run", ranks=2)
-            self.check_full(result.returncode, result.stderr)
-            self.check_goes_on("disk/run")
-
-    def test_files_that_may_not_grow(self):
-        process = self.start(*FLAT, *ENDLESS[:2], *OFTEN)
-        self.wait_until(self.checkpoints)
-        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (10000, 10000))
-        self.check_full(process.wait(60), process.stderr.read())
-        self.assertEqual(self.summary("run")["exit_reason"], "output_failed")
-        self.check_goes_on("run", *ENDLESS[:2])
-
-    def test_read_only(self):
-        with self.tmpfs("ro,size=1m"):
-            self.refused(*FLAT, "-output_dir", "disk/run", says=["disk/run", "Read-only"])
-        (self.room / "file").write_text("")
-        self.refused(*FLAT, "-output_dir", "file", says=["file", "not a directory"])
-        self.refused(*FLAT, "-output_dir", "file/run", says=["file/run"])
-
-    def test_directory_goes_away(self):
-        process = self.start(*FLAT, *ENDLESS[:2], "-checkpoint_wall_minutes", ".001")
-        shutil.rmtree(self.room / "run")
-        self.assertEqual(process.wait(60), 1)
-        self.assertRegex(process.stderr.read(), r"\Aeulastic: error: [^\n]*run/[^\n]*No such file[^\n]*\n\Z")
-
-
-class Kills(Restart):
-    def test_semaphore_of_a_killed_run(self):
-        # As Open MPI leaves it in shared memory: 32 bytes, locked.
-        left = pathlib.Path("/dev/shm/sem.OMPIO_checkpoint_00000003.h5.tmp")
-        if not left.parent.is_dir():
-            self.skipTest("no /dev/shm")
-        left.write_bytes(bytes(32))
-        self.addCleanup(left.unlink)
-        self.run_case("run", *FLAT, "-time_steps_max", 4, *OFTEN, ranks=2)
-
-    def test_kills(self):
-        result = subprocess.run([sys.executable, ROOT / "scripts/kill_test", "20", "--seed", "5"], env=self.environment,
-                                capture_output=True, text=True)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertRegex(result.stdout, r"\A20 kills ")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,54 @@
+// -method fast: the same bits on any ranks, with moving and attached bodies, walls, two phases, both pressure solvers.
+#include "support/scene.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// Hash after some steps of a channel with a moving upper wall, a slab on the lower wall and an off-centre sphere.
+std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, const Int3 &processors) {
+  Scene scene;
+  GridSpec grid;
+  grid.cells = cells;
+  grid.length = {1.2, 1, 0.9};
+  grid.boundary[1] = Boundary::wall;
+  grid.processors = processors;
+  SolverSpec spec;
+  static_cast<Method &>(spec) = method_preset(MethodKind::fast);
+  spec.pressure = pressure;
+  spec.walls.motion[1][1].velocity = {1, 0, 0};
+  spec.fluid.body_force.force = {1, 0, 0};
+  EXPECT_EQ(scene.create(comm, grid, spec), 0);
+  const double h = scene.grid.spacing()[1];
+  const bool flat = scene.grid.dimension() == 2;
+  scene.add_phase(
+      2, [=](double, double y, double) { return std::min(1.0, std::max(0.0, (0.33 - (y - h / 2)) / h)); }, true);
+  scene.add_phase(1, [=](double x, double y, double z) {
+    const double r = std::hypot(x - 0.5, y - 0.62, flat ? 0 : z - 0.4);
+    return std::min(1.0, std::max(0.0, 0.5 - (r - 0.22) / h));
+  });
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  EXPECT_EQ(scene.run(0.3, 15), 0);
+  std::uint64_t hash = 0;
+  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &hash), 0);
+  return hash;
+}
+
+TEST(FastStep, SameBitsOnAnyRanks) {
+  int ranks = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  for (const Int3 cells : {Int3{24, 20, 1}, Int3{18, 16, 14}})
+    for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac}) {
+      const std::uint64_t one = run_hash(PETSC_COMM_SELF, cells, pressure, {0, 0, 0});
+      EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {0, 0, 0}), one);
+      EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {1, ranks, 1}), one);
+      if (cells[2] > 1) {
+        EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {1, 1, ranks}), one);
+      }
+    }
+}
+
+}  // namespace
