@@ -54,9 +54,9 @@ std::vector<double> layer_velocity(const Layers &layers, int cells, int steps, d
   State &state = scene.solver.state();
   set(scene.grid, state.velocity[0], at_face[0], [&](double, double y, double) { return layers.u(y, 0); });
   const double h = 1. / cells;
-  Phase &phase = scene.add_phase(layers.G, [&](double, double y, double) {
-    return std::min(1.0, std::max(0.0, (layers.solid - (y - h / 2)) / h));
-  }, true);
+  Phase &phase = scene.add_phase(
+      layers.G,
+      [&](double, double y, double) { return std::min(1.0, std::max(0.0, (layers.solid - (y - h / 2)) / h)); }, true);
   const Staggering edge{true, true, false};
   set(scene.grid, phase.tensor[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
   set(scene.grid, phase.tensor[0], at_centre,
@@ -112,8 +112,8 @@ TEST(Layers, FastIsSecondOrderInTime) {
   const std::vector<double> limit = layer_velocity(layers, 64, 2048, end, fast_smac());
   double e[3];
   for (int n = 0; n < 3; ++n) e[n] = rms(layer_velocity(layers, 64, 16 << n, end, fast_smac()), limit);
-  std::printf("  S1 in time, 16, 32, 64 steps: %.3e %.3e %.3e, orders %.2f %.2f\n", e[0], e[1], e[2],
-              order(e[0], e[1]), order(e[1], e[2]));
+  std::printf("  S1 in time, 16, 32, 64 steps: %.3e %.3e %.3e, orders %.2f %.2f\n", e[0], e[1], e[2], order(e[0], e[1]),
+              order(e[1], e[2]));
   EXPECT_GT(order(e[0], e[1]), 1.9);
   EXPECT_GT(order(e[1], e[2]), 1.9);
 }

@@ -1,0 +1,93 @@
+// Steady flows of the fast method: F6, the lid-driven cavity at Re = 100, and S3, a solid layer under a driven fluid.
+#include "support/scene.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+SolverSpec fast_spec(double viscosity) {
+  SolverSpec spec;
+  static_cast<Method &>(spec) = method_preset(MethodKind::fast);
+  spec.fluid.viscosity = viscosity;
+  return spec;
+}
+
+// Least value of a sampled curve: the vertex of the parabola through the lowest sample and its neighbours.
+double lowest(const std::vector<double> &q) {
+  std::size_t m = 1;
+  for (std::size_t i = 1; i + 1 < q.size(); ++i)
+    if (q[i] < q[m]) m = i;
+  const double slope = 0.5 * (q[m + 1] - q[m - 1]), curvature = q[m + 1] - 2 * q[m] + q[m - 1];
+  return q[m] - 0.5 * slope * slope / curvature;
+}
+
+// Least u on x = 1/2 and least v on y = 1/2.
+std::array<double, 2> cavity(int cells) {
+  Scene scene;
+  GridSpec grid;
+  grid.cells = {cells, cells, 1};
+  grid.boundary[0] = grid.boundary[1] = Boundary::wall;
+  SolverSpec spec = fast_spec(0.01);
+  spec.walls.motion[1][1].velocity = {1, 0, 0};
+  EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  EXPECT_EQ(scene.run(30, 100 * cells), 0);  // Courant number .3 of the lid
+  const State &state = scene.solver.state();
+  std::vector<double> u, v;
+  for (int n = 0; n < cells; ++n) {
+    u.push_back(state.velocity[0](cells / 2, n, 0));
+    v.push_back(state.velocity[1](n, cells / 2, 0));
+  }
+  return {lowest(u), lowest(v)};
+}
+
+TEST(Cavity, ConvergesToTheReference) {  // Newton + Richardson: u_min -.214043, v_min -.253805
+  const std::array<double, 2> exact{-.214043, -.253805};
+  const auto coarse = cavity(24), fine = cavity(48);
+  for (int c = 0; c < 2; ++c) {
+    const double e[2] = {std::fabs(coarse[c] - exact[c]), std::fabs(fine[c] - exact[c])};
+    std::printf("  F6 %c_min at 24, 48: %.6f %.6f, exact %.6f, order %.2f\n", "uv"[c], coarse[c], fine[c], exact[c],
+                order(e[0], e[1]));
+    EXPECT_GT(order(e[0], e[1]), 1.7);
+    EXPECT_LT(e[1], 0.01 * std::fabs(exact[c]));
+  }
+}
+
+// rms error of u, and of B_xy at the wall and on the interface, of the layers at rest.
+std::array<double, 2> layers(int cells) {
+  const double mu = 0.1, G = 1, g = 0.5, solid = 0.5;
+  Scene scene;
+  GridSpec grid;
+  grid.cells = {4, cells, 1};
+  grid.length = {4. / cells, 1, 1};
+  grid.boundary[1] = Boundary::wall;
+  SolverSpec spec = fast_spec(mu);
+  spec.fluid.body_force.force = {g, 0, 0};
+  EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
+  scene.add_phase(
+      G, [=](double, double y, double) { return y < solid ? 1.0 : 0.0; }, true);
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  EXPECT_EQ(scene.run(60, 150 * cells), 0);
+  const State &state = scene.solver.state();
+  const double u_error = rms_error(scene.grid, state.velocity[0], at_face[0], [=](double, double y, double) {
+    return y > solid ? g * (y - solid) * (1 - y) / (2 * mu) : 0;
+  });
+  double shear_error = 0;  // B_xy = (g/G)(y_m - y), y_m = (Ls + H)/2, where B evolves
+  for (int j = 0; j < cells / 2; ++j)
+    shear_error =
+        std::max(shear_error, std::fabs(state.phases[0].tensor[2](0, j, 0) - g / G * (0.75 - double(j) / cells)));
+  return {u_error, shear_error};
+}
+
+TEST(RestingLayer, ConvergesToTheExactState) {
+  const auto coarse = layers(16), fine = layers(32);
+  std::printf("  S3 at 16, 32: u %.3e %.3e, B_xy %.3e %.3e\n", coarse[0], fine[0], coarse[1], fine[1]);
+  EXPECT_GT(order(coarse[0], fine[0]), 1.9);
+  EXPECT_LT(fine[0], 1e-3);
+  EXPECT_LT(fine[1], 1e-3 * 0.375);  // of its largest value
+}
+
+}  // namespace
