@@ -19,7 +19,7 @@ struct Method {
   SolidExterior exterior = SolidExterior::identity;
   PressureKind pressure = PressureKind::acm;
   int acm_sweeps_max = 1;
-  double acm_tolerance = 1e-5;  ///< on rms(div v) h/U
+  double acm_tolerance = 1e-6;  ///< on rms(div v) h/U
   int acm_memory = 0;           ///< increments of earlier steps kept as directions
   bool acm_coarse = false;      ///< sweep along a V-cycle of D, else along D
 
