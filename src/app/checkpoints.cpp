@@ -2,7 +2,6 @@
 
 #include "app/signals.hpp"
 #include "base/events.hpp"
-#include "physics/limits.hpp"
 
 #include <filesystem>
 
@@ -16,13 +15,14 @@ enum Wish : int { wish_checkpoint = 1, wish_wall_limit = 2, wish_signal = 4 };
 }  // namespace
 
 PetscErrorCode Checkpoints::open(const ParseResult &parsed, const std::string &directory, Solver *solver,
-                                 Outputs *outputs, const std::string &restarted_from) {
+                                 Outputs *outputs, Guards *guards, const std::string &restarted_from) {
   PetscFunctionBeginUser;
   control_ = parsed.config.checkpoint;
   directory_ = directory;
   options_ = options_text(parsed);
   solver_ = solver;
   outputs_ = outputs;
+  guards_ = guards;
   due_ = {control_.interval, solver->state().time};
   begin_ = last_wall_ = MPI_Wtime();
   if (restarted_from.empty() || !restarts_in_place(parsed.config)) PetscFunctionReturn(0);
@@ -43,33 +43,34 @@ int Checkpoints::wishes() const {
   return wishes;
 }
 
-PetscErrorCode Checkpoints::after_step(const RunPosition &position, std::string *exit_reason) {
+PetscErrorCode Checkpoints::after_step(const RunPosition &position, std::string *exit_reason, Stop *stop) {
   PetscFunctionBeginUser;
   int wish = wishes();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wish, 1, MPI_INT, MPI_BOR, solver_->grid().comm()));
   if (wish & wish_wall_limit) *exit_reason = "wall_limit";
   if (wish & wish_signal) *exit_reason = "signal";
   if (wish == 0 && !due_.at(solver_->state().time)) PetscFunctionReturn(0);
-  PetscCall(write(position));
+  PetscCall(write(position, stop));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Checkpoints::before_end(const RunPosition &position) {
+PetscErrorCode Checkpoints::before_end(const RunPosition &position, Stop *stop) {
   PetscFunctionBeginUser;
-  if (control_.regular()) PetscCall(write(position));
+  if (control_.regular()) PetscCall(write(position, stop));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Checkpoints::write(RunPosition position) {
+PetscErrorCode Checkpoints::write(RunPosition position, Stop *stop) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   if (state.step == last_step_) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   // The last good one must not give way to one that is good for nothing.
-  FlowExtremes extremes;
-  PetscCall(measure_extremes(solver_->grid(), state.velocity, state.phases, &extremes));
-  not_finite_ = extremes.first_bad >= 0;
-  if (not_finite_) PetscFunctionReturn(0);
+  PetscCall(guards_->check_finite(*solver_, stop));
+  if (*stop) PetscFunctionReturn(0);
+  PetscCall(outputs_->measure());
+  PetscCall(guards_->check(*solver_, outputs_->measured(), stop));
+  if (*stop) PetscFunctionReturn(0);
   PetscCall(outputs_->sync(&position.outputs));
   PetscCallMPI(MPI_Bcast(&position.wall_seconds, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
   PetscCallMPI(MPI_Bcast(&position.wall_seconds_total, 1, MPI_DOUBLE, 0, solver_->grid().comm()));

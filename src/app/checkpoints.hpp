@@ -12,18 +12,17 @@ public:
   /// Collective. `options`: options_text() of the run. `restarted_from`: path of the checkpoint the run goes on from,
   /// or empty; if it lies in `directory`, younger ones, which belong to a run that is no more, are removed.
   PetscErrorCode open(const ParseResult &parsed, const std::string &directory, Solver *solver, Outputs *outputs,
-                      const std::string &restarted_from);
+                      Guards *guards, const std::string &restarted_from);
 
   /// Collective, after a step and what it made due. Writes a checkpoint if one is due by simulated time or by rank 0's
-  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit".
-  PetscErrorCode after_step(const RunPosition &position, std::string *exit_reason);
+  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards do not let
+  /// pass is not written: the last good one stays.
+  PetscErrorCode after_step(const RunPosition &position, std::string *exit_reason, Stop *stop);
   /// Collective. The last one of a run that writes any.
-  PetscErrorCode before_end(const RunPosition &position);
-  /// Whether the last one was not written because a field is not finite.
-  bool not_finite() const { return not_finite_; }
+  PetscErrorCode before_end(const RunPosition &position, Stop *stop);
 
 private:
-  PetscErrorCode write(RunPosition position);
+  PetscErrorCode write(RunPosition position, Stop *stop);
   PetscErrorCode remove_old();
   int wishes() const;  ///< of this rank
 
@@ -31,10 +30,10 @@ private:
   std::string directory_, options_;
   Solver *solver_ = nullptr;
   Outputs *outputs_ = nullptr;
+  Guards *guards_ = nullptr;
   Due due_;
   double begin_ = 0, last_wall_ = 0;  ///< MPI_Wtime
   std::int64_t last_step_ = -1;       ///< that has a checkpoint in this directory
-  bool not_finite_ = false;
 };
 
 }  // namespace eulastic

@@ -51,6 +51,16 @@ struct CheckpointControl {
   bool regular() const { return interval > 0 || wall_minutes > 0; }
 };
 
+/// Bounds that stop a run; 0 = none.
+struct GuardControl {
+  double cfl = 1;              ///< sum of max |v_i| dt/h_i
+  double divergence = 0.2;     ///< rms(div v) h/U
+  double mach = 0.5;           ///< U/beta of artificial compressibility
+  double volume_drift = 0.2;   ///< relative, of any body
+  double energy_growth = 0.1;  ///< of kinetic + elastic energy without forcing, per energy at the start
+  double memory = 1;           ///< needed by the ranks of a node, per memory it has
+};
+
 struct Config {
   GridSpec grid;
   Walls walls;
@@ -63,6 +73,7 @@ struct Config {
   OutputControl output;
   SampleControl samples;
   CheckpointControl checkpoint;
+  GuardControl guard;
   bool check_only = false;
 };
 

@@ -244,6 +244,18 @@ void add_running(Rows &rows, Config &config) {
   rows.path("restart", checkpoint.restart,
             "checkpoint, or output directory whose newest good one is taken; in the same -output_dir its files go on");
 
+  rows.group = "Guards: bounds that stop the run; 0 = none";
+  GuardControl &guard = config.guard;
+  rows.real("guard_cfl", guard.cfl, not_negative, "", "CFL number, the sum of max |v_i| dt/h_i");
+  rows.real("guard_divergence", guard.divergence, not_negative, "", "rms(div v) h/U, as in series.csv");
+  rows.real("guard_mach", guard.mach, not_negative, "",
+            "largest |v| over the sound speed of artificial compressibility, where there is one");
+  rows.real("guard_volume_drift", guard.volume_drift, not_negative, "", "relative change of the volume of any body");
+  rows.real("guard_energy_growth", guard.energy_growth, not_negative, "",
+            "growth of kinetic + elastic energy without body force and moving walls, per energy at the start");
+  rows.real("guard_memory", guard.memory, not_negative, "",
+            "memory that the ranks of a node need, per memory it has; looked at before the start");
+
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
   rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =

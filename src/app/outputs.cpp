@@ -89,27 +89,34 @@ PetscErrorCode Outputs::resume(const Config &config, const Grid &grid, Solver *s
 PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
-  if (measured_time_ == state.time) PetscFunctionReturn(0);
+  Measured &m = measured_;
+  if (m.time == state.time) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver_->phases_now(&phases));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
   PetscCall(measure_flow(*grid_, state.velocity, *phases,
-                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &flow_));
-  if (solver_->bodies().bodies() > 0) PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &bodies_));
+                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &m.flow));
+  if (solver_->bodies().bodies() > 0) PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &m.bodies));
   if (first_volume_.empty())
-    for (const BodyMeasure &body : bodies_) first_volume_.push_back(body.volume);
-  volume_drift_ = 0;
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    if (first_volume_[b] > 0)
-      volume_drift_ = std::max(volume_drift_, std::fabs(bodies_[b].volume / first_volume_[b] - 1));
-  measured_time_ = state.time;
+    for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
+  m.volume_drift = 0;
+  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+    const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
+    if (drift <= m.volume_drift) continue;
+    m.volume_drift = drift;
+    m.drifting_body = static_cast<int>(b);
+  }
+  const double sound_speed = solver_->sound_speed();
+  m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
+  mach_max_ = std::max(mach_max_, m.mach);
+  m.time = state.time;
   PetscFunctionReturn(0);
 }
 
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
-  for (const BodyMeasure &body : bodies_) {
+  for (const BodyMeasure &body : measured_.bodies) {
     BodyRecord record;
     record.id = body.label;
     record.species = config_.species[body.species].name;
@@ -144,11 +151,11 @@ PetscErrorCode Outputs::write_due(bool last) {
   if (series) {
     PetscCall(measure());
     double solid = 0;
-    for (const double volume : flow_.phase_volume) solid += volume;
-    PetscCall(series_.write({state.time, double(state.step), state.dt, flow_.kinetic_energy, flow_.elastic_energy,
-                             flow_.viscous_dissipation, flow_.bulk_velocity[0], flow_.bulk_velocity[1],
-                             flow_.bulk_velocity[2], flow_.speed_max, flow_.divergence_rms, flow_.divergence_max, solid,
-                             volume_drift_}));
+    for (const double volume : measured_.flow.phase_volume) solid += volume;
+    PetscCall(series_.write({state.time, double(state.step), state.dt, measured_.flow.kinetic_energy, measured_.flow.elastic_energy,
+                             measured_.flow.viscous_dissipation, measured_.flow.bulk_velocity[0], measured_.flow.bulk_velocity[1],
+                             measured_.flow.bulk_velocity[2], measured_.flow.speed_max, measured_.flow.divergence_rms, measured_.flow.divergence_max, solid,
+                             measured_.volume_drift}));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));
       ++bodies_rows_;
@@ -201,12 +208,13 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
     (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
         sweeps;
   }
-  summary.divergence_rms = flow_.divergence_rms;
-  summary.divergence_max = flow_.divergence_max;
-  summary.volume_drift = volume_drift_;
-  summary.kinetic_energy = flow_.kinetic_energy;
-  summary.elastic_energy = flow_.elastic_energy;
-  summary.bulk_velocity = flow_.bulk_velocity[0];
+  summary.divergence_rms = measured_.flow.divergence_rms;
+  summary.divergence_max = measured_.flow.divergence_max;
+  summary.mach_max = mach_max_;
+  summary.volume_drift = measured_.volume_drift;
+  summary.kinetic_energy = measured_.flow.kinetic_energy;
+  summary.elastic_energy = measured_.flow.elastic_energy;
+  summary.bulk_velocity = measured_.flow.bulk_velocity[0];
   summary.bodies = records();
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
   counted[0] = double(solver_->bytes());

@@ -3,8 +3,8 @@
 
 #include "app/config.hpp"
 #include "app/due.hpp"
+#include "app/guards.hpp"
 #include "app/sample_files.hpp"
-#include "diagnostics/flow_measures.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
@@ -35,11 +35,14 @@ public:
   PetscErrorCode sync(OutputsPosition *position);
   /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time.
   PetscErrorCode write_due(bool last);
+  /// Measures the state, if that has not been done.
+  PetscErrorCode measure();
+  /// As of the last measure(), which every row of series.csv makes.
+  const Measured &measured() const { return measured_; }
   /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
   PetscErrorCode write_summary(Summary summary);
 
 private:
-  PetscErrorCode measure();
   std::vector<BodyRecord> records() const;
 
   Config config_;
@@ -52,11 +55,10 @@ private:
   std::unique_ptr<SnapshotWriter> snapshots_;
   std::unique_ptr<SnapshotFields> snapshot_fields_;
   Due series_due_, snapshot_due_;
-  FlowMeasures flow_;
-  std::vector<BodyMeasure> bodies_;
+  Measured measured_;
   std::vector<double> first_volume_;
   long bodies_rows_ = 0, snapshots_before_ = 0;
-  double measured_time_ = -1, mach_max_ = 0, volume_drift_ = 0;
+  double mach_max_ = 0;
 };
 
 }  // namespace eulastic

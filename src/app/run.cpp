@@ -18,8 +18,10 @@ struct Run {
   Solver solver;
   Outputs outputs;
   Checkpoints checkpoints;
+  Guards guards;
   RunPosition position;
-  std::string exit_reason, message;
+  std::string exit_reason;
+  Stop stop;  ///< by a guard
 };
 
 bool finished(const State &state, const TimeControl &time, std::string *reason) {
@@ -34,10 +36,22 @@ void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", warning.c_str());
 }
 
-PetscErrorCode stop_not_finite(Run *run) {
-  run->exit_reason = "nonfinite";
-  run->message = "a field is not finite at t = " + format_double(run->solver.state().time);
-  return 0;
+// The state that a run ends with has not met the guards yet.
+PetscErrorCode check_end(Run *run) {
+  PetscFunctionBeginUser;
+  PetscCall(run->guards.check_finite(run->solver, &run->stop));
+  if (run->stop) PetscFunctionReturn(0);
+  PetscCall(run->outputs.measure());
+  PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
+  PetscFunctionReturn(0);
+}
+
+// What a row of series.csv has shown.
+PetscErrorCode check_measured(Run *run) {
+  PetscFunctionBeginUser;
+  const Measured &measured = run->outputs.measured();
+  if (measured.time == run->solver.state().time) PetscCall(run->guards.check(run->solver, measured, &run->stop));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *control, Progress *progress, Run *run) {
@@ -45,22 +59,20 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
   Solver &solver = run->solver;
   const State &state = solver.state();
   const double total = run->position.wall_seconds_total, loop_begin = MPI_Wtime();
-  while (run->exit_reason.empty() && !finished(state, config.time, &run->exit_reason)) {
+  while (!run->stop && run->exit_reason.empty() && !finished(state, config.time, &run->exit_reason)) {
     double step_begin = MPI_Wtime(), dt = 0;
     std::string warning;
     {
       StageScope stage(Stage::step);
-      PetscCall(control->choose(&solver, &dt, &run->message, &warning));
-    }
-    if (!run->message.empty()) {
-      run->exit_reason = "nonfinite";
-      break;
+      PetscCall(control->choose(&solver, run->guards, &dt, &run->stop, &warning));
     }
     print_warning(solver.grid().comm(), warning);
+    if (run->stop) break;
     run->position.dt = control->dt();
     run->position.wall_seconds += MPI_Wtime() - step_begin;
     // A shortened step is no part of a longer run.
-    if (control->ends()) PetscCall(run->checkpoints.before_end(run->position));
+    if (control->ends()) PetscCall(run->checkpoints.before_end(run->position, &run->stop));
+    if (run->stop) break;
     step_begin = MPI_Wtime();
     {
       StageScope stage(Stage::step);
@@ -69,12 +81,16 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
     run->position.wall_seconds += MPI_Wtime() - step_begin;
     run->position.wall_seconds_total = total + MPI_Wtime() - begin;
     PetscCall(run->outputs.write_due(false));
-    if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason));
+    PetscCall(check_measured(run));
+    if (run->stop) break;
+    if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason, &run->stop));
     progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   }
-  if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position));
-  if (run->checkpoints.not_finite()) PetscCall(stop_not_finite(run));
-  if (run->exit_reason == "steps" || run->exit_reason == "time_end") PetscCall(run->outputs.write_due(true));
+  if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position, &run->stop));
+  const bool whole = run->exit_reason == "steps" || run->exit_reason == "time_end";
+  if (!run->stop && whole) PetscCall(check_end(run));
+  if (run->stop) run->exit_reason = run->stop.reason;
+  if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
   progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   PetscFunctionReturn(0);
 }
@@ -97,9 +113,11 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   ParseResult whole = parsed;
   if (in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
   PetscCall(write_text_file(grid.comm(), directory->file("options.txt"), options_text(whole)));
-  PetscCall(run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, restarted_from));
+  PetscCall(run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, &run->guards, restarted_from));
   PetscCall(run->outputs.resume(config, grid, &run->solver, directory->path(), run->position.outputs, in_place));
   if (source.empty()) PetscCall(run->outputs.write_due(false));
+  PetscCall(run->outputs.measure());
+  PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
   if (!source.empty())
     PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                           run->solver.state().time, static_cast<long long>(run->solver.state().step)));
@@ -127,7 +145,7 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   Grid grid;
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   RunDirectory directory;
-  Run run;
+  Run run{{}, {}, {}, Guards(config), {}, {}, {}};
   PetscCall(begin_run(parsed, grid, &directory, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();
@@ -148,8 +166,8 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   }
   *code = exit_failed;
   PetscCall(write_summary(begin, total_before, &run));
-  *refusal = run.message;
-  *code = run.exit_reason == "nonfinite" ? exit_nonfinite : exit_fine;
+  *refusal = run.stop.message;
+  *code = run.stop ? exit_wrong_numbers : exit_fine;
   PetscFunctionReturn(0);
 }
 

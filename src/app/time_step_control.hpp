@@ -1,8 +1,7 @@
 // Chooses dt: measured every ten steps, changed smoothly, never shortened except to end on time.
 #pragma once
 
-#include "app/config.hpp"
-#include "solver/solver.hpp"
+#include "app/guards.hpp"
 
 namespace eulastic {
 
@@ -10,9 +9,9 @@ class TimeStepControl {
 public:
   explicit TimeStepControl(const TimeControl &time) : time_(time) {}
 
-  /// The dt of the next step. Stops the run (`stop`: time, place, cause) when a field is not finite. A dt that the
-  /// user forces beyond a limit makes `warning` one line, once.
-  PetscErrorCode choose(Solver *solver, double *dt, std::string *stop, std::string *warning);
+  /// The dt of the next step, if the guards let it pass. A dt that the user forces beyond a limit, or one with which
+  /// the run will hardly end, makes `warning` one line, once.
+  PetscErrorCode choose(Solver *solver, const Guards &guards, double *dt, Stop *stop, std::string *warning);
 
   /// The dt of the last choose() ends the run exactly at -time_end.
   bool ends() const { return ends_; }
@@ -21,6 +20,8 @@ public:
   void resume(double dt) { dt_ = dt; }
 
 private:
+  std::string too_many_steps(const State &state) const;
+
   TimeControl time_;
   double dt_ = 0;  ///< since the last measurement
   bool warned_ = false, ends_ = false;

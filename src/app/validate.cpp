@@ -131,6 +131,13 @@ std::string check_method(const Config &config) {
   return {};
 }
 
+std::string check_time(const Config &config) {
+  const double resolution = std::numeric_limits<double>::epsilon() / 2 * config.time.end;
+  if (config.time.step == 0 || config.time.step > resolution) return {};
+  return "-time_step: " + to_text(config.time.step) + " cannot be added to times near -time_end " +
+         to_text(config.time.end) + "; accepted: 0 or a number > " + to_text(resolution);
+}
+
 std::string check_restart(const Config &config) {
   const std::string &path = config.checkpoint.restart;
   if (!path.empty() && !std::filesystem::exists(path)) return "-restart: there is no file or directory " + path;
@@ -140,7 +147,7 @@ std::string check_restart(const Config &config) {
 }  // namespace
 
 std::string validate(const Config &config) {
-  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_samples, check_restart})
+  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;

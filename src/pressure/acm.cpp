@@ -88,6 +88,7 @@ PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBl
   double total[sum_count];
   PetscCall(sums.reduce(grid_->comm(), total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
+  sound_speed_ = last_.sound_speed(dt);
   increment_rows(*grid_, last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count(), divergence[0], pressure[0],
                  increment[0]);
   scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12 + 6));

@@ -29,10 +29,12 @@ public:
   explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
+  double sound_speed() const override { return sound_speed_; }
 
 private:
   const Grid *grid_;
   AcmCoefficients last_;
+  double sound_speed_ = 0;
 };
 
 }  // namespace eulastic

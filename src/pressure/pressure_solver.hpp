@@ -19,6 +19,8 @@ public:
   virtual void set_target(double) {}
   /// Sweeps or iterations since the start; 0 for exact solvers.
   virtual long sweeps() const { return 0; }
+  /// beta of the last solve() by artificial compressibility; 0 where there is no such speed.
+  virtual double sound_speed() const { return 0; }
   /// Fields that must survive a restart for the same bits, or null.
   virtual FieldBlock *memory() { return nullptr; }
   /// Bytes of the solver's own fields on this rank.

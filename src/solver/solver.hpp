@@ -52,6 +52,7 @@ public:
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
   long sweeps() const { return sweeps_before_ + pressure_solver_->sweeps(); }
+  double sound_speed() const { return pressure_solver_->sound_speed(); }
   /// What the pressure solver remembers of earlier steps, or null.
   FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
 

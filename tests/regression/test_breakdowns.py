@@ -14,7 +14,6 @@ import sys
 import unittest
 
 import h5py
-import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from restart_case import BINARY, ROOT, FLAT, OFTEN, ENDLESS, Restart  # noqa: E402
@@ -55,15 +54,6 @@ class Ends(Restart):
     def test_wall_limit(self):
         process = self.start_endless(options=["-stop_after_minutes", ".01", "-checkpoint_wall_minutes", ".002"])
         self.check_stopped(process, "wall_limit")
-
-    def test_not_finite(self):
-        result = self.call(*FLAT, "-method", "classic", "-time_step", "3", *OFTEN, "-output_dir", "run")
-        self.assertEqual(result.returncode, 3)
-        self.assertIn("not finite", result.stderr)
-        self.assertEqual(self.summary("run")["exit_reason"], "nonfinite")
-        for path in self.checkpoints():
-            with h5py.File(path) as file:
-                self.assertTrue(numpy.isfinite(file["velocity_x"][()]).all())
 
     def test_one_run_per_directory(self):
         process = self.start_endless(options=OFTEN)

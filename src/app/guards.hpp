@@ -1,0 +1,49 @@
+// Bounds that stop a run before it goes on with wrong numbers: -guard_*, and fields that are not finite.
+//
+// They look at numbers that others have found: the limits of the time step, the measures of the flow. Only a run that
+// stops pays for finding the place.
+#pragma once
+
+#include "app/config.hpp"
+#include "bodies/measures.hpp"
+#include "diagnostics/flow_measures.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+/// Why a run has to stop; nothing = it goes on.
+struct Stop {
+  std::string reason;   ///< exit_reason of summary.json: nonfinite or guard
+  std::string message;  ///< one line: step, time, place, what is beyond which limit, what to change
+  explicit operator bool() const { return !reason.empty(); }
+};
+
+/// A state as measured for series.csv.
+struct Measured {
+  double time = -1;  ///< of the state; negative: not yet
+  FlowMeasures flow;
+  std::vector<BodyMeasure> bodies;
+  double volume_drift = 0;  ///< of the body that has changed most
+  int drifting_body = -1;   ///< its index
+  double mach = 0;          ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
+};
+
+class Guards {
+public:
+  explicit Guards(const Config &config);
+
+  /// Collective. Before a step of `dt`, from freshly measured extremes.
+  PetscErrorCode before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const;
+  /// Collective. Velocity and B of any state.
+  PetscErrorCode check_finite(const Solver &solver, Stop *stop) const;
+  /// Collective. A measured state. The first one is what energy is compared with; it passes.
+  PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop);
+
+private:
+  GuardControl control_;
+  std::string pressure_advice_;
+  bool forced_ = false;
+  double first_energy_ = -1, lowest_energy_ = 0;  ///< negative: not measured yet
+};
+
+}  // namespace eulastic

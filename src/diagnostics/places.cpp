@@ -1,0 +1,61 @@
+#include "diagnostics/places.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+// value(i, j, k): of a cell, not negative.
+template <class Value>
+PetscErrorCode largest(const Grid &grid, Value value, Real3 *place) {
+  PetscFunctionBeginUser;
+  const Int3 &begin = grid.layout().begin, &N = grid.cells();
+  double most = -1, here = -1, first = std::numeric_limits<double>::infinity();
+  for (const Segment &row : grid.rows())
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const double q = value(i, row.j, row.k);
+      if (!(q > here)) continue;
+      here = q;
+      first = begin[0] + i + double(N[0]) * (begin[1] + row.j + double(N[1]) * (begin[2] + row.k));
+    }
+  PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  if (here < most) first = std::numeric_limits<double>::infinity();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, grid.comm()));
+  *place = std::isfinite(first) ? place_of_cell(grid, first) : Real3{};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode place_of_speed(const Grid &grid, const FieldBlock &velocity, Real3 *place) {
+  PetscFunctionBeginUser;
+  const auto rate = [&](int i, int j, int k) {
+    double sum = 0;
+    for (int d = 0; d < velocity.count(); ++d) sum += std::fabs(velocity[d](i, j, k)) / grid.spacing()[d];
+    return sum;
+  };
+  PetscCall(largest(grid, rate, place));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode place_of_divergence(const Grid &grid, const FieldBlock &velocity, Real3 *place) {
+  PetscFunctionBeginUser;
+  const auto divergence = [&](int i, int j, int k) {
+    double sum = 0;
+    for (int d = 0; d < velocity.count(); ++d)
+      sum += (velocity[d](i + (d == 0), j + (d == 1), k + (d == 2)) - velocity[d](i, j, k)) / grid.spacing()[d];
+    return std::fabs(sum);
+  };
+  PetscCall(largest(grid, divergence, place));
+  PetscFunctionReturn(0);
+}
+
+Real3 place_of_cell(const Grid &grid, double index) {
+  const Int3 &n = grid.cells();
+  const Real3 &h = grid.spacing();
+  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
+  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
+}
+
+}  // namespace eulastic
