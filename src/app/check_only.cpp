@@ -1,6 +1,5 @@
 #include "app/check_only.hpp"
 
-#include "bodies/placement.hpp"
 #include "bodies/shapes.hpp"
 #include "physics/limits.hpp"
 
@@ -58,19 +57,20 @@ public:
   }
 
   void bodies(Report &report) const {
-    double box = 1, solid = 0;
+    double box = 1, walls = 0, cells = 0;
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
-    for (const SpeciesSpec &spec : config_.species) {
+    for (std::size_t s = 0; s < config_.species.size(); ++s) {
+      const SpeciesSpec &spec = config_.species[s];
       if (spec.shape == Shape::state) {
         report.line("species " + spec.name, "from %s", config_.initial_state.c_str());
         continue;
       }
-      const double count = body_count(spec), volume = volume_in_box(spec);
-      solid += count * volume;
+      const double count = double(config_.places[s].size()), volume = volume_in_box(spec, config_.grid);
+      (is_attached(spec.shape) ? walls : cells) += count * volume;
       report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g", count,
                   dimension_ == 2 ? "area" : "volume", volume, count * volume / box);
     }
-    report.line("hematocrit", "%.6g", solid / box);
+    report.line("hematocrit", "%.6g%s", cells / (box - walls), walls > 0 ? " (of the box less slabs and tubes)" : "");
   }
 
   void flow(Report &report) const {
@@ -141,24 +141,6 @@ private:
       ghosted *= std::ceil(double(config_.grid.cells[d]) / parts[d]) + (d < dimension_ ? 2 * Grid::ghost_width : 0);
     return fields() * ghosted;
   }
-  double body_count(const SpeciesSpec &spec) const {
-    if (spec.placement == Placement::lattice) return double(spec.count[0]) * spec.count[1] * spec.count[2];
-    std::vector<BodyPlace> places;
-    (void)place_bodies(spec, config_.grid, &places);  // parsing has tried it
-    return double(places.size());
-  }
-  /// shape_volume times the sides of the box along which cylinder and slab are infinite; a slab is cut to the box.
-  double volume_in_box(SpeciesSpec spec) const {
-    const Real3 &length = config_.grid.length;
-    double factor = 1;
-    if (spec.shape == Shape::cylinder && spec.axis < dimension_) factor = length[spec.axis];
-    if (spec.shape == Shape::slab) {
-      spec.interval = {std::max(0.0, spec.interval[0]), std::min(length[spec.axis], spec.interval[1])};
-      for (int d = 0; d < dimension_; ++d) factor *= d == spec.axis ? 1 : length[d];
-    }
-    return factor * shape_volume(spec, dimension_);
-  }
-
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
 
   FlowScale flow_scale() const {
@@ -167,6 +149,8 @@ private:
     double gap = std::numeric_limits<double>::infinity();
     for (int d = 0; d < dimension_; ++d)
       if (is_wall(d)) gap = std::min(gap, length[d]);
+    for (const SpeciesSpec &spec : config_.species)
+      if (is_tube(spec.shape)) gap = std::min(gap, 2 * spec.radius);
     scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
     driven_by_walls(scale);
     driven_by_force(scale);
@@ -190,8 +174,8 @@ private:
       }
     }
   }
-  /// A channel of height H reaches f H^2/(8 nu) with the shear rate f H/(2 nu) at its walls; what is free
-  /// accelerates to the end.
+  /// A channel of height H reaches f H^2/(8 nu) with the shear rate f H/(2 nu) at its walls, a tube f R^2/(4 nu) and
+  /// f R/(2 nu) along its axis; what is free accelerates to the end.
   void driven_by_force(FlowScale &scale) const {
     const BodyForce &force = config_.fluid.body_force;
     const double nu = config_.fluid.kinematic_viscosity();
@@ -199,8 +183,15 @@ private:
       const double f = std::fabs(force.force[c]);
       double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
       if (is_wall(c)) speed = 0;  // pressure takes it
+      const SpeciesSpec *tube = nullptr;
+      for (const SpeciesSpec &spec : config_.species)
+        if (is_tube(spec.shape) && dimension_ == 3 && spec.axis == c && nu > 0) tube = &spec;
+      if (tube) {
+        speed = std::min(speed, f * tube->radius * tube->radius / (4 * nu));
+        scale.shear_rate = std::max(scale.shear_rate, f * tube->radius / (2 * nu));
+      }
       for (int d = 0; d < dimension_; ++d) {
-        if (!is_wall(d) || d == c || is_wall(c) || nu == 0) continue;
+        if (tube || !is_wall(d) || d == c || is_wall(c) || nu == 0) continue;
         const double height = config_.grid.length[d];
         speed = std::min(speed, f * height * height / (8 * nu));
         scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));

@@ -1,7 +1,7 @@
 // Everything the user may choose, validated. The member initialisers are the defaults that -help shows.
 #pragma once
 
-#include "bodies/species.hpp"
+#include "bodies/placement.hpp"
 #include "field/walls.hpp"
 #include "grid/grid.hpp"
 #include "physics/fluid.hpp"
@@ -68,6 +68,7 @@ struct Config {
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none
   std::vector<SpeciesSpec> species;
+  std::vector<std::vector<BodyPlace>> places;  ///< of the bodies of every species; by validate()
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;

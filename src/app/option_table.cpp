@@ -2,6 +2,7 @@
 
 #include "app/option_rows.hpp"
 #include "app/petsc_options.hpp"
+#include "app/species_options.hpp"
 
 #include <set>
 
@@ -9,10 +10,8 @@ namespace eulastic {
 namespace {
 
 const Names boundary_names{"periodic", "wall"};
-const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab", "state"};
 const Names method_names{"fast", "classic"};
 const char *const by_method = "set by -method";
-const Names placement_names{"one", "list", "lattice"};
 
 void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
@@ -73,53 +72,6 @@ void add_flow(Rows &rows, Config &config) {
             "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)");
 }
 
-// One species; its name is the prefix.
-void add_species(Rows &rows, SpeciesSpec &spec, bool from_state) {
-  rows.prefix = spec.name + "_";
-  const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
-  };
-  const auto for_placement = [&](Placement wanted) {
-    rows.restrict(rows.rows.size() - 1, rows.prefix + "placement", spec.placement, placement_names, {wanted});
-  };
-  rows.choice("shape", spec.shape, shape_names,
-              "shape; in 2-D its cut at z = 0; state: as in -initial_state, then the default")
-      .required = !from_state;
-  rows.real("radius", spec.radius, positive, "length", "radius").required = true;
-  Option &diameter = rows.real("diameter", spec.radius, positive, "length", "another way to give the radius");
-  diameter.alias_of = rows.prefix + "radius";
-  diameter.text = nullptr;
-  diameter.read = [read = diameter.read, &spec](const std::string &value) {
-    std::string wrong = read(value);
-    if (wrong.empty()) spec.radius /= 2;
-    return wrong;
-  };
-  for_shapes(2, {Shape::sphere, Shape::biconcave, Shape::cylinder});
-  rows.real("semi_axes", spec.semi_axes, positive, "length", "semi-axes along x, y, z").required = true;
-  for_shapes(1, {Shape::ellipsoid});
-  rows.choice("axis", spec.axis, {"x", "y", "z"}, "axis of symmetry, or normal of a slab");
-  for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab});
-  rows.real("interval", spec.interval, any_number, "length", "low and high side of the slab").required = true;
-  for_shapes(1, {Shape::slab});
-  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
-      .required = true;
-  rows.real("initial_stretch", spec.initial_stretch, positive, "",
-            "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
-  rows.choice("placement", spec.placement, placement_names,
-              "one body, a list of bodies, or a lattice that fills the box");
-  Option &centre = rows.real("centre", spec.centre, any_number, "length", "centre of the body");
-  centre.default_note = "centre of the box";
-  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab and state";
-  centre.applies = [&spec] { return spec.placement == Placement::one && spec.shape < Shape::slab; };
-  rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
-  for_placement(Placement::list);
-  rows.integers("count", spec.count.data(), 3, at_least_one, "bodies along x, y, z");
-  for_placement(Placement::lattice);
-  rows.real("orientation", spec.orientation, any_number, "degrees", "rotations about x, then y, then z");
-  for_shapes(1, {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
-  rows.prefix.clear();
-}
-
 void add_bodies(Rows &rows, Config &config) {
   rows.group = "Bodies";
   Option &species = rows.add("species", "", "names of the species; each has the options of species NAME");
@@ -133,7 +85,7 @@ void add_bodies(Rows &rows, Config &config) {
   };
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
-    add_species(rows, spec, !config.initial_state.empty());
+    add_species_rows(rows, spec, !config.initial_state.empty());
   }
 }
 

@@ -147,7 +147,7 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
     if (!spec.centre_given) spec.centre = {length[0] / 2, length[1] / 2, length[2] / 2};
   }
   if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
-  return validate(*config);
+  return validate(config);
 }
 
 std::string parse_into(const std::vector<std::string> &arguments, ParseResult *result) {

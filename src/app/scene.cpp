@@ -3,7 +3,6 @@
 #include "app/initial_state.hpp"
 #include "base/events.hpp"
 #include "bodies/fill_phase.hpp"
-#include "bodies/placement.hpp"
 #include "io/fail_together.hpp"
 
 namespace eulastic {
@@ -28,9 +27,9 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
   PetscCall(file.open());
   PetscCall(file.read_flow(&state));
   int next_label = 1;
-  for (const SpeciesSpec &species : config.species) {
-    std::vector<BodyPlace> places;
-    PetscCall(fail_together(grid.comm(), place_bodies(species, config.grid, &places)));
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &species = config.species[s];
+    std::vector<BodyPlace> places = config.places[s];
     Phase phase;
     PetscCall(fill_phase(grid, species, places, next_label, &phase));
     PetscCall(file.read_phase(species, next_label, &phase, &places));

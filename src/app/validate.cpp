@@ -1,7 +1,7 @@
 #include "app/validate.hpp"
 
 #include "app/option_values.hpp"
-#include "bodies/placement.hpp"
+#include "bodies/seeding.hpp"
 #include "pressure/smac.hpp"
 
 #include <filesystem>
@@ -64,19 +64,6 @@ std::string check_flow(const Config &config) {
   return {};
 }
 
-// A lattice is right if its two end bodies are: no need to place millions.
-std::vector<SpeciesSpec> to_place(const Config &config, const SpeciesSpec &spec) {
-  if (spec.placement != Placement::lattice || spec.shape == Shape::slab) return {spec};
-  SpeciesSpec first = spec, last = spec;
-  first.placement = last.placement = Placement::one;
-  first.centre_given = last.centre_given = true;
-  for (int d = 0; d < 3; ++d) {
-    first.centre[d] = 0.5 * config.grid.length[d] / spec.count[d];
-    last.centre[d] = (spec.count[d] - 0.5) * config.grid.length[d] / spec.count[d];
-  }
-  return {first, last};
-}
-
 std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (spec.shape == Shape::state && config.initial_state.empty())
     return "-" + spec.name + "_shape: state needs -initial_state";
@@ -92,15 +79,34 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   if (flat(config) && spec.count[2] != 1) return "-" + spec.name + "_count: must be 1 along z in 2-D";
-  if (double(spec.count[0]) * spec.count[1] * spec.count[2] > 2e9)
-    return "-" + spec.name + "_count: too many bodies; accepted: at most 2e9";
+  if (double(spec.count[0]) * spec.count[1] * spec.count[2] > most_bodies)
+    return "-" + spec.name + "_count: too many bodies; accepted: at most " + std::to_string(most_bodies);
+  const bool random = spec.placement == Placement::random;
+  if (spec.placement == Placement::lattice && spec.number >= 0)
+    return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
+  if (random && spec.count != Int3{1, 1, 1})
+    return "-" + spec.name + "_count: with random placement accepted: an integer >= 0";
+  if (random && (spec.number >= 0) == (spec.hematocrit >= 0))
+    return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
+           "_hematocrit";
+  if (random && (spec.shape == Shape::cylinder || is_attached(spec.shape)))
+    return "-" + spec.name + "_placement: random needs bodies with ends; accepted: sphere, biconcave, ellipsoid";
   if (spec.placement == Placement::list && !std::filesystem::is_regular_file(spec.positions_file))
     return "-" + spec.name + "_positions: " + spec.positions_file + " is not a file";
+  return {};
+}
+
+std::string place_species(std::size_t which, Config *config) {
+  const SpeciesSpec &spec = config->species[which];
   std::vector<BodyPlace> places;
-  for (const SpeciesSpec &sample : to_place(config, spec))
-    if (const std::string wrong = place_bodies(sample, config.grid, &places); !wrong.empty())
-      return "-species " + spec.name +
-             (spec.placement == Placement::list ? " (-" + spec.name + "_positions): " : ": ") + wrong;
+  if (spec.placement == Placement::random) {
+    if (std::string wrong = seed_bodies(config->species, which, config->grid, config->places, &places); !wrong.empty())
+      return wrong;
+  } else if (const std::string wrong = place_bodies(spec, config->grid, &places); !wrong.empty()) {
+    return "-species " + spec.name + (spec.placement == Placement::list ? " (-" + spec.name + "_positions): " : ": ") +
+           wrong;
+  }
+  config->places.push_back(std::move(places));
   return {};
 }
 
@@ -146,11 +152,15 @@ std::string check_restart(const Config &config) {
 
 }  // namespace
 
-std::string validate(const Config &config) {
+std::string validate(Config *whole) {
+  const Config &config = *whole;
   for (const auto check : {check_grid, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;
+  whole->places.clear();
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    if (const std::string wrong = place_species(s, whole); !wrong.empty()) return wrong;
   return {};
 }
 

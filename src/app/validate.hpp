@@ -5,7 +5,8 @@
 
 namespace eulastic {
 
-/// One line that names the option and what is accepted, or nothing. Looks for the files that are to be read.
-std::string validate(const Config &config);
+/// One line that names the option and what is accepted, or nothing. Looks for the files that are to be read, and places
+/// the bodies.
+std::string validate(Config *config);
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 #include "bodies/placement.hpp"
 
+#include "bodies/random.hpp"
 #include "bodies/shapes.hpp"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ bool parse(const std::string &line, std::vector<double> *values) {
   }
 }
 
-std::string read_list(const SpeciesSpec &spec, std::vector<BodyPlace> *places) {
+std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPlace> *places) {
+  Random random(spec.seed, spec.name);
   std::ifstream file(spec.positions_file);
   if (!file) return "cannot read " + spec.positions_file;
   std::string line;
@@ -48,6 +50,7 @@ std::string read_list(const SpeciesSpec &spec, std::vector<BodyPlace> *places) {
       return spec.positions_file + " line " + std::to_string(number) + ": expected x,y,z or " +
              "x,y,z,angle_x,angle_y,angle_z, found \"" + line + "\"";
     BodyPlace place{{values[0], values[1], values[2]}, spec.orientation};
+    if (spec.random_orientation) place.orientation = random.orientation(dimension);
     if (values.size() == 6) place.orientation = {values[3], values[4], values[5]};
     places->push_back(place);
   }
@@ -59,14 +62,42 @@ std::string make_lattice(const SpeciesSpec &spec, const GridSpec &grid, std::vec
   const Int3 &n = spec.count;
   if (n[0] < 1 || n[1] < 1 || n[2] < 1) return "a lattice needs at least one body in every direction";
   if (grid.cells[2] == 1 && n[2] != 1) return "a lattice has one layer in z in 2-D";
-  if (double(n[0]) * n[1] * n[2] > 2e9) return "a lattice can hold at most 2e9 bodies";
+  if (double(n[0]) * n[1] * n[2] > most_bodies) return "at most " + std::to_string(most_bodies) + " bodies";
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  const Surface surface(spec, dimension);
+  Random random(spec.seed, spec.name);
+  Real3 pitch, range{};
+  for (int d = 0; d < 3; ++d) {
+    pitch[d] = grid.length[d] / n[d];
+    const bool turns = spec.random_orientation;
+    const double half = turns ? surface.bounding_radius() : surface.support(rotation(spec.orientation)[d]);
+    if (d < dimension) range[d] = spec.jitter * std::max(0.0, pitch[d] / 2 - half);
+  }
   places->reserve(std::size_t(n[0]) * n[1] * n[2]);
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
-      for (int i = 0; i < n[0]; ++i)
-        places->push_back(
-            {{(i + 0.5) * grid.length[0] / n[0], (j + 0.5) * grid.length[1] / n[1], (k + 0.5) * grid.length[2] / n[2]},
-             spec.orientation});
+      for (int i = 0; i < n[0]; ++i) {
+        BodyPlace &place = places->emplace_back();
+        const Int3 index{i, j, k};
+        place.orientation = spec.orientation;
+        for (int d = 0; d < 3; ++d) {
+          place.centre[d] = (index[d] + 0.5) * grid.length[d] / n[d];
+          if (range[d] > 0) place.centre[d] += random.between(-range[d], range[d]);
+        }
+        if (spec.random_orientation) place.orientation = random.orientation(dimension);
+      }
+  return {};
+}
+
+// Why the lumen of a tube is not in the box.
+std::string why_no_lumen(const SpeciesSpec &spec, const GridSpec &grid, const Real3 &centre) {
+  const double throat = spec.shape == Shape::constricted_tube ? spec.throat_length / 2 : 0;
+  for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) {
+    const double half = d == spec.axis ? throat : spec.radius, slack = 1e-5 * grid.length[d];
+    if (centre[d] - half >= -slack && centre[d] + half <= grid.length[d] + slack) continue;
+    return std::string(d == spec.axis ? "its throat" : "its lumen") + " leaves the box: " + "xyz"[d] + " = " +
+           text(centre[d] - half) + " ... " + text(centre[d] + half) + ", the box is 0 ... " + text(grid.length[d]);
+  }
   return {};
 }
 
@@ -74,9 +105,10 @@ std::string make_lattice(const SpeciesSpec &spec, const GridSpec &grid, std::vec
 std::string why_not(const SpeciesSpec &spec, const Surface &surface, const GridSpec &grid, const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "turns only about z in 2-D";
-  const bool may_cross = spec.shape == Shape::cylinder || spec.shape == Shape::slab;
+  const bool may_cross = spec.shape == Shape::cylinder || is_attached(spec.shape);
   if (may_cross && place.orientation != Real3{})
-    return "cannot be turned: cylinders and slabs take an axis, no orientation";
+    return "cannot be turned: cylinders, slabs and tubes take an axis, no orientation";
+  if (is_tube(spec.shape)) return why_no_lumen(spec, grid, place.centre);
   for (int d = 0; d < dimension; ++d) {
     const double centre = place.centre[d], length = grid.length[d], bound = surface.bounding_radius();
     const std::string direction(1, "xyz"[d]);
@@ -103,14 +135,16 @@ std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, std::vec
   std::string reason = why_no_shape(spec, flat ? 2 : 3);
   if (!reason.empty()) return reason;
   Real3 middle{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2};
+  if (is_attached(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
   if (spec.shape == Shape::slab) {
-    if (spec.placement != Placement::one) return "a slab is placed once, by its interval";
     middle[spec.axis] = (spec.interval[0] + spec.interval[1]) / 2;
     places->push_back({middle, spec.orientation});
   } else if (spec.placement == Placement::one) {
     places->push_back({spec.centre_given ? spec.centre : middle, spec.orientation});
+    if (spec.random_orientation) places->back().orientation = Random(spec.seed, spec.name).orientation(flat ? 2 : 3);
   } else {
-    reason = spec.placement == Placement::list ? read_list(spec, places) : make_lattice(spec, grid, places);
+    reason =
+        spec.placement == Placement::list ? read_list(spec, flat ? 2 : 3, places) : make_lattice(spec, grid, places);
     if (!reason.empty()) return reason;
   }
   const Surface surface(spec, flat ? 2 : 3);

@@ -15,6 +15,11 @@ constexpr double red_cell_slope = 1.23;
 
 double profile(double q) noexcept { return red_cell[0] + q * (red_cell[1] + q * red_cell[2]); }
 
+// R minus the radius of the lumen at distance s from the throat.
+double narrowing(double depth, double throat, double s) noexcept {
+  return depth > 0 && 2 * std::abs(s) < throat ? depth * (1 + std::cos(2 * pi * s / throat)) / 2 : 0;
+}
+
 struct Turn {
   double c, s;
 };
@@ -38,7 +43,13 @@ Rotation rotation(const Real3 &degrees) {
 }
 
 Surface::Surface(const SpeciesSpec &spec, int dimension)
-    : biconcave_(spec.shape == Shape::biconcave), axis_(spec.axis), radius_(infinity), inverse_{} {
+    : shape_(spec.shape), axis_(spec.axis), radius_(infinity), inverse_{} {
+  if (is_tube(shape_)) {
+    radius_ = spec.radius;
+    for (int d = 0; d < dimension; ++d) inverse_[d] = d == axis_ ? 0 : 1;
+    if (shape_ == Shape::constricted_tube) depth_ = radius_ - spec.throat_radius, throat_ = spec.throat_length;
+    return;
+  }
   for (int d = 0; d < dimension; ++d) {
     double semi_axis = spec.radius;
     if (spec.shape == Shape::ellipsoid) semi_axis = spec.semi_axes[d];
@@ -50,18 +61,20 @@ Surface::Surface(const SpeciesSpec &spec, int dimension)
 }
 
 double Surface::level(const Real3 &y) const noexcept {
-  if (biconcave_) {
+  if (shape_ == Shape::biconcave) {
     // z^2 - h(r)^2/4: a polynomial, also at the rim where h has a vertical tangent; linear in q outside the rim.
     const double z = y[axis_], b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
     const double q = (b * b + c * c) / (radius_ * radius_), p = profile(std::min(q, 1.0));
     return z * z - radius_ * radius_ * (1 - q) * p * p / 4;
   }
   const double a = y[0] * inverse_[0], b = y[1] * inverse_[1], c = y[2] * inverse_[2];
+  if (is_tube(shape_)) return radius_ - narrowing(depth_, throat_, y[axis_]) - std::sqrt(a * a + b * b + c * c);
   return (std::sqrt(a * a + b * b + c * c) - 1) * radius_;
 }
 
 double Surface::slope(const Real3 &y, double reach) const noexcept {
-  if (!biconcave_) return 1;  // |grad| <= radius_ / shortest semi-axis
+  if (is_tube(shape_)) return std::hypot(1.0, depth_ * pi / throat_);
+  if (shape_ != Shape::biconcave) return 1;  // |grad| <= radius_ / shortest semi-axis
   const double b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
   const double z = 2 * (std::abs(y[axis_]) + reach);
   const double r = red_cell_slope / 2 * (std::sqrt(b * b + c * c) + reach);
@@ -69,7 +82,8 @@ double Surface::slope(const Real3 &y, double reach) const noexcept {
 }
 
 double Surface::support(const Real3 &n) const {
-  if (biconcave_) {
+  if (is_tube(shape_)) return infinity;
+  if (shape_ == Shape::biconcave) {
     const double along = std::abs(n[axis_]), across = std::sqrt(std::max(0.0, 1 - along * along));
     constexpr int samples = 512;
     double best = 0;
@@ -86,7 +100,8 @@ double Surface::support(const Real3 &n) const {
 }
 
 double Surface::bounding_radius() const {
-  if (biconcave_) return radius_;
+  if (shape_ == Shape::biconcave) return radius_;
+  if (is_tube(shape_)) return infinity;
   double radius = 0;
   for (int d = 0; d < 3; ++d) radius = std::max(radius, 1 / inverse_[d]);
   return radius;
@@ -109,23 +124,54 @@ double shape_volume(const SpeciesSpec &spec, int dimension) {
       return flat && spec.axis != 2 ? 2 * r : pi * r * r;
     case Shape::slab:
       return spec.interval[1] - spec.interval[0];
+    case Shape::tube:
+    case Shape::constricted_tube:
     case Shape::state:
       return 0;
   }
   return 0;
 }
 
+double lumen_radius(const SpeciesSpec &spec, double s) {
+  const bool constricted = spec.shape == Shape::constricted_tube;
+  return spec.radius - (constricted ? narrowing(spec.radius - spec.throat_radius, spec.throat_length, s) : 0);
+}
+
+double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid) {
+  const bool flat = grid.cells[2] == 1;
+  const double r = spec.radius, length = flat && spec.axis == 2 ? 1 : grid.length[spec.axis];
+  const double depth = r - lumen_radius(spec, 0), throat = spec.throat_length;
+  if (flat && spec.axis != 2) return 2 * (r * length - depth * throat / 2);
+  return pi * (r * r * length - depth * throat * (r - 3 * depth / 8));  // means of (1 + cos)/2 and its square: 1/2, 3/8
+}
+
+double volume_in_box(const SpeciesSpec &spec, const GridSpec &grid) {
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  double box = 1, factor = 1;
+  for (int d = 0; d < dimension; ++d) box *= grid.length[d];
+  if (is_tube(spec.shape)) return box - lumen_volume(spec, grid);
+  if (spec.shape == Shape::cylinder && spec.axis < dimension) factor = grid.length[spec.axis];
+  if (spec.shape == Shape::slab)
+    return box / grid.length[spec.axis] *
+           (std::min(grid.length[spec.axis], spec.interval[1]) - std::max(0.0, spec.interval[0]));
+  return factor * shape_volume(spec, dimension);
+}
+
 std::string why_no_shape(const SpeciesSpec &spec, int dimension) {
-  const bool round = spec.shape == Shape::sphere || spec.shape == Shape::biconcave || spec.shape == Shape::cylinder;
+  const bool round = spec.shape != Shape::ellipsoid && spec.shape != Shape::slab && spec.shape != Shape::state;
   if (round && !(spec.radius > 0)) return "its radius must be positive";
   if (spec.shape == Shape::ellipsoid)
     for (int d = 0; d < dimension; ++d)
       if (!(spec.semi_axes[d] > 0)) return "its semi-axes must be positive";
   if (spec.shape == Shape::slab && !(spec.interval[1] > spec.interval[0]))
     return "its interval must be given as low,high with low < high";
+  if (spec.shape == Shape::constricted_tube && !(spec.throat_radius > 0 && spec.throat_radius < spec.radius))
+    return "its throat must be narrower than its radius";
+  if (spec.shape == Shape::constricted_tube && !(spec.throat_length > 0)) return "its throat must have a length";
   if (spec.axis < 0 || spec.axis > 2) return "its axis must be x, y or z";
-  if (dimension == 2 && spec.axis == 2 && (spec.shape == Shape::biconcave || spec.shape == Shape::slab))
-    return "its axis must be x or y in 2-D";
+  const bool along =
+      spec.shape == Shape::biconcave || spec.shape == Shape::slab || spec.shape == Shape::constricted_tube;
+  if (dimension == 2 && spec.axis == 2 && along) return "its axis must be x or y in 2-D";
   return {};
 }
 

@@ -1,7 +1,8 @@
 // Shapes in body coordinates: implicit functions, sizes, volumes, and rotations.
 //
 // Sphere, ellipsoid, cylinder and slab are one quadric with none, none, one or two infinite axes. Biconcave: the red
-// cell of Evans & Fung (1972), thickness h(r) = R sqrt(1-q) (c0 + c1 q + c2 q^2), q = (r/R)^2.
+// cell of Evans & Fung (1972), thickness h(r) = R sqrt(1-q) (c0 + c1 q + c2 q^2), q = (r/R)^2. Tubes: all outside of a
+// lumen of radius R, constricted R - (R - R_throat) (1 + cos(2 pi s/L_throat))/2 at |s| < L_throat/2 along the axis.
 #pragma once
 
 #include "bodies/species.hpp"
@@ -24,18 +25,26 @@ public:
   double slope(const Real3 &y, double reach) const noexcept;
   /// Largest n.y over the body, |n| = 1; infinite where the body is. At most 3e-6 radii too large.
   double support(const Real3 &n) const;
-  /// Radius of a sphere around the body, infinite for cylinder and slab.
+  /// Radius of a sphere around the body, infinite for cylinder, slab and tubes.
   double bounding_radius() const;
 
 private:
-  bool biconcave_;
+  Shape shape_;
   int axis_;
-  double radius_;  ///< biconcave: half the diameter; else the shortest semi-axis
-  Real3 inverse_;  ///< 1 / semi-axes, 0 for an infinite one
+  double radius_;                  ///< biconcave: half the diameter; tubes: of the lumen; else the shortest semi-axis
+  Real3 inverse_;                  ///< 1 / semi-axes, 0 for an infinite one; tubes: 1 across, 0 along
+  double depth_ = 0, throat_ = 1;  ///< constriction: R - R_throat, its length
 };
 
-/// Analytic volume (area in 2-D); of a cylinder per length of its axis, of a slab per area (2-D: per length).
+/// Radius of the lumen of a tube at distance s from its centre along the axis.
+double lumen_radius(const SpeciesSpec &spec, double s);
+/// Analytic volume (area in 2-D); of a cylinder per length of its axis, of a slab per area (2-D: per length), of tubes
+/// 0.
 double shape_volume(const SpeciesSpec &spec, int dimension);
+/// Of the part inside the box: of one body, of all of a slab or tube (area in 2-D).
+double volume_in_box(const SpeciesSpec &spec, const GridSpec &grid);
+/// Inside a tube, between the sides of the box (area in 2-D).
+double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid);
 /// Empty, or one sentence on why the sizes of this shape make no body in `dimension` dimensions.
 std::string why_no_shape(const SpeciesSpec &spec, int dimension);
 

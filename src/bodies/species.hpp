@@ -8,15 +8,22 @@
 
 namespace eulastic {
 
-enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, state };  // state: from -initial_state
-enum class Placement { one, list, lattice };
+enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constricted_tube, state };
+// state: from -initial_state
+
+/// A wall: infinite, attached to the sides of the box, hardly moving.
+constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Shape::constricted_tube; }
+constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
+enum class Placement { one, list, lattice, random };
 
 struct SpeciesSpec {
   std::string name;
   Shape shape = Shape::sphere;
-  double radius = 0;                 ///< sphere, biconcave (half the diameter), cylinder
+  double radius = 0;                 ///< sphere, biconcave (half the diameter), cylinder; of the lumen of tubes
+  double throat_radius = 0;          ///< constricted_tube: of the lumen where it is narrowest, at the centre
+  double throat_length = 0;          ///< along which it is narrower than `radius`
   Real3 semi_axes{};                 ///< ellipsoid
-  int axis = 1;                      ///< symmetry axis of biconcave, cylinder; normal of slab: 0, 1, 2
+  int axis = 1;                      ///< symmetry axis of biconcave, cylinder, tubes; normal of slab: 0, 1, 2
   std::array<double, 2> interval{};  ///< slab
   double shear_modulus = 0;          ///< pressure units
   Real3 initial_stretch{1, 1, 1};    ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
@@ -24,8 +31,15 @@ struct SpeciesSpec {
   Real3 centre{};
   bool centre_given = false;  ///< default: box centre
   std::string positions_file;
-  Int3 count{1, 1, 1};  ///< lattice
+  Int3 count{1, 1, 1};     ///< lattice
+  double jitter = 0;       ///< lattice: largest displacement, in parts of what is free between neighbours
+  long number = -1;        ///< random: bodies, or
+  double hematocrit = -1;  ///< their fraction of the volume that they may take
+  std::string inside;      ///< random: the tube; empty = the only one, or none
+  double gap = 0;          ///< random: least distance between bodies, half of it to walls
+  long seed = 1;
   Real3 orientation{};  ///< Euler angles in degrees: rotations about x, then y, then z
+  bool random_orientation = false;
 };
 
 }  // namespace eulastic

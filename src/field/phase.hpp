@@ -10,7 +10,7 @@ namespace eulastic {
 
 struct Material {
   double shear_modulus = 0;  ///< G, pressure units; 0 = a marked part of the fluid
-  bool attached = false;     ///< to a wall, hardly moving (slab, vessel): B is extended linearly
+  bool attached = false;     ///< to a wall, hardly moving (slab, tube): B is extended linearly
 };
 
 struct Phase {

@@ -1,0 +1,123 @@
+#include "app/species_options.hpp"
+
+namespace eulastic {
+namespace {
+
+const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab", "tube", "constricted_tube", "state"};
+const Names placement_names{"one", "list", "lattice", "random"};
+
+void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
+  const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
+  };
+  rows.choice("shape", spec.shape, shape_names,
+              "shape; tubes: all outside of a lumen; in 2-D its cut at z = 0; state: as in -initial_state, then the "
+              "default")
+      .required = !from_state;
+  rows.real("radius", spec.radius, positive, "length", "radius, of tubes that of the lumen").required = true;
+  Option &diameter = rows.real("diameter", spec.radius, positive, "length", "another way to give the radius");
+  diameter.alias_of = rows.prefix + "radius";
+  diameter.text = nullptr;
+  diameter.read = [read = diameter.read, &spec](const std::string &value) {
+    std::string wrong = read(value);
+    if (wrong.empty()) spec.radius /= 2;
+    return wrong;
+  };
+  for_shapes(2, {Shape::sphere, Shape::biconcave, Shape::cylinder, Shape::tube, Shape::constricted_tube});
+  rows.real("throat_radius", spec.throat_radius, positive, "length", "radius of the lumen where it is narrowest")
+      .required = true;
+  rows.real("throat_length", spec.throat_length, positive, "length",
+            "length of the constriction, around the centre, in the form of a cosine")
+      .required = true;
+  for_shapes(2, {Shape::constricted_tube});
+  rows.real("semi_axes", spec.semi_axes, positive, "length", "semi-axes along x, y, z").required = true;
+  for_shapes(1, {Shape::ellipsoid});
+  rows.choice("axis", spec.axis, {"x", "y", "z"}, "axis of symmetry, or normal of a slab");
+  for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab, Shape::tube, Shape::constricted_tube});
+  rows.real("interval", spec.interval, any_number, "length", "low and high side of the slab").required = true;
+  for_shapes(1, {Shape::slab});
+}
+
+// 3 integers for a lattice, 1 for bodies at random: read before it is known which.
+void add_count(Rows &rows, SpeciesSpec &spec) {
+  Option &count = rows.add("count", "", "bodies along x, y, z of a lattice, or all bodies placed at random");
+  count.accepted = "with lattice 3 integers >= 1, separated by commas, with random an integer >= 0";
+  count.default_note = "1,1,1 with lattice";
+  count.read = [&spec](const std::string &value) {
+    if (value.find(',') == std::string::npos) return read_integer(value, {0, false}, &spec.number);
+    return read_integers(value, at_least_one, spec.count.data(), 3);
+  };
+  count.text = [&spec] {
+    if (spec.placement == Placement::random) return spec.number < 0 ? std::string() : std::to_string(spec.number);
+    return std::to_string(spec.count[0]) + "," + std::to_string(spec.count[1]) + "," + std::to_string(spec.count[2]);
+  };
+}
+
+void add_orientation(Rows &rows, SpeciesSpec &spec) {
+  Option &orientation = rows.add("orientation", "degrees", "rotations about x, then y, then z, or random");
+  orientation.accepted = "random, or 3 numbers, separated by commas";
+  orientation.read = [&spec](const std::string &value) {
+    spec.random_orientation = value == "random";
+    spec.orientation = {};
+    return spec.random_orientation ? std::string() : read_reals(value, any_number, spec.orientation.data(), 3);
+  };
+  orientation.text = [&spec] {
+    const Real3 &o = spec.orientation;
+    return spec.random_orientation ? "random" : to_text(o[0]) + "," + to_text(o[1]) + "," + to_text(o[2]);
+  };
+  rows.restrict(rows.rows.size() - 1, rows.prefix + "shape", spec.shape, shape_names,
+                {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
+}
+
+void add_placement(Rows &rows, SpeciesSpec &spec) {
+  const auto for_placement = [&](std::size_t count, std::vector<Placement> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "placement", spec.placement, placement_names,
+                  std::move(wanted));
+  };
+  rows.choice("placement", spec.placement, placement_names,
+              "one body, a list of bodies, a lattice that fills the box, or random without overlap");
+  Option &centre =
+      rows.real("centre", spec.centre, any_number, "length", "centre of the body, of the lumen, of its throat");
+  centre.default_note = "centre of the box";
+  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab and state";
+  centre.applies = [&spec] {
+    return spec.placement == Placement::one && spec.shape != Shape::slab && spec.shape != Shape::state;
+  };
+  rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
+  for_placement(1, {Placement::list});
+  add_count(rows, spec);
+  for_placement(1, {Placement::lattice, Placement::random});
+  rows.real("jitter", spec.jitter, {0, false, 1}, "",
+            "random displacement, in parts of what is free between bodies of the lattice");
+  for_placement(1, {Placement::lattice});
+  Option &hematocrit =
+      rows.real("hematocrit", spec.hematocrit, {0, false, 1}, "",
+                "volume of the bodies in that of the tube, or of the box less slabs; instead of count");
+  hematocrit.default_note = "none";
+  hematocrit.text = [&spec] { return spec.hematocrit < 0 ? std::string() : to_text(spec.hematocrit); };
+  Option &inside = rows.path("inside", spec.inside, "species of tubes that the bodies are in");
+  inside.accepted = "the name of a species of tubes";
+  inside.default_note = "the only one, or none";
+  rows.real("gap", spec.gap, not_negative, "length", "least distance between bodies; half of it to walls");
+  for_placement(3, {Placement::random});
+  add_orientation(rows, spec);
+  Option &seed = rows.integer("seed", spec.seed, {0, false}, "another seed is another scene");
+  seed.only_with =
+      "-" + rows.prefix + "placement random, -" + rows.prefix + "orientation random or -" + rows.prefix + "jitter";
+  seed.applies = [&spec] { return spec.placement == Placement::random || spec.random_orientation || spec.jitter > 0; };
+}
+
+}  // namespace
+
+void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
+  rows.prefix = spec.name + "_";
+  add_shape(rows, spec, from_state);
+  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
+      .required = true;
+  rows.real("initial_stretch", spec.initial_stretch, positive, "",
+            "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
+  add_placement(rows, spec);
+  rows.prefix.clear();
+}
+
+}  // namespace eulastic

@@ -1,0 +1,117 @@
+#include "bodies/convex.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+double dot(const Real3 &a, const Real3 &b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Radius of the flat disc that, rounded by half the thickness, holds the red cell.
+double flat_radius(const Surface &surface, int axis, double half_thickness) {
+  double radius = 0;
+  constexpr int samples = 256;
+  for (int s = 2; s <= samples; ++s) {
+    const double angle = 1.5707963267948966 * s / samples;
+    Real3 n{};
+    n[axis] = std::cos(angle);
+    n[(axis + 1) % 3] = std::sin(angle);
+    radius = std::max(radius, (surface.support(n) - half_thickness) / std::sin(angle));
+  }
+  return 1.0001 * radius;  // between the samples
+}
+
+// Farthest point of the core in a direction of the box, relative to the centre of the body.
+Real3 core_point(const PlacedConvex &p, const Real3 &n) noexcept {
+  const Rotation &q = p.rotation;
+  Real3 inner;
+  for (int d = 0; d < 3; ++d) inner[d] = q[0][d] * n[0] + q[1][d] * n[1] + q[2][d] * n[2];
+  const Real3 y = p.body->core(inner);
+  return {dot(q[0], y), dot(q[1], y), dot(q[2], y)};
+}
+
+}  // namespace
+
+ConvexBody::ConvexBody(const SpeciesSpec &spec, int dimension, double margin, double length)
+    : kind_(Kind::ellipsoid), axis_(spec.axis), rounding_(spec.radius), outer_(spec.radius), inner_(spec.radius) {
+  if (spec.shape == Shape::cylinder) {
+    kind_ = Kind::segment;
+    size_[0] = length;
+    outer_ += length;
+  } else if (spec.shape == Shape::biconcave) {
+    const Surface surface(spec, 3);
+    Real3 n{};
+    n[axis_] = 1;
+    kind_ = Kind::disc;
+    rounding_ = inner_ = surface.support(n);
+    size_[0] = flat_radius(surface, axis_, rounding_);
+    outer_ = size_[0] + rounding_;
+  } else if (spec.shape == Shape::ellipsoid) {
+    Real3 a = spec.semi_axes;
+    inner_ = dimension == 2 ? std::min(a[0], a[1]) : std::min({a[0], a[1], a[2]});
+    if (dimension == 2) a[2] = inner_;
+    outer_ = std::max({a[0], a[1], a[2]});
+    rounding_ = inner_ / 2;
+    for (int d = 0; d < 3; ++d) size_[d] = a[d] - rounding_;
+  }
+  rounding_ += margin;
+  outer_ += margin;
+  inner_ += margin;
+}
+
+Real3 ConvexBody::core(const Real3 &n) const noexcept {
+  if (kind_ == Kind::ellipsoid) {
+    const Real3 a{size_[0] * n[0], size_[1] * n[1], size_[2] * n[2]};
+    const double norm = std::sqrt(dot(a, a));
+    if (norm == 0) return {};
+    return {size_[0] * a[0] / norm, size_[1] * a[1] / norm, size_[2] * a[2] / norm};
+  }
+  Real3 y{};
+  if (kind_ == Kind::segment) {
+    y[axis_] = std::copysign(size_[0], n[axis_]);
+    return y;
+  }
+  const int b = (axis_ + 1) % 3, c = (axis_ + 2) % 3;
+  const double across = std::sqrt(n[b] * n[b] + n[c] * n[c]);
+  if (across < 1e-12 * std::abs(n[axis_])) return y;
+  y[b] = size_[0] * n[b] / across;
+  y[c] = size_[0] * n[c] / across;
+  return y;
+}
+
+double PlacedConvex::half_width(int d) const noexcept {
+  return dot(body->core(rotation[d]), rotation[d]) + body->rounding();
+}
+
+double PlacedConvex::support(const Real3 &n) const noexcept { return dot(core_point(*this, n), n) + body->rounding(); }
+
+// Gilbert's algorithm (SIAM J. Control 4, 1966) on the difference of the cores: v approaches its point nearest to the
+// origin; v.w/|v| is a lower bound of the distance, |v| an upper one.
+bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept {
+  Real3 v;
+  for (int d = 0; d < 3; ++d) v[d] = b.centre[d] + shift[d] - a.centre[d];
+  const Real3 centre = v;
+  const double outer = a.body->outer_radius() + b.body->outer_radius();
+  const double inner = a.body->inner_radius() + b.body->inner_radius();
+  const double margin = a.body->rounding() + b.body->rounding();
+  double square = dot(v, v);
+  if (square > outer * outer) return true;
+  if (square < inner * inner) return false;
+  for (int turn = 0; turn < 40; ++turn) {
+    const Real3 from = core_point(a, v), to = core_point(b, {-v[0], -v[1], -v[2]});
+    Real3 w, step;
+    for (int d = 0; d < 3; ++d) w[d] = centre[d] + to[d] - from[d], step[d] = w[d] - v[d];
+    const double least = dot(v, w);
+    if (least > margin * std::sqrt(square)) return true;
+    const double slope = dot(v, step), length = dot(step, step);
+    if (!(slope < 0)) return false;
+    const double t = std::min(1.0, -slope / length);
+    for (int d = 0; d < 3; ++d) v[d] += t * step[d];
+    square = dot(v, v);
+    if (square <= margin * margin) return false;
+  }
+  return false;
+}
+
+}  // namespace eulastic

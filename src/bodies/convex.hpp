@@ -1,0 +1,46 @@
+// Convex bodies around shapes, for placement without overlap.
+//
+// A core (point, disc, ellipsoid or segment) and all within `rounding` of it: a sphere is its own; the red cell is in
+// a rounded disc, 14 % larger; the ellipsoid a in the ellipsoid a - r rounded by r, half a per cent wider for a
+// platelet.
+#pragma once
+
+#include "bodies/shapes.hpp"
+
+namespace eulastic {
+
+class ConvexBody {
+public:
+  /// `margin` is added all around. A cylinder is cut at `length` from its centre.
+  ConvexBody(const SpeciesSpec &spec, int dimension, double margin, double length = 0);
+
+  /// Farthest point of the core in direction n, in body coordinates.
+  Real3 core(const Real3 &n) const noexcept;
+  double rounding() const { return rounding_; }
+  double outer_radius() const { return outer_; }  ///< of a sphere around it
+  double inner_radius() const { return inner_; }  ///< of a sphere inside it
+  /// Whether its shadow along body axis d is an ellipse.
+  bool has_round_shadow(int d) const { return kind_ != Kind::disc || d == axis_; }
+
+private:
+  enum class Kind { ellipsoid, disc, segment } kind_;
+  int axis_;
+  Real3 size_{};  ///< semi-axes of the core; radius of the disc and half the segment in [0]
+  double rounding_, outer_, inner_;
+};
+
+struct PlacedConvex {
+  const ConvexBody *body;
+  Real3 centre;
+  Rotation rotation;
+
+  /// Half its width along coordinate d.
+  double half_width(int d) const noexcept;
+  /// Largest n.(x - centre), |n| = 1.
+  double support(const Real3 &n) const noexcept;
+};
+
+/// Whether a and b, moved by `shift`, do not touch. Round-off and very close bodies count as touching.
+bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept;
+
+}  // namespace eulastic

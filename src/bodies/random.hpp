@@ -1,0 +1,44 @@
+// Random numbers that depend on the seed alone: the same on every rank.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace eulastic {
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+class Random {
+public:
+  /// Species of one seed have streams of their own.
+  Random(long seed, const std::string &name) : state_(static_cast<std::uint64_t>(seed)) {
+    for (const char c : name) state_ = mix(state_ + static_cast<unsigned char>(c));
+  }
+
+  std::uint64_t bits() noexcept { return mix(state_ += 0x9e3779b97f4a7c15u); }
+  /// In [low, high).
+  double between(double low, double high) noexcept {
+    return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
+  }
+  /// 0 ... n - 1, n > 0.
+  std::uint64_t below(std::uint64_t n) noexcept { return bits() % n; }
+  /// Angles about x, then y, then z in degrees, uniform over all orientations; in 2-D about z.
+  Real3 orientation(int dimension) noexcept {
+    const double z = between(-180, 180);
+    if (dimension == 2) return {0, 0, z};
+    const double y = std::asin(between(-1, 1)) * (180 / 3.14159265358979323846);
+    return {between(-180, 180), y, z};
+  }
+
+private:
+  static std::uint64_t mix(std::uint64_t x) noexcept {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+  std::uint64_t state_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,179 @@
+#include "bodies/seeding.hpp"
+
+#include "bodies/packing.hpp"
+#include "bodies/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+constexpr int least_rounds = 12, most_rounds = 2000;  // tries of each body to go somewhere else
+constexpr std::size_t all_tries = 1000000;            // as many rounds as these allow
+constexpr int insertions = 2000;                      // tries of each body that the packing has no site for
+constexpr double small_turn = 25;                     // degrees
+constexpr double small_step = 0.3;                    // of the smallest radius
+constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+
+// Angles about x, y, z of a rotation; inverse of rotation().
+Real3 angles(const Rotation &q) {
+  return {std::atan2(q[2][1], q[2][2]) * degrees, std::asin(std::clamp(-q[2][0], -1.0, 1.0)) * degrees,
+          std::atan2(q[1][0], q[0][0]) * degrees};
+}
+
+Rotation product(const Rotation &p, const Rotation &q) {
+  Rotation r{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) r[i][j] = p[i][0] * q[0][j] + p[i][1] * q[1][j] + p[i][2] * q[2][j];
+  return r;
+}
+
+class Seeding {
+public:
+  Seeding(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, Crowd *crowd, const ConvexBody &shape)
+      : spec_(spec),
+        grid_(grid),
+        dimension_(grid.cells[2] == 1 ? 2 : 3),
+        region_(region),
+        crowd_(*crowd),
+        shape_(shape),
+        random_(spec.seed, spec.name),
+        first_(crowd->size()) {}
+
+  /// Returns how many of `count` it has placed.
+  std::size_t place(std::size_t count, std::vector<BodyPlace> *places) {
+    std::vector<Real3> orientations{spec_.orientation};
+    if (spec_.random_orientation && dimension_ == 3) orientations = {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
+    if (spec_.random_orientation && dimension_ == 2) orientations = {{}, {0, 0, 90}};
+    const auto sites = find_packing(region_, crowd_, grid_, shape_, orientations, count + count / 2);
+    places->clear();
+    for (std::size_t s = 0; s < sites.size() && places->size() < count;
+         ++s) {  // in order: neighbours stay near in memory
+      if (random_.below(sites.size() - s) >= count - places->size()) continue;
+      places->push_back(sites[s]);
+      crowd_.add(convex(sites[s]));
+    }
+    for (int failures = 0; places->size() < count && failures < insertions;) {
+      const BodyPlace place = anywhere();
+      failures = fits(place, nobody) ? 0 : failures + 1;
+      if (failures > 0) continue;
+      places->push_back(place);
+      crowd_.add(convex(place));
+    }
+    if (places->size() == count) shuffle(places);
+    return places->size();
+  }
+
+private:
+  PlacedConvex convex(const BodyPlace &place) const { return {&shape_, place.centre, rotation(place.orientation)}; }
+  bool fits(const BodyPlace &place, std::size_t except) const {
+    const PlacedConvex body = convex(place);
+    return region_.holds(body) && crowd_.has_room_for(body, except);
+  }
+
+  BodyPlace anywhere() {
+    BodyPlace place{{0, 0, grid_.length[2] / 2}, spec_.orientation};
+    for (int d = 0; d < dimension_; ++d) place.centre[d] = random_.between(region_.low(d), region_.high(d));
+    if (spec_.random_orientation) place.orientation = random_.orientation(dimension_);
+    return place;
+  }
+  BodyPlace nearby(BodyPlace place) {
+    const double step = small_step * shape_.inner_radius();
+    for (int d = 0; d < dimension_; ++d) {
+      double &x = place.centre[d];
+      x += random_.between(-step, step);
+      if (grid_.boundary[d] == Boundary::periodic) x -= std::floor(x / grid_.length[d]) * grid_.length[d];
+      x = std::clamp(x, 0.0, grid_.length[d]);
+    }
+    if (!spec_.random_orientation) return place;
+    Real3 turn{};
+    for (int d = dimension_ == 2 ? 2 : 0; d < 3; ++d) turn[d] = random_.between(-small_turn, small_turn);
+    place.orientation = angles(product(rotation(turn), rotation(place.orientation)));
+    return place;
+  }
+
+  void shuffle(std::vector<BodyPlace> *places) {
+    std::vector<bool> far(places->size());
+    std::size_t moved = places->size();
+    const int rounds = std::clamp(static_cast<int>(all_tries / (places->size() + 1)), least_rounds, most_rounds);
+    for (int round = 0; round < rounds; ++round) {
+      const bool try_far = rounds > least_rounds || moved > places->size() / 50;  // else not worth the time
+      moved = 0;
+      for (std::size_t b = 0; b < places->size(); ++b) {
+        if (far[b]) continue;
+        BodyPlace to;
+        if (try_far) far[b] = fits(to = anywhere(), first_ + b);
+        moved += far[b];
+        if (!far[b] && !fits(to = nearby((*places)[b]), first_ + b)) continue;
+        (*places)[b] = to;
+        crowd_.move(first_ + b, convex(to));
+      }
+    }
+  }
+
+  const SpeciesSpec &spec_;
+  const GridSpec &grid_;
+  int dimension_;
+  const Region &region_;
+  Crowd &crowd_;
+  const ConvexBody &shape_;
+  Random random_;
+  std::size_t first_;  // in the crowd
+};
+
+// Bodies with ends, in bins; infinite ones are in the region.
+bool is_finite(Shape shape) { return shape == Shape::sphere || shape == Shape::ellipsoid || shape == Shape::biconcave; }
+
+std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t most, double body, double region) {
+  char text[200];
+  std::snprintf(text, sizeof text, "-%s_%s: %zu bodies do not fit; at most %zu fit, hematocrit %.4g", spec.name.c_str(),
+                spec.number >= 0 ? "count" : "hematocrit", count, most, double(most) * body / region);
+  return text;
+}
+
+}  // namespace
+
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+                        const std::vector<std::vector<BodyPlace>> &earlier, std::vector<BodyPlace> *places) {
+  const SpeciesSpec &spec = species[which];
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  if (const std::string wrong = why_no_shape(spec, dimension); !wrong.empty())
+    return "-" + spec.name + "_shape: " + wrong;
+  const SpeciesSpec *vessel = nullptr;
+  for (const SpeciesSpec &other : species)
+    if (is_tube(other.shape) && (spec.inside.empty() || spec.inside == other.name)) {
+      if (vessel) return "-" + spec.name + "_inside: must name one of the tubes";
+      vessel = &other;
+    }
+  if (!vessel && !spec.inside.empty())
+    return "-" + spec.name + "_inside: " + spec.inside + " is not a species of tubes";
+  const Region region(species, earlier, vessel, grid);
+  const double body = shape_volume(spec, dimension);
+  const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
+  if (!(wanted <= most_bodies)) return too_many(spec, most_bodies, most_bodies, body, region.volume());
+  const std::size_t count = static_cast<std::size_t>(wanted);
+
+  std::vector<ConvexBody> shapes;
+  shapes.reserve(which + 1);  // bodies point into it
+  std::size_t all = count;
+  double widest = 0;
+  for (std::size_t s = 0; s <= which; ++s) {
+    const bool own = s == which;
+    shapes.emplace_back(species[s], dimension,
+                        own || species[s].placement == Placement::random ? species[s].gap / 2 : 0);
+    if (!own && !is_finite(species[s].shape)) continue;
+    widest = std::max(widest, 2 * shapes.back().outer_radius());
+    if (!own) all += earlier[s].size();
+  }
+  Crowd crowd(grid, widest, all);
+  for (std::size_t s = 0; s < which; ++s)
+    if (is_finite(species[s].shape))
+      for (const BodyPlace &place : earlier[s]) crowd.add({&shapes[s], place.centre, rotation(place.orientation)});
+  const std::size_t placed = Seeding(spec, grid, region, &crowd, shapes[which]).place(count, places);
+  return placed < count ? too_many(spec, count, placed, body, region.volume()) : "";
+}
+
+}  // namespace eulastic

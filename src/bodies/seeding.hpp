@@ -1,0 +1,17 @@
+// Random bodies without overlap, for a number or a hematocrit.
+//
+// They start on random sites of a regular packing, which is what makes high hematocrits possible, then move at random
+// (hard-body Monte Carlo): anywhere if there is room, else by steps. What the packing cannot hold is tried at random.
+#pragma once
+
+#include "bodies/placement.hpp"
+
+namespace eulastic {
+
+/// Places species[which], clear of walls, slabs, tubes, cylinders and of the bodies of `places` (those of the species
+/// before). Depends on nothing but the arguments: every rank finds the same. Returns an empty string, or one sentence
+/// on what is wrong; where they do not fit, with the largest number that does.
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+                        const std::vector<std::vector<BodyPlace>> &earlier, std::vector<BodyPlace> *places);
+
+}  // namespace eulastic

@@ -1,0 +1,43 @@
+// A vessel with red cells and platelets at random: the same scene, and the same first steps, on any ranks.
+#include "app/scene.hpp"
+#include "support/command_line.hpp"
+
+using namespace eulastic;
+
+namespace {
+
+PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t hash[2]) {
+  PetscFunctionBeginUser;
+  Grid grid;
+  Solver solver;
+  std::string reason;
+  PetscCall(grid.create(comm, config.grid));
+  PetscCall(build_scene(config, grid, &solver, &reason));
+  EXPECT_EQ(reason, "");
+  PetscCall(state_hash(grid, solver.state(), &hash[0]));
+  FlowExtremes extremes;
+  for (int n = 0; n < 2; ++n) {
+    PetscCall(solver.measure(&extremes));
+    PetscCall(solver.step(1));
+  }
+  PetscCall(state_hash(grid, solver.state(), &hash[1]));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+TEST(Seeding, SameSceneOnAnyRanks) {
+  const ParseResult result = parse_line(
+      "-time_end 1 -grid_cells 40,24,24 -grid_length 42,25,25 -boundary_y wall -boundary_z wall -body_force 1e-3,0,0 "
+      "-species vessel,rbc,plt -vessel_shape tube -vessel_axis x -vessel_diameter 24 -vessel_shear_modulus .05 "
+      "-rbc_shape biconcave -rbc_diameter 8 -rbc_shear_modulus .02 -rbc_placement random -rbc_orientation random "
+      "-rbc_hematocrit 0.15 -plt_shape ellipsoid -plt_semi_axes 2,2,1.6 -plt_shear_modulus .02 -plt_placement random "
+      "-plt_orientation random -plt_count 6");
+  ASSERT_EQ(result.error, "");
+  std::uint64_t alone[2] = {}, together[2] = {};
+  ASSERT_EQ(first_steps(PETSC_COMM_SELF, result.config, alone), 0);
+  ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, together), 0);
+  EXPECT_EQ(alone[0], together[0]);
+  EXPECT_EQ(alone[1], together[1]);
+  EXPECT_NE(alone[0], alone[1]);
+}
