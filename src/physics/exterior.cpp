@@ -3,6 +3,8 @@
 #include "base/events.hpp"
 #include "kernels/stencils.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 namespace {
 
@@ -27,6 +29,36 @@ struct Reach {
 // Whether the way from mask[0] leads towards the body beyond the neighbour.
 bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
   return mask[2 * step] == 0 || mask[2 * step] < mask[step];
+}
+
+// 0 where B evolves, `outside` elsewhere, on the first `n` points of a row; phi at their centres or low edges.
+template <bool Edge>
+EULASTIC_INLINE void flag_points(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
+                                 unsigned char *row) {
+  const std::ptrdiff_t a = -step[0], b = -step[1];
+#pragma omp simd
+  for (int i = 0; i < n; ++i) row[i] = (Edge ? kernels::average4(phi + i, a, b) : phi[i]) >= threshold ? 0 : outside;
+}
+
+EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
+                              unsigned char *row) {
+  if (step[0] != 0)
+    flag_points<true>(n, phi, step, threshold, row);
+  else
+    flag_points<false>(n, phi, step, threshold, row);
+}
+
+// Not 0 at the points outside with a face neighbour where B evolves; `row` has flags only. Returns whether any is.
+EULASTIC_CLONES unsigned find_first_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz,
+                                          unsigned char *found) {
+  unsigned char any = 0;
+#pragma omp simd reduction(| : any)
+  for (int i = 0; i < n; ++i) {
+    const unsigned char all = row[i - 1] & row[i + 1] & row[i - sy] & row[i + sy] & row[i - sz] & row[i + sz];
+    found[i] = static_cast<unsigned char>(row[i] & ~all);
+    any |= found[i];
+  }
+  return any;
 }
 
 struct Point {
@@ -63,6 +95,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
   const EvolveRule &rule = evolve_rule_of(phase.material);
   const Layout &layout = grid.layout();
   const Staggering &at = location->staggering;
+  std::fill(mask_.begin(), mask_.end(), outside);
   unsigned char *mask = mask_.data();
   std::ptrdiff_t step[2] = {0, 0};
   int steps = 0;
@@ -70,43 +103,42 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
     if (at[d]) step[steps++] = fraction.stride(d);
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
   const Reach all(grid, at, layers);
+  const int first = all.begin[0], width = all.end[0] - first;
   for (int k = all.begin[2]; k < all.end[2]; ++k)
-    for (int j = all.begin[1]; j < all.end[1]; ++j) {
-      const double *phi = fraction.row(j, k);
-      unsigned char *row = mask + layout.offset(0, j, k);
-      for (int i = all.begin[0]; i < all.end[0]; ++i) {
-        const bool evolves = steps ? kernels::average4(phi + i, -step[0], -step[1]) >= rule.edge
-                                   : phi[i] >= rule.centre;
-        row[i] = evolves ? 0 : outside;
-      }
-    }
-  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+    for (int j = all.begin[1]; j < all.end[1]; ++j)
+      flag_row(width, fraction.row(j, k) + first, step, steps ? rule.edge : rule.centre,
+               mask + layout.offset(first, j, k));
+  const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
   std::vector<Point> front, next;
   // Claims the unclaimed face neighbours of a point for layer L.
-  const auto claim = [&](const Int3 &from, const Reach &box, unsigned char L) {
+  const auto claim = [&](const Point &from, const Reach &box, unsigned char L) {
     for (int d = 0; d < grid.dimension(); ++d)
       for (const int side : {-1, 1}) {
-        Point p{from, 0};
+        const std::ptrdiff_t offset = from.offset + side * stride[d];
+        if (mask[offset] != outside) continue;
+        Point p{from.index, offset};
         p.index[d] += side;
-        if (p.index[d] < box.begin[d] || p.index[d] >= box.end[d]) continue;
-        p.offset = layout.offset(p.index[0], p.index[1], p.index[2]);
-        if (mask[p.offset] != outside || !box.contains(p.index)) continue;
-        mask[p.offset] = L;
+        if (!box.contains(p.index)) continue;
+        mask[offset] = L;
         next.push_back(p);
       }
   };
+  std::vector<unsigned char> found(width);
   for (int L = 1; L <= layers; ++L) {
     const Reach box(grid, at, layers - L);
     next.clear();
     if (L == 1) {
-      for (int k = all.begin[2]; k < all.end[2]; ++k)
-        for (int j = all.begin[1]; j < all.end[1]; ++j) {
-          const unsigned char *row = mask + layout.offset(0, j, k);
-          for (int i = all.begin[0]; i < all.end[0]; ++i)
-            if (row[i] == 0) claim({i, j, k}, box, 1);
+      for (int k = box.begin[2]; k < box.end[2]; ++k)
+        for (int j = box.begin[1]; j < box.end[1]; ++j) {
+          const int begin = box.begin[0], n = box.end[0] - begin;
+          const std::ptrdiff_t offset = layout.offset(begin, j, k);
+          if (find_first_layer(n, mask + offset, stride[1], stride[2], found.data()) == 0) continue;
+          for (int i = 0; i < n; ++i)
+            if (found[i]) next.push_back({{begin + i, j, k}, offset + i});
         }
+      for (const Point &p : next) mask[p.offset] = 1;
     } else {
-      for (const Point &point : front) claim(point.index, box, static_cast<unsigned char>(L));
+      for (const Point &point : front) claim(point, box, static_cast<unsigned char>(L));
     }
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
@@ -117,12 +149,11 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
       unsigned neighbours = 0, second = 0;
       for (int d = 0; d < grid.dimension(); ++d) {
         const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
-        const int i = point.index[d];
-        if (i > all.begin[d] && mask[p - stride[d]] < L) neighbours |= low;
-        if (i + 1 < all.end[d] && mask[p + stride[d]] < L) neighbours |= high;
+        if (mask[p - stride[d]] < L) neighbours |= low;
+        if (mask[p + stride[d]] < L) neighbours |= high;
         if (!linear_) continue;
-        if (neighbours & low && i > all.begin[d] + 1 && leads_in(mask + p, -stride[d])) second |= low;
-        if (neighbours & high && i + 2 < all.end[d] && leads_in(mask + p, stride[d])) second |= high;
+        if (neighbours & low && leads_in(mask + p, -stride[d])) second |= low;
+        if (neighbours & high && leads_in(mask + p, stride[d])) second |= high;
       }
       entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
     }
