@@ -1,5 +1,6 @@
 #include "app/check_only.hpp"
 
+#include "app/memory.hpp"
 #include "bodies/shapes.hpp"
 #include "physics/limits.hpp"
 
@@ -52,8 +53,9 @@ public:
       report.line("warning",
                   "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
                   double(std::numeric_limits<PetscInt>::max()));
-    report.line("memory", "%.4g GB for fields, %.4g GB per rank", 1e-9 * bytes_per_rank(parts) * ranks,
-                1e-9 * bytes_per_rank(parts));
+    const double bytes = bytes_per_rank(config_, parts);
+    report.line("memory", "%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
+                1e-9 * bytes, 1e-9 * memory_limit());
   }
 
   void bodies(Report &report) const {
@@ -118,29 +120,6 @@ public:
   }
 
 private:
-  /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
-  /// of the method add; per phase fraction, label and B; one fraction and B being computed.
-  double fields() const {
-    const Method &method = config_.method;
-    const double tensor = dimension_ == 2 ? 3 : 6, phases = double(config_.species.size());
-    double sum = 2 * dimension_ + 3;
-    if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
-    if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
-    if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
-      sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension_ == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
-    const bool rkl = method.viscous == ViscousScheme::rkl;
-    if (method.staggered() || rkl) sum += 2 * dimension_;                                     // rate, increment
-    if (rkl) sum += dimension_;                                                               // increment before
-    if (method.staggered()) sum += dimension_ * (int(config_.fluid.inertia) + (phases > 0));  // history, slope
-    if (phases > 0) sum += phases * (2 + tensor) + 1 + tensor + (method.interface == InterfaceScheme::thinc ? 3 : 0);
-    return sum;
-  }
-  double bytes_per_rank(const Int3 &parts) const {
-    double ghosted = sizeof(double);
-    for (int d = 0; d < 3; ++d)
-      ghosted *= std::ceil(double(config_.grid.cells[d]) / parts[d]) + (d < dimension_ ? 2 * Grid::ghost_width : 0);
-    return fields() * ghosted;
-  }
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
 
   FlowScale flow_scale() const {

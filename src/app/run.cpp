@@ -1,6 +1,7 @@
 #include "app/run.hpp"
 
 #include "app/checkpoints.hpp"
+#include "app/memory.hpp"
 #include "app/petsc_options.hpp"
 #include "app/scene.hpp"
 #include "app/signals.hpp"
@@ -142,6 +143,8 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   const double begin = MPI_Wtime();
   *code = exit_usage;
   catch_signals();
+  PetscCall(check_sizes(PETSC_COMM_WORLD, config, refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
   Grid grid;
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   RunDirectory directory;

@@ -4,11 +4,14 @@
 #include "bodies/seeding.hpp"
 #include "pressure/smac.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
 namespace eulastic {
 namespace {
+
+constexpr double most_unequal = 1000;  // spacings
 
 bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 
@@ -25,6 +28,17 @@ std::string check_grid(const Config &config) {
            std::to_string(std::numeric_limits<PetscInt>::max()) +
            ", or a build with a PETSc of 64-bit indices (Debian: libpetsc64-real-dev)";
   return {};
+}
+
+std::string check_spacings(const Config &config) {
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) {
+    shortest = std::min(shortest, config.grid.length[d] / config.grid.cells[d]);
+    longest = std::max(longest, config.grid.length[d] / config.grid.cells[d]);
+  }
+  if (longest <= most_unequal * shortest) return {};
+  return "-grid_length: one spacing is " + to_text(longest / shortest) + " times another; accepted: at most " +
+         to_text(most_unequal) + " times";
 }
 
 std::string check_vector(const Config &config, const std::string &name, const Real3 &value) {
@@ -79,8 +93,12 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   if (flat(config) && spec.count[2] != 1) return "-" + spec.name + "_count: must be 1 along z in 2-D";
-  if (double(spec.count[0]) * spec.count[1] * spec.count[2] > most_bodies)
-    return "-" + spec.name + "_count: too many bodies; accepted: at most " + std::to_string(most_bodies);
+  const Int3 &n = config.grid.cells;
+  const double bodies = double(spec.count[0]) * spec.count[1] * spec.count[2];
+  const double most = std::min(double(most_bodies), double(n[0]) * n[1] * n[2]);
+  if (bodies > most)
+    return "-" + spec.name + "_count: " + to_text(bodies) + " bodies; accepted: at most " + to_text(most) +
+           (most < most_bodies ? ", one per cell" : "");
   const bool random = spec.placement == Placement::random;
   if (spec.placement == Placement::lattice && spec.number >= 0)
     return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
@@ -154,7 +172,8 @@ std::string check_restart(const Config &config) {
 
 std::string validate(Config *whole) {
   const Config &config = *whole;
-  for (const auto check : {check_grid, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
+  for (const auto check :
+       {check_grid, check_spacings, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;

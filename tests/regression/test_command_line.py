@@ -69,6 +69,10 @@ class CommandLine(unittest.TestCase):
         self.refused("-time_end", "1", "-species", "a,a", says=["-species", "twice"])
         self.refused(*SCENE, environment={"PETSC_OPTIONS": "-nonsense 1"}, says=["-nonsense", "PETSC_OPTIONS"])
 
+    def test_too_large(self):
+        self.refused("-time_end", "1", "-grid_cells", "1290,1290,1290", says=["-grid_cells", "; accepted: "])
+        self.refused("-time_end", "1", "-guard_memory", "1e-9", says=["GB on a node", "-guard_memory"])
+
     def test_check_only_refuses_too(self):
         self.refused(*SCENE, "-check_only", "-time_steps_max", "1.5", says=["-time_steps_max", "an integer"])
 

@@ -110,6 +110,8 @@ TEST(OptionRefusals, Ranges) {
                    {"-grid_cells 8,8,2", {"-grid_cells", "at least 3"}},
                    {"-grid_cells 2,8,1", {"-grid_cells", "at least 3"}},
                    {"-grid_length 1,0,1", {"-grid_length", "out of range"}},
+                   {"-grid_length 1,1001,1", {"-grid_length", "1001 times", "at most 1000"}},
+                   {"-time_step 1e-16", {"-time_step", "1e-16", "1.1102230246251565e-16"}},
                    {"-grid_cells 65536,65536,8", {"-grid_cells", "64-bit"}}},
                   "-time_end 1");
   expect_refusals({{"-time_end 0", {"-time_end", "out of range"}}, {"", {"-time_end", "must be given"}}}, "");
@@ -147,23 +149,25 @@ TEST(OptionRefusals, SpeciesNames) {
 }
 
 TEST(OptionRefusals, InconsistentScenes) {
-  expect_refusals({{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
-                   {"-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity", "-boundary_x wall"}},
-                   {"-wall_xmax_frequency 1", {"-wall_xmax_frequency", "-boundary_x wall"}},
-                   {"-initial_velocity_amplitude 2", {"-initial_velocity_amplitude", "-initial_velocity"}},
-                   {"-pressure_pc_type mg", {"-pressure_pc_type", "-pressure_solver ksp"}},
-                   {"-pressure_solver smac -pressure_ksp_view", {"-pressure_ksp_view", "-pressure_solver ksp"}},
-                   {"-initial_velocity_mean 0,1,0", {"-initial_velocity_mean", "between walls"}},
-                   {"-cell_interval 1,2", {"-cell_interval", "-cell_shape slab"}},
-                   {"-cell_axis x", {"-cell_axis"}},
-                   {"-cell_count 1,1,1", {"-cell_count", "-cell_placement lattice"}},
-                   {"-cell_placement list", {"-cell_positions", "must be given"}},
-                   {"-cell_positions x.csv", {"-cell_positions", "-cell_placement list"}},
-                   {"-cell_placement list -cell_positions no_such.csv", {"-cell_positions", "no_such.csv"}},
-                   {"-cell_placement list -cell_positions /", {"-cell_positions"}},
-                   {"-cell_placement lattice -cell_count 1,9,1", {"-species cell", "wall"}},
-                   {"-cell_centre 4,1,4", {"-species cell", "wall"}},
-                   {"-cell_centre 40,4,4", {"-species cell", "outside"}}});
+  expect_refusals(
+      {{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
+       {"-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity", "-boundary_x wall"}},
+       {"-wall_xmax_frequency 1", {"-wall_xmax_frequency", "-boundary_x wall"}},
+       {"-initial_velocity_amplitude 2", {"-initial_velocity_amplitude", "-initial_velocity"}},
+       {"-pressure_pc_type mg", {"-pressure_pc_type", "-pressure_solver ksp"}},
+       {"-pressure_solver smac -pressure_ksp_view", {"-pressure_ksp_view", "-pressure_solver ksp"}},
+       {"-initial_velocity_mean 0,1,0", {"-initial_velocity_mean", "between walls"}},
+       {"-cell_interval 1,2", {"-cell_interval", "-cell_shape slab"}},
+       {"-cell_axis x", {"-cell_axis"}},
+       {"-cell_count 1,1,1", {"-cell_count", "-cell_placement lattice"}},
+       {"-cell_placement list", {"-cell_positions", "must be given"}},
+       {"-cell_positions x.csv", {"-cell_positions", "-cell_placement list"}},
+       {"-cell_placement list -cell_positions no_such.csv", {"-cell_positions", "no_such.csv"}},
+       {"-cell_placement list -cell_positions /", {"-cell_positions"}},
+       {"-cell_placement lattice -cell_count 17,16,16", {"-cell_count", "4352", "at most 4096, one per cell"}},
+       {"-cell_placement lattice -cell_count 1,9,1", {"-species cell", "wall"}},
+       {"-cell_centre 4,1,4", {"-species cell", "wall"}},
+       {"-cell_centre 40,4,4", {"-species cell", "outside"}}});
   const std::string periodic = "-time_end 1 -grid_cells 8,8,8 ";
   expect_refusals({{"-initial_velocity couette", {"-initial_velocity", "-boundary_y wall"}},
                    {"-initial_velocity poiseuille", {"-boundary_y wall"}}},

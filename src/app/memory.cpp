@@ -1,0 +1,114 @@
+#include "app/memory.hpp"
+
+#include "io/fail_together.hpp"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+
+int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
+
+/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
+/// of the method add; per phase fraction, label and B; one fraction and B being computed.
+double fields(const Config &config) {
+  const Method &method = config.method;
+  const int dimension = dimension_of(config);
+  const double tensor = dimension == 2 ? 3 : 6, phases = double(config.species.size());
+  double sum = 2 * dimension + 3;
+  if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
+  if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
+  if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
+    sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
+  const bool rkl = method.viscous == ViscousScheme::rkl;
+  if (method.staggered() || rkl) sum += 2 * dimension;                                    // rate, increment
+  if (rkl) sum += dimension;                                                              // increment before
+  if (method.staggered()) sum += dimension * (int(config.fluid.inertia) + (phases > 0));  // history, slope
+  if (phases > 0) sum += phases * (2 + tensor) + 1 + tensor + (method.interface == InterfaceScheme::thinc ? 3 : 0);
+  return sum;
+}
+
+double ghosted_cells(const Config &config, const Int3 &parts) {
+  double cells = 1;
+  for (int d = 0; d < 3; ++d)
+    cells *=
+        std::ceil(double(config.grid.cells[d]) / parts[d]) + (d < dimension_of(config) ? 2 * Grid::ghost_width : 0);
+  return cells;
+}
+
+// The least of the limits in `file` of the folder `base`/`path` and all above it.
+double least_above(const fs::path &base, fs::path path, const char *file) {
+  double least = std::numeric_limits<double>::infinity();
+  for (;; path = path.parent_path()) {
+    double limit;
+    if (std::ifstream(base / path / file) >> limit && limit > 0) least = std::min(least, limit);
+    if (path.empty()) return least;
+  }
+}
+
+std::string too_little(int ranks, double needed, double limit, double share) {
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
+                "cells, more nodes, or another -guard_memory (%g now, 0 = off)",
+                1e-9 * needed, ranks, 1e-9 * limit, share);
+  return text;
+}
+
+}  // namespace
+
+double bytes_per_rank(const Config &config, const Int3 &parts) {
+  return sizeof(double) * fields(config) * ghosted_cells(config, parts);
+}
+
+double memory_limit(const std::string &root) {
+  double limit = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  std::ifstream groups(root + "/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {  // number:controllers:/path; of version 2: 0::/path
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const fs::path path = fs::path(line.substr(second + 1)).relative_path();
+    if (controllers == ",,") limit = std::min(limit, least_above(root + "/sys/fs/cgroup", path, "memory.max"));
+    if (controllers.find(",memory,") != std::string::npos)
+      limit = std::min(limit, least_above(root + "/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
+  }
+  return limit;
+}
+
+PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *refusal) {
+  MPI_Comm node;
+  int ranks, node_ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node));
+  PetscCallMPI(MPI_Comm_size(node, &node_ranks));
+  PetscCallMPI(MPI_Comm_free(&node));
+  const Int3 parts = Grid::decompose(config.grid, ranks);
+  const double share = config.guard.memory, limit = memory_limit();
+  const double needed = bytes_per_rank(config, parts) * node_ranks;
+  const double values = ghosted_cells(config, parts) * (dimension_of(config) == 2 ? 3 : 6);
+  std::string problem;
+  if (share > 0 && needed > share * limit) {
+    problem = too_little(node_ranks, needed, limit, share);
+  } else if (values > std::numeric_limits<PetscInt>::max()) {
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: "
+                  "at most %.0f, so more ranks or a PETSc of 64-bit indices",
+                  values, double(std::numeric_limits<PetscInt>::max()));
+    problem = text;
+  }
+  PetscCall(catch_together([&] { return fail_together(comm, problem); }, refusal));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

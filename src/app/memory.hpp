@@ -1,0 +1,20 @@
+// How much memory a run needs and how much there is: looked at before anything is allocated.
+#pragma once
+
+#include "app/config.hpp"
+#include "base/petsc.hpp"
+
+namespace eulastic {
+
+/// Estimate of the bytes in fields of the largest of `parts` ranks.
+double bytes_per_rank(const Config &config, const Int3 &parts);
+
+/// Bytes this machine lets the program use: its memory, or less where a control group says so. `root` is put before
+/// the names of the files that tell; physical memory counts wherever that is.
+double memory_limit(const std::string &root = "");
+
+/// Collective. `refusal`: one line if some node has too little memory for its ranks (-guard_memory), or if a rank would
+/// hold more numbers than PETSc's indices can count.
+PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *refusal);
+
+}  // namespace eulastic
