@@ -29,9 +29,13 @@ def parse_options(words):
 
 
 def read_options(path):
-    """An options file: lines `-name value`, # starts a comment."""
-    lines = (line.split("#")[0].split(maxsplit=1) for line in pathlib.Path(path).read_text().splitlines())
-    return parse_options(word.strip() for line in lines for word in line)
+    """An options file: lines `-name value`, # starts a comment; -options_file brings in another, which it wins over."""
+    path = pathlib.Path(path)
+    lines = (line.split("#")[0].split(maxsplit=1) for line in path.read_text().splitlines())
+    options = parse_options(word.strip() for line in lines for word in line)
+    if "options_file" in options:
+        options = {**read_options(path.parent / options.pop("options_file")), **options}
+    return options
 
 
 class Snapshot:

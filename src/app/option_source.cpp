@@ -80,20 +80,37 @@ std::string split_words(const std::string &line, std::vector<std::string> *words
   return quoted ? "a quote is not closed" : "";
 }
 
-std::string read_options_file(const std::string &path, std::vector<Entry> *entries) {
+namespace {
+
+std::string read_file(const std::string &path, int depth, std::vector<Source> *sources) {
   std::error_code ignored;
+  if (depth > 8) return "-options_file: " + path + " brings in itself";
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path, ignored))
     return "options file " + path +
            " cannot be read; accepted: one options file and options -name value, lists without spaces";
   std::string line;
+  Source entries;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string where = " (" + path + ":" + std::to_string(number) + ")";
     std::vector<std::string> words;
     if (const std::string wrong = split_words(line, &words); !wrong.empty()) return wrong + where;
-    if (const std::string wrong = read_words_as_entries(words, where, entries, nullptr); !wrong.empty()) return wrong;
+    if (const std::string wrong = read_words_as_entries(words, where, &entries, nullptr); !wrong.empty()) return wrong;
+    if (entries.empty() || entries.back().name != "options_file") continue;
+    const std::filesystem::path brought_in = entries.back().value;
+    entries.pop_back();
+    if (brought_in.empty()) return "-options_file: a value is missing; accepted: a path" + where;
+    const std::string beside = (std::filesystem::path(path).parent_path() / brought_in).string();
+    if (const std::string wrong = read_file(beside, depth + 1, sources); !wrong.empty()) return wrong + where;
   }
+  sources->push_back(std::move(entries));
   return {};
+}
+
+}  // namespace
+
+std::string read_options_file(const std::string &path, std::vector<Source> *sources) {
+  return read_file(path, 0, sources);
 }
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// Words of the command line, of an options file or of PETSC_OPTIONS as option entries, not yet understood.
+// Words of the command line, of options files or of PETSC_OPTIONS as option entries, not yet understood.
 #pragma once
 
 #include <string>
@@ -12,11 +12,15 @@ struct Entry {
   std::string where;  ///< " (FILE:LINE)" or the like, for messages; empty on the command line
 };
 
+/// Entries of one file, of the environment or of the command line; a later source wins over an earlier one.
+using Source = std::vector<Entry>;
+
 /// All return what is wrong, or nothing.
 /// `options_file`: set to the one positional word; null where there must be none.
 std::string read_words_as_entries(const std::vector<std::string> &words, const std::string &where,
                                   std::vector<Entry> *entries, std::string *options_file);
-std::string read_options_file(const std::string &path, std::vector<Entry> *entries);
+/// Appends one source for each file, those that -options_file brings in before the file they stand in.
+std::string read_options_file(const std::string &path, std::vector<Source> *sources);
 /// Words of a line: separated by white space, "..." holds a word together, # before a word starts a comment.
 std::string split_words(const std::string &line, std::vector<std::string> *words);
 

@@ -210,6 +210,8 @@ void add_running(Rows &rows, Config &config) {
 
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
+  rows.add("options_file", "", "options of another file; those of this file win").accepted =
+      "only in an options file; a path, from the directory of this file";
   rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =
       "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";

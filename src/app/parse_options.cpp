@@ -16,9 +16,6 @@
 namespace eulastic {
 namespace {
 
-/// Entries of one source; a later source wins over an earlier one.
-using Source = std::vector<Entry>;
-
 // Levenshtein.
 std::size_t edit_distance(const std::string &a, const std::string &b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -151,15 +148,18 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
 }
 
 std::string parse_into(const std::vector<std::string> &arguments, ParseResult *result) {
-  std::vector<Source> sources(3);  // file, environment, command line: the last wins
+  std::vector<Source> sources;  // files, environment, command line: the last wins
+  Source environment, command_line;
   std::string file;
-  if (std::string wrong = read_words_as_entries(arguments, "", &sources[2], &file); !wrong.empty()) return wrong;
+  if (std::string wrong = read_words_as_entries(arguments, "", &command_line, &file); !wrong.empty()) return wrong;
   if (!file.empty())
-    if (std::string wrong = read_options_file(file, &sources[0]); !wrong.empty()) return wrong;
+    if (std::string wrong = read_options_file(file, &sources); !wrong.empty()) return wrong;
   std::vector<std::string> words;
   std::string wrong = split_words(result->petsc_options, &words);
-  if (wrong.empty()) wrong = read_words_as_entries(words, " (in PETSC_OPTIONS)", &sources[1], nullptr);
+  if (wrong.empty()) wrong = read_words_as_entries(words, " (in PETSC_OPTIONS)", &environment, nullptr);
   if (!wrong.empty()) return wrong;
+  sources.push_back(std::move(environment));
+  sources.push_back(std::move(command_line));
 
   for (const Source &source : sources)
     for (const Entry &entry : source)

@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-// -options_file is not among them: what it brings in would escape our checks.
+// -options_file is not among them: it is ours.
 const std::vector<std::string> &petsc_option_names() {
   static const std::vector<std::string> names{"log_",
                                               "ksp_",

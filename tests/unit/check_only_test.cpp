@@ -8,7 +8,8 @@ TEST(CheckOnly, NumbersOfAChannel) {
   // Channel of height 2: U = f H^2/(8 nu) = 1, shear rate f H/(2 nu) = 2; nu = 1/2, c^2 = 2, S = 2 4^2 = 32.
   const ParseResult result = parse_line(
       "-grid_cells 16,8,1 -grid_length 4,2,1 -boundary_y wall -fluid_density 2 -fluid_viscosity 1 -body_force 1,0,0 "
-      "-time_end 100 -method classic -species a -a_shape sphere -a_radius .5 -a_shear_modulus 4 -a_placement lattice -a_count 2,1,1");
+      "-time_end 100 -method classic -species a -a_shape sphere -a_radius .5 -a_shear_modulus 4 -a_placement lattice "
+      "-a_count 2,1,1");
   ASSERT_EQ(result.error, "");
   const std::string report = check_report(result.config, 2);
   const auto has = [&](const std::string &line) {
@@ -28,12 +29,25 @@ TEST(CheckOnly, NumbersOfAChannel) {
   has("dt limit, viscous: 0.03125");                // 1/(2 nu S)
   has("dt limit, elastic wave: 0.125");             // 1/(c sqrt(S))
   has("dt limit, viscous and elastic: 0.0295085");  // 64 dt^2 + 32 dt = 1
-  has("dt limit, advective: 0.059017");  // 4 dt + 4 dt^2 = 1/4
+  has("dt limit, advective: 0.059017");             // 4 dt + 4 dt^2 = 1/4
   has("dt limit, Euler 2 nu/U^2: 1");
+  // ceil(100/(0.8 x 0.0295085)) = 4237 steps of 128 cells at 45 + 85 ns, two ranks
+  has("steps (estimate): 4237");
+  has("wall time (estimate): 0.0353 seconds on 2 cores, 0.13 us per cell, step and core");
   EXPECT_EQ(report.find("warning"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
   EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");
   ASSERT_EQ(huge.error, "");
   EXPECT_NE(check_report(huge.config, 1024).find("64-bit"), std::string::npos);
+  // A tube of diameter 4: U = f R^2/(4 nu) = 1, shear rate f R/(2 nu) = 1; 4 pi/3 of the lumen's 8 pi are cell.
+  const ParseResult tube = parse_line(
+      "-time_end 1 -grid_cells 10,25,25 -grid_length 2,5,5 -body_force 1,0,0 -species vessel,cell -vessel_shape tube "
+      "-vessel_axis x -vessel_radius 2 -vessel_shear_modulus 1 -cell_shape sphere -cell_radius 1 -cell_shear_modulus "
+      "1");
+  ASSERT_EQ(tube.error, "");
+  const std::string inside = check_report(tube.config, 1);
+  for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 1\n", "(length 4)\n",
+                           "hematocrit: 0.166667 (of the box less slabs and tubes)\n"})
+    EXPECT_NE(inside.find(line), std::string::npos) << line << inside;
 }

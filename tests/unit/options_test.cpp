@@ -120,6 +120,35 @@ TEST(Options, ADiameterOverridesTheRadiusOfTheFile) {
   EXPECT_EQ(result.config.species[0].radius, 0.125);
 }
 
+TEST(Options, AFileBringsInAnotherAndWins) {
+  const TemporaryFile base("-time_end 1\n-fluid_density 2\n-fluid_viscosity 3\n");
+  const std::string name = base.path().substr(base.path().rfind('/') + 1);  // beside it, wherever we are
+  const TemporaryFile middle("-fluid_viscosity 4\n-options_file " + name + "\n-body_force_phase 5\n");
+  const TemporaryFile top("-options_file \"" + middle.path() + "\"\n-body_force_phase 6\n");
+  const ParseResult result = parse({top.path(), "-time_end", "7"}, "-time_step 8");
+  ASSERT_EQ(result.error, "");
+  EXPECT_EQ(result.config.fluid.density, 2);
+  EXPECT_EQ(result.config.fluid.viscosity, 4);
+  EXPECT_EQ(result.config.fluid.body_force.phase, 6);
+  EXPECT_EQ(result.config.time.end, 7);
+  EXPECT_EQ(result.config.time.step, 8);
+  EXPECT_EQ(options_text(result).find("options_file"), std::string::npos);
+
+  const auto error = [](const std::string &text) {
+    const TemporaryFile file(text);
+    return parse({file.path()}).error;
+  };
+  EXPECT_NE(error("-options_file no_such.opts\n").find("no_such.opts cannot be read"), std::string::npos);
+  EXPECT_NE(error("-options_file\n").find("-options_file: a value is missing"), std::string::npos);
+  EXPECT_NE(error("-options_file " + middle.path() + " -time_end x\n").find("-options_file: out of place"),
+            std::string::npos);
+  const TemporaryFile wrong("-time_step x\n");
+  EXPECT_NE(error("-time_end 1\n-options_file " + wrong.path()).find(wrong.path() + ":1)"), std::string::npos);
+  const TemporaryFile loop("");
+  std::ofstream(loop.path()) << "-options_file " << loop.path() << "\n";
+  EXPECT_NE(parse({loop.path()}).error.find("brings in itself"), std::string::npos);
+}
+
 TEST(Options, PositionsAreRead) {
   const TemporaryFile good("x,y,z\n4,4,4\n"), bad("x,y,z\n4,4\n");
   const std::string list = scene + " -cell_placement list -cell_positions ";
