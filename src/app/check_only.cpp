@@ -91,14 +91,13 @@ public:
   void time_step(Report &report, int ranks) const {
     FlowExtremes extremes;
     extremes.speed = flow_scale().speed;
-    double modulus = 0;
     for (const SpeciesSpec &spec : config_.species) {
       const Real3 &l = spec.initial_stretch;
-      modulus = std::max(modulus, spec.shear_modulus);
-      extremes.trace = std::max(extremes.trace, l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
+      const double stretch = stretch_squared(l[0] * l[0] + l[1] * l[1] + l[2] * l[2], dimension_);
+      extremes.stiffness = std::max(extremes.stiffness, spec.shear_modulus * stretch);
     }
     const TimeStepLimits limits =
-        time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, modulus, extremes,
+        time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, extremes,
                          {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
     report.line("dt limit, viscous", "%.6g", limits.viscous);
     report.line("dt limit, elastic wave", "%.6g", limits.elastic);

@@ -51,12 +51,13 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
                                 FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
-  double largest[5] = {0, 0, 0, 3, -infinite};  // speeds, trace, - first bad cell: all by maximum
+  std::vector<double> largest(4 + phases.size());  // speeds, - first bad cell, traces: all by maximum
+  largest[3] = -infinite;
   const auto mark = [&](const double *row, int i0, int i1, int j, int k) {
     for (int i = i0; i < i1; ++i)
       if (!std::isfinite(row[i])) {
         const double cell = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
-        largest[4] = std::max(largest[4], -cell);
+        largest[3] = std::max(largest[3], -cell);
         return;
       }
   };
@@ -68,7 +69,9 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
         largest[d] = std::max(largest[d], r.largest);
         if (r.bad > 0) mark(row, 0, n[0], j, k);
       }
-  for (const Phase &phase : phases)
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    const Phase &phase = phases[p];
+    double most = 3;
     for (const Segment &s : phase.solid.all()) {
       if (s.j >= n[1] || s.k >= n[2]) continue;
       const int end = std::min(s.i_end, n[0]);
@@ -78,7 +81,7 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
       double bad = 0;
       for (int i = s.i_begin; i < end; ++i) {
         const double trace = xx[i] + yy[i] + (flat ? 1.0 : zz[i]);
-        largest[3] = trace > largest[3] ? trace : largest[3];
+        most = trace > most ? trace : most;
         bad += !(std::fabs(trace) <= std::numeric_limits<double>::max());
       }
       if (bad > 0) {
@@ -87,15 +90,21 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
         mark(zz, s.i_begin, end, s.j, s.k);
       }
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 5, MPI_DOUBLE, MPI_MAX, grid.comm()));
+    largest[4 + p] = most;
+  }
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
   extremes->speed = {largest[0], largest[1], largest[2]};
-  extremes->trace = largest[3];
-  extremes->first_bad = largest[4] == -infinite ? -1 : -largest[4];
+  extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
+  extremes->stiffness = 0;
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    extremes->stiffness = std::max(
+        extremes->stiffness, phases[p].material.shear_modulus * stretch_squared(largest[4 + p], grid.dimension()));
   PetscFunctionReturn(0);
 }
 
 TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
-                                double shear_modulus, const FlowExtremes &extremes, const StepScheme &scheme) {
+                                const FlowExtremes &extremes, const StepScheme &scheme) {
   double S = 0, crossing = 0, gain = 0, speed_squared = 0, frequency = std::fabs(fluid.body_force.frequency);
   for (int d = 0; d < dimension; ++d) {
     double speed = extremes.speed[d];
@@ -110,15 +119,14 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
     speed_squared += speed * speed;
   }
   const double nu = fluid.kinematic_viscosity();
-  const double stiffness = shear_modulus * stretch_squared(extremes.trace, dimension);
-  const double c_squared = stiffness / fluid.density;
+  const double c_squared = extremes.stiffness / fluid.density;
   const double share = scheme.staggered ? advective_staggered : advective_euler;
   TimeStepLimits limits{};
   limits.scheme = scheme;
   limits.viscous = over(1, 2 * nu * S);
   limits.elastic = over(1, std::sqrt(c_squared * S));
   limits.combined = over(1, nu * S + std::sqrt(nu * nu * S * S + c_squared * S));
-  limits.kelvin_voigt = over(2 * fluid.viscosity, stiffness);
+  limits.kelvin_voigt = over(2 * fluid.viscosity, extremes.stiffness);
   limits.advective = over(2 * share, crossing + std::sqrt(crossing * crossing + 4 * gain * share));
   limits.inertial = fluid.inertia && nu > 0 ? over(2 * nu, speed_squared) : infinite;
   limits.forcing = over(2 * pi, frequency);

@@ -9,10 +9,10 @@ namespace eulastic {
 
 /// Largest values over the whole grid; found with one Allreduce.
 struct FlowExtremes {
-  Real3 speed{};               ///< max |u|, |v|, |w|
-  double trace = 3;            ///< max tr B where B is evolved (B_zz = 1 in 2-D)
-  double first_bad = -1;       ///< global cell index of the first non-finite velocity or B, -1 = all finite
-  double max_speed() const;    ///< of the components
+  Real3 speed{};             ///< max |u|, |v|, |w|
+  double stiffness = 0;      ///< max G lambda^2 over the phases, from the largest tr B of each where it is evolved
+  double first_bad = -1;     ///< global cell index of the first non-finite velocity or B, -1 = all finite
+  double max_speed() const;  ///< of the components
 };
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
@@ -44,10 +44,10 @@ struct TimeStepLimits {
 };
 
 TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
-                                double shear_modulus, const FlowExtremes &extremes, const StepScheme &scheme);
-inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const Walls &walls, double shear_modulus,
+                                const FlowExtremes &extremes, const StepScheme &scheme);
+inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const Walls &walls,
                                        const FlowExtremes &extremes, const StepScheme &scheme) {
-  return time_step_limits(grid.spacing(), grid.dimension(), fluid, walls, shear_modulus, extremes, scheme);
+  return time_step_limits(grid.spacing(), grid.dimension(), fluid, walls, extremes, scheme);
 }
 
 }  // namespace eulastic

@@ -100,9 +100,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 }
 
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  double modulus = 0;
-  for (const Phase &phase : now_.phases) modulus = std::max(modulus, phase.material.shear_modulus);
-  return time_step_limits(*grid_, spec_.fluid, spec_.walls, modulus, extremes,
+  return time_step_limits(*grid_, spec_.fluid, spec_.walls, extremes,
                           {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
 }
 
