@@ -92,8 +92,9 @@ void add_bodies(Rows &rows, Config &config) {
 void add_method(Rows &rows, Config &config) {
   rows.group = "Method";
   Method &method = config.method;
+  const Names integrator_names{"staggered", "euler"};
   rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
-  rows.choice("time_integrator", method.integrator, {"staggered", "euler"},
+  rows.choice("time_integrator", method.integrator, integrator_names,
               "second order with solids at half steps, or explicit Euler")
       .default_note = by_method;
   rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage")
@@ -104,6 +105,11 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
               "B outside bodies: extended, or reset to I")
       .default_note = by_method;
+  const std::size_t force = rows.rows.size();
+  rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
+              "elastic force within a step: linear in time, or that of its middle")
+      .default_note = by_method;
+  rows.restrict(force, "time_integrator", method.integrator, integrator_names, {TimeIntegrator::staggered});
   const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,

@@ -24,7 +24,7 @@ EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView no
     double sum = c.nu * out[i];
     sum = fma(c.mu, w[i], sum);
     sum = fma(c.rate, m[i], sum);
-    if constexpr (WithSlope) sum = fma(c.slope, m1[i], sum);
+    sum = WithSlope ? fma(c.slope, m1[i], sum) : sum + 0.0;  // a slope of 0: the same bits, -0 too
     out[i] = fma(c.viscous, laplacian<Dim>(w + i, sy, sz, second), sum);
   }
 }

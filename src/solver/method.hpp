@@ -8,6 +8,7 @@ enum class TimeIntegrator { staggered, euler };
 enum class ViscousScheme { rkl, explicit_euler };
 enum class InterfaceScheme { thinc, weno5 };
 enum class SolidExterior { extrapolate, identity };
+enum class ElasticForce { linear, constant };
 enum class PressureKind { acm, smac, ksp };
 
 /// The initialisers are the paper's method.
@@ -17,13 +18,15 @@ struct Method {
   ViscousScheme viscous = ViscousScheme::explicit_euler;
   InterfaceScheme interface = InterfaceScheme::weno5;
   SolidExterior exterior = SolidExterior::identity;
+  ElasticForce elastic_force = ElasticForce::constant;  ///< within a step
   PressureKind pressure = PressureKind::acm;
   int acm_sweeps_max = 1;
-  double acm_tolerance = 1e-6;  ///< on rms(div v) h/U
+  double acm_tolerance = 1e-7;  ///< on rms(div v) h/U
   int acm_memory = 0;           ///< increments of earlier steps kept as directions
   bool acm_coarse = false;      ///< sweep along a V-cycle of D, else along D
 
   bool staggered() const { return integrator == TimeIntegrator::staggered; }
+  bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
   /// One step of (11)-(13) and nothing else.
   bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };
@@ -37,6 +40,7 @@ inline Method method_preset(MethodKind kind) {
   method.viscous = ViscousScheme::rkl;
   method.interface = InterfaceScheme::thinc;
   method.exterior = SolidExterior::extrapolate;
+  method.elastic_force = ElasticForce::linear;
   method.acm_sweeps_max = 50;
   method.acm_memory = 2;
   method.acm_coarse = true;

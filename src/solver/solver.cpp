@@ -51,7 +51,7 @@ PetscErrorCode Solver::prepare() {
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (spec_.staggered()) viscous_.slope = FieldBlock(*grid_, grid_->dimension());
+  if (spec_.linear_force()) viscous_.slope = FieldBlock(*grid_, grid_->dimension());
   next_fraction_ = FieldBlock(*grid_, 1);
   next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
   if (spec_.interface == InterfaceScheme::thinc) interface_ = std::make_unique<InterfaceTransport>(*grid_);
@@ -115,12 +115,12 @@ std::size_t Solver::bytes() const {
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
-  if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));                        // (4)(5)
-  PetscCall(predict(dt));                                                                             // (7)
+  if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
+  PetscCall(predict(dt));                                                       // (7)
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
-  PetscCall(project(dt));                                                                             // (8)-(13)
+  PetscCall(project(dt));  // (8)-(13)
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
-  if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));                                      // (4)(5)
+  if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
   PetscCall(follow_bodies(dt));
   now_.time += dt;
   now_.dt = dt;
@@ -132,10 +132,13 @@ PetscErrorCode Solver::step(double dt) {
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  viscous_.slope.clear();
-  PetscCall(add_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+  if (spec_.linear_force()) {
+    viscous_.slope.clear();
+    PetscCall(add_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+  }
   PetscCall(transport(now_.phases, dt));
-  PetscCall(add_elastic_force(*grid_, 1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+  if (spec_.linear_force())
+    PetscCall(add_elastic_force(*grid_, 1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
   PetscFunctionReturn(0);
 }
 
@@ -152,11 +155,10 @@ PetscErrorCode Solver::predict(double dt) {
     ++stages_;
     PetscFunctionReturn(0);
   }
-  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection,
-                          viscous_.rate));
+  PetscCall(
+      momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, viscous_.rate));
   int stages = 1;
-  if (spec_.viscous == ViscousScheme::rkl)
-    stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
+  if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
                             now_.phases, now_.velocity, viscous_, velocity_star_));
   stages_ += stages;
@@ -178,7 +180,7 @@ PetscErrorCode Solver::project(double dt) {
   PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence_));
   PetscCall(update_centre_ghosts(divergence_, 1));
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
-  PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));                     // (10) or (11)
+  PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));  // (10) or (11)
   PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.velocity,
                              now_.pressure));
   PetscFunctionReturn(0);
@@ -195,23 +197,25 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   if (spec_.interface == InterfaceScheme::thinc) {
     PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.fraction));
   } else {
-    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));            // (4)
+    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
   }
   PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(transport_left_cauchy_green(phase, dt));                                                  // (5)
+  PetscCall(transport_left_cauchy_green(phase, dt));  // (5)
   PetscFunctionReturn(0);
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
   PetscFunctionBeginUser;
-  PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
+  PetscCall(
+      transport_tensor(*grid_, {evolve_rule(phase), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
   PetscCall(complete_exterior(next_tensor_));
   if (spec_.staggered()) {
-    PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
+    PetscCall(
+        transport_tensor(*grid_, {evolve_rule(phase), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase.tensor));
   } else {
     phase.tensor.swap(next_tensor_);
