@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
-/// of the method add; per phase fraction, label and B; one fraction and B being computed.
+/// of the method add; per phase fraction, label and B.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
@@ -28,11 +28,16 @@ double fields(const Config &config) {
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
     sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
-  const bool rkl = method.viscous == ViscousScheme::rkl;
-  if (method.staggered() || rkl) sum += 2 * dimension;                                    // rate, increment
-  if (rkl) sum += dimension;                                                              // increment before
-  if (method.staggered()) sum += dimension * (int(config.fluid.inertia) + (phases > 0));  // history, slope
-  if (phases > 0) sum += phases * (2 + tensor) + 1 + tensor + (method.interface == InterfaceScheme::thinc ? 3 : 0);
+  const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
+             thinc = method.interface == InterfaceScheme::thinc;
+  if (work) sum += 2 * dimension;
+  if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
+  if (phases == 0) return sum;
+  if (method.linear_force()) sum += dimension;
+  if (!method.staggered()) sum += tensor;
+  if (!thinc) sum += 1;
+  if (thinc && !work) sum += 3;
+  sum += phases * (2 + tensor);
   return sum;
 }
 

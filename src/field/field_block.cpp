@@ -6,9 +6,17 @@
 namespace eulastic {
 
 FieldBlock::FieldBlock(const Grid &grid, int count) : layout_(grid.layout()), count_(count) {
-  data_.reset(static_cast<double *>(std::aligned_alloc(64, bytes())));
+  data_.reset(static_cast<double *>(std::aligned_alloc(64, size() * sizeof(double))));
   if (!data_) throw std::bad_alloc();
   std::fill_n(data_.get(), layout_.size * count_, 0.0);
+}
+
+FieldBlock FieldBlock::part(int first, int count) noexcept {
+  FieldBlock block;
+  block.layout_ = layout_;
+  block.count_ = count;
+  block.data_ = {data_.get() + first * layout_.size, Free{true}};
+  return block;
 }
 
 void FieldBlock::fill(int f, double value) noexcept {
@@ -19,7 +27,7 @@ void FieldBlock::clear() noexcept { std::fill_n(data_.get(), layout_.size * coun
 
 void FieldBlock::copy_from(const FieldBlock &other) {
   if (count_ != other.count_ || layout_.size != other.layout_.size) {
-    data_.reset(static_cast<double *>(std::aligned_alloc(64, other.bytes())));
+    data_ = {static_cast<double *>(std::aligned_alloc(64, other.size() * sizeof(double))), Free{}};
     if (!data_) throw std::bad_alloc();
   }
   layout_ = other.layout_;

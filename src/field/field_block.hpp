@@ -20,7 +20,8 @@ public:
   const Layout &layout() const noexcept { return layout_; }
   double *data() noexcept { return data_.get(); }
   const double *data() const noexcept { return data_.get(); }
-  std::size_t bytes() const noexcept { return sizeof(double) * layout_.size * count_; }
+  /// Memory of its own: 0 for a part of another block.
+  std::size_t bytes() const noexcept { return data_.get_deleter().borrowed ? 0 : size() * sizeof(double); }
 
   View operator[](int f) noexcept { return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz}; }
   ConstView operator[](int f) const noexcept {
@@ -31,14 +32,20 @@ public:
   void fill(int f, double value) noexcept;
   /// Sets everything to 0.
   void clear() noexcept;
+  /// Fields first ... first + count - 1 as a block that shares this one's memory; must not outlive it.
+  FieldBlock part(int first, int count) noexcept;
   /// Makes this an equal block of its own memory.
   void copy_from(const FieldBlock &other);
   void swap(FieldBlock &other) noexcept { std::swap(*this, other); }
 
 private:
   struct Free {
-    void operator()(double *p) const noexcept { std::free(p); }
+    bool borrowed;
+    void operator()(double *p) const noexcept {
+      if (!borrowed) std::free(p);
+    }
   };
+  std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;
   std::unique_ptr<double[], Free> data_;

@@ -14,11 +14,11 @@ struct Material {
 };
 
 struct Phase {
-  std::string species;   ///< name of the species it belongs to
+  std::string species;  ///< name of the species it belongs to
   Material material;
-  FieldBlock fraction;   ///< phi, one centred field, 0 ... 1
-  FieldBlock tensor;     ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
-  FieldBlock label;      ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+  FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
+  FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
+  FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
   ActiveSegments solid;     ///< points where B may differ from I
   ActiveSegments stressed;  ///< faces that feel the elastic stress
 };

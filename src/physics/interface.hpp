@@ -14,7 +14,8 @@ public:
   /// Layers of ghosts that `advance` reads of the solid fraction; of the velocity it reads three.
   static constexpr int ghosts = 4;
 
-  explicit InterfaceTransport(const Grid &grid) : grid_(&grid), work_(grid, 3) {}
+  /// `work`: three fields that nobody else needs during `advance`.
+  InterfaceTransport(const Grid &grid, FieldBlock work) : grid_(&grid), work_(std::move(work)) {}
 
   /// Moves `fraction` over dt with face velocities. The order of directions follows from `step`: all of them in turn,
   /// each after its mirror image. Nothing is communicated: ghosts are moved along and are stale afterwards; those

@@ -39,10 +39,11 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   increment_ = FieldBlock(grid, 1);
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   if (spec.staggered() || spec.viscous == ViscousScheme::rkl) {
-    viscous_.rate = FieldBlock(grid, dim);
-    viscous_.now = FieldBlock(grid, dim);
+    work_ = FieldBlock(grid, 2 * dim);  // enough for what the transport of solids needs before the predictor
+    viscous_.rate = work_.part(0, dim);
+    viscous_.before = work_.part(dim, dim);
+    viscous_.now = velocity_star_.part(0, dim);
   }
-  if (spec.viscous == ViscousScheme::rkl) viscous_.before = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
 
@@ -52,9 +53,12 @@ PetscErrorCode Solver::prepare() {
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) viscous_.slope = FieldBlock(*grid_, grid_->dimension());
-  next_fraction_ = FieldBlock(*grid_, 1);
-  next_tensor_ = FieldBlock(*grid_, now_.phases[0].tensor.count());
-  if (spec_.interface == InterfaceScheme::thinc) interface_ = std::make_unique<InterfaceTransport>(*grid_);
+  const int components = now_.phases[0].tensor.count();
+  next_tensor_ = spec_.staggered() ? work_.part(0, components) : FieldBlock(*grid_, components);  // Euler swaps it
+  if (spec_.interface == InterfaceScheme::thinc)
+    interface_ = std::make_unique<InterfaceTransport>(*grid_, work_ ? work_.part(0, 3) : FieldBlock(*grid_, 3));
+  else
+    next_fraction_ = FieldBlock(*grid_, 1);
   for (Phase &phase : now_.phases) {
     PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
     PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
@@ -107,8 +111,8 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
                     increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
-                    viscous_.rate.bytes() + viscous_.slope.bytes() + viscous_.now.bytes() + viscous_.before.bytes() +
-                    pressure_solver_->bytes() + (interface_ ? interface_->bytes() : 0);
+                    work_.bytes() + viscous_.slope.bytes() + pressure_solver_->bytes() +
+                    (interface_ ? interface_->bytes() : 0);
   for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
 }

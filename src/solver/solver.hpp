@@ -78,10 +78,11 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
-  SuperTimeStepping viscous_;   ///< with the slope of the elastic force in time
+  FieldBlock work_;            ///< shared by what the verbs need one after the other
+  SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time
   ExteriorLayers layers_;
   std::unique_ptr<InterfaceTransport> interface_;
-  std::vector<Phase> phases_now_;   ///< copies for phases_now()
+  std::vector<Phase> phases_now_;  ///< copies for phases_now()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };

@@ -67,7 +67,7 @@ public:
     velocity = FieldBlock(grid, grid.dimension());
     fraction = FieldBlock(grid, 1);
     exchange_ = std::make_unique<GhostExchange>(grid);
-    transport_ = std::make_unique<InterfaceTransport>(grid);
+    transport_ = std::make_unique<InterfaceTransport>(grid, FieldBlock(grid, 3));
     PetscFunctionReturn(0);
   }
 
