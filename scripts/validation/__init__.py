@@ -1,0 +1,1 @@
+"""The cases of scripts/validate: what is run, what is measured, what it is compared with."""

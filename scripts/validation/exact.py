@@ -1,0 +1,93 @@
+"""Exact solutions, each with its source. Density 1; lengths, times and stresses in any consistent units."""
+import cmath
+import math
+
+import numpy
+
+pi = math.pi
+
+
+def taylor_green(x, y, t, nu, mean):
+    """u of the advected vortices in the unit box (Taylor & Green 1937, and a Galilean transformation), k = 2 pi."""
+    k = 2 * pi
+    return mean + math.exp(-2 * nu * k * k * t) * numpy.sin(k * (x - mean * t)) * numpy.cos(k * (y - mean * t))
+
+
+def channel_startup(y, t, g, height, nu):
+    """u between plates under a force from t = 0: parabola less its Fourier series (Batchelor 1967, section 4.3)."""
+    m = numpy.arange(1, 400, 2)[:, None] * pi
+    decay = 4 * g * height**2 / (nu * m**3) * numpy.sin(m * y / height) * numpy.exp(-nu * (m / height)**2 * t)
+    return g * y * (height - y) / (2 * nu) - decay.sum(axis=0)
+
+
+def womersley(y, t, force, omega, height, nu):
+    """u between plates under force cos(omega t), periodic state (Womersley 1955, plane)."""
+    k = cmath.sqrt(1j * omega / nu)
+    shape = 1 - numpy.cosh(k * (y - height / 2)) / cmath.cosh(k * height / 2)
+    return (force / (1j * omega) * shape * cmath.exp(1j * omega * t)).real
+
+
+def oscillating_wall(y, t, speed, omega, height, nu):
+    """u over a plate at rest, upper plate speed sin(omega t), periodic state (Stokes 1851, with two plates)."""
+    k = cmath.sqrt(1j * omega / nu)
+    return (speed * numpy.sinh(k * y) / cmath.sinh(k * height) * cmath.exp(1j * omega * t)).imag
+
+
+class Layers:
+    """A solid layer 0 < y < 1/2 under fluid to y = 1, upper wall V sin(omega t), periodic state: both layers obey
+    linear equations at any amplitude, u = Im{uh(y) e^{i omega t}} (set-up of Sugiyama et al., J. Comput. Phys. 230, 2011)."""
+
+    def __init__(self, mu=1.0, modulus=5.0, speed=1.0, omega=pi, half=0.5):
+        self.omega, self.half = omega, half
+        ms = mu + modulus / (1j * omega)
+        self.ks, self.kf = cmath.sqrt(1j * omega / ms), cmath.sqrt(1j * omega / mu)
+        ratio = ms * self.ks / (mu * self.kf)
+        self.a = speed / (cmath.cosh(self.kf * half) * cmath.sinh(self.ks * half)
+                          + ratio * cmath.cosh(self.ks * half) * cmath.sinh(self.kf * half))
+        self.b, self.c = ratio * self.a * cmath.cosh(self.ks * half), self.a * cmath.sinh(self.ks * half)
+
+    def amplitude(self, y):
+        """Complex amplitude of u."""
+        y = numpy.asarray(y)
+        above = y - self.half
+        fluid = self.b * numpy.sinh(self.kf * above) + self.c * numpy.cosh(self.kf * above)
+        return numpy.where(y < self.half, self.a * numpy.sinh(self.ks * y), fluid)
+
+    def shear_amplitude(self, y):
+        """|B_xy| in the solid."""
+        return abs(self.a * self.ks * numpy.cosh(self.ks * y) / (1j * self.omega))
+
+
+def resting_layers(y, force, mu, half=0.5, height=1.0):
+    """u of fluid over a solid layer at rest under a body force: a parabola above y = half."""
+    return numpy.where(y > half, force * (y - half) * (height - y) / (2 * mu), 0)
+
+
+def shear_wave(t, start, mu=0.01, modulus=1.0, k=2 * pi):
+    """Amplitude of u = V(t) sin ky in a box of solid, B = I at t = 0: s^2 + mu k^2 s + G k^2 = 0, exact at any amplitude."""
+    decay = mu * k * k / 2
+    omega = math.sqrt(modulus * k * k - decay**2)
+    return start * numpy.exp(-decay * t) * (numpy.cos(omega * t) - decay / omega * numpy.sin(omega * t))
+
+
+def disc_in_shear(capillary):
+    """Taylor deformation and inclination (degrees) of a disc in Stokes shear, unbounded: affine inside (Eshelby), so
+    Ca = D (1 + D^2)/(1 - D^2), cos 2 theta = 2 D/(1 + D^2)."""
+    low, high = 0.0, 0.9
+    while high - low > 1e-15:
+        d = (low + high) / 2
+        low, high = (d, high) if d * (1 + d * d) / (1 - d * d) < capillary else (low, d)
+        if d in (low, high) and high - low < 1e-14:
+            break
+    return low, math.degrees(math.acos(2 * low / (1 + low * low)) / 2)
+
+
+def sheared_circle(strain):
+    """Taylor deformation of a circle after simple shear: principal stretches e^{+-s}, sinh s = strain/2."""
+    return math.tanh(math.asinh(strain / 2))
+
+
+def red_cell_thickness(r, diameter=8.0):
+    """Evans & Fung, Microvasc. Res. 4 (1972)."""
+    q = numpy.clip(2 * r / diameter, 0, 1)
+    return diameter / 2 * numpy.sqrt(1 - q**2) * (0.207161 + 2.002558 * q**2 - 1.122762 * q**4)

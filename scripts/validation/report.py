@@ -1,0 +1,116 @@
+"""Judges the runs of the cases: the rows of the table, docs/validation.md and one plot per name."""
+import io
+import math
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from PIL import Image  # noqa: E402  (matplotlib's own)
+
+HEADER = ["case", "measure", "method, solver", "at", "reference", "ours", "error", "tolerance", "tolerance from",
+          "errors, coarse to fine (order)", "verdict"]
+WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
+
+
+def name_of(key):
+    return "/".join(map(str, key)) if isinstance(key, tuple) else str(key)
+
+
+def failed(case, setting, text):
+    return dict(zip(HEADER, [case.name, text.replace("|", "/"), setting.label, "", "", "", "", "", "", "", WORDS[False]]))
+
+
+def judge(case, setting, runs, measure):
+    """Rows of one measure: the value at the finest key and, if asked for, the order."""
+    def error(value):
+        return abs(value - measure.reference) / (abs(measure.reference) if measure.relative else 1)
+
+    key = list(runs)[-1]
+    if measure.whole:
+        ladder, ours = [], measure.ours(runs)
+    else:
+        values = {k: measure.ours(run) for k, run in runs.items()}
+        ladder, ours = [(k, error(value)) for k, value in values.items()], values[key]
+    limit = measure.tolerance.get(setting.label, measure.tolerance.get(setting.method))
+    limit = limit(key) if callable(limit) else limit
+    order = observed_order(ladder)
+    shown = " ".join(f"{e:.2g}" for _, e in ladder) + (f" ({order:.2f})" if order is not None else "")
+    percent = (lambda e: f"{100 * e:.2g} %") if measure.relative else (lambda e: f"{e:.2g}")
+    verdict = None if limit is None else bool(error(ours) <= limit)  # a nan fails
+    rows = [[case.name, measure.what, setting.label, name_of(key), f"{measure.reference:.7g}", f"{ours:.6g}",
+             percent(error(ours)), "" if limit is None else percent(limit), measure.why, shown, WORDS[verdict]]]
+    least = measure.order.get(setting.method)
+    if least is not None and len(ladder) > 1:
+        rows.append([case.name, measure.what + ": order", setting.label, name_of(key), "2", f"{order:.2f}", f"{2 - order:.2f}",
+                     f"at least {least}", "second order, measured on two grids", shown, WORDS[bool(order >= least)]])
+    return [dict(zip(HEADER, row)) for row in rows]
+
+
+def observed_order(ladder):
+    """Of the two finest grids; None where keys are not cells."""
+    if len(ladder) < 2 or not all(isinstance(k, int) for k, _ in ladder):
+        return None
+    (n, e), (m, f) = ladder[-2:]
+    return math.log(e / f) / math.log(m / n) if e > 0 and f > 0 else math.nan
+
+
+def table(rows):
+    lines = ["| " + " | ".join(HEADER) + " |", "|" + "---|" * len(HEADER)]
+    return "\n".join(lines + ["| " + " | ".join(row[c].replace("|", "\\|") for c in HEADER) + " |" for row in rows])
+
+
+def draw(cases, results, path):
+    """All cases of one name side by side: the finest run of every setting over the reference."""
+    cases = cases[:6]
+    columns = min(3, len(cases))
+    lines = -(-len(cases) // columns)
+    figure, axes = plt.subplots(lines, columns, figsize=(3.6 * columns, 2.8 * lines), squeeze=False)
+    for axis in axes.flat[len(cases):]:
+        axis.set_visible(False)
+    styles = {"fast, ACM": "C3-", "fast, SMAC": "C1--", "classic, ACM": "C0-.", "classic, SMAC": "C9:"}
+    for axis, case in zip(axes.flat, cases):
+        reference = None
+        for setting, runs in results[case]:
+            key = list(runs)[-1]
+            mine, reference = case.curve(runs[key])
+            axis.plot(*mine, styles[setting.label], lw=1, label=f"{setting.label}, {name_of(key)}")
+        if reference is not None:
+            axis.plot(*reference, "ko" if len(reference[0]) < 20 else "k-", ms=3, lw=3, alpha=.25, label="reference", zorder=0)
+        axis.set(xlabel=case.axes[0], ylabel=case.axes[1])
+        axis.legend(fontsize=6)
+    figure.suptitle(cases[0].name, fontsize=9)
+    figure.tight_layout()
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=80)
+    plt.close(figure)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.open(picture).convert("RGB").quantize(24).save(path, optimize=True)  # a few kB
+
+
+PAGE = """# Validation
+
+Written by `scripts/validate`; do not edit. It runs every case below with the program, from the files of options/, and
+compares what the run wrote with exact solutions or published references; it exits with 1 if a row fails. Finished
+runs are kept in build/validation, a killed one goes on.
+
+    scripts/validate              # everything: hours
+    scripts/validate --quick      # a short form of every reference, part of scripts/test
+    scripts/validate --only S6
+
+"at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
+coarser grids stand in front of it, with the observed order. Errors in % are relative. Tolerances that depend on the
+grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
+of the fast one. The cases, with their options, formulas and sources, are in scripts/validation.
+
+{counts}
+
+{table}
+{plots}"""
+
+
+def write_page(rows, titles, pictures, path):
+    counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
+                       ((WORDS[True], "passed"), (WORDS[False], "failed"), (WORDS[None], "reported")))
+    plots = "".join(f"\n![{titles[name]}](images/{picture.name})\n\n*{name}: {titles[name]}*\n" for name, picture in pictures.items())
+    path.write_text(PAGE.format(counts=counts + ".", table=table(rows), plots=plots))

@@ -1,0 +1,60 @@
+"""Runs the program for the cases. A finished run is kept, under a key of its options, its file and the program;
+one that was killed goes on from its last checkpoint."""
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+
+from read_run import Run
+
+from .case import ROOT
+
+
+class Failed(Exception):
+    """A run that did not end as it should; the text is the program's own line."""
+
+
+class Runner:
+    def __init__(self, program, work):
+        self.program, self.work = program, work
+        self.version = hashlib.sha256(program.read_bytes()).hexdigest()
+        self.environment = {name: value for name, value in os.environ.items() if name != "PETSC_OPTIONS"}
+        self.environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                OMPI_MCA_hwloc_base_binding_policy="none", OMP_NUM_THREADS="1")
+
+    def command(self, case, setting, key, folder, more):
+        options = {"method": setting.method, "pressure_solver": setting.solver, **case.options(key, folder),
+                   **setting.options, **more}
+        words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
+        file = ROOT / "options" / f"{case.file}.opts"
+        text = json.dumps([self.version, file.read_text(), words])
+        tail = re.sub(r"\W+", "_", f"{case.name}_{setting.method}_{setting.solver}_{key}".lower())
+        directory = self.work / f"{tail}_{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+        return [str(self.program), str(file), *words], directory
+
+    def run(self, words, directory):
+        summary = directory / "summary.json"
+        if summary.exists() and json.loads(summary.read_text())["exit_reason"] in ("time_end", "steps"):
+            return Run(directory)
+        words = words + ["-output_dir", str(directory), "-checkpoint_wall_minutes", "2", "-checkpoint_keep", "1"]
+        if directory.exists() and any(directory.glob("checkpoint_*.h5")):
+            words += ["-restart", str(directory)]
+        else:
+            shutil.rmtree(directory, ignore_errors=True)
+        done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
+                              env=self.environment)
+        if done.returncode:
+            raise Failed((done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0])
+        for checkpoint in directory.glob("checkpoint_*.h5"):
+            checkpoint.unlink()
+        return Run(directory)
+
+    def chain(self, case, setting, more):
+        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there."""
+        runs, directories = {}, {}
+        for key in setting.keys:
+            words, directories[key] = self.command(case, setting, key, directories.__getitem__, more)
+            runs[key] = self.run(words, directories[key])
+        return runs

@@ -1,0 +1,219 @@
+"""S1, S3 ... S5: solids whose motion is known exactly at any amplitude."""
+import math
+
+import numpy
+
+from . import exact
+from .case import Case, Measure, column, every, profile_times, rms, square
+
+LAYERS = exact.Layers()
+WHOLE = {"snapshot_precision": "double", "snapshot_fields": "velocity,left_cauchy_green"}
+
+
+# S1
+def quarters(run, value):
+    """Amplitude of value(snapshot) over the last period, from four snapshots a quarter of it apart."""
+    t = numpy.array([s.time for s in run.snapshots])
+    last = [run.snapshots[int(numpy.abs(t - (t[-1] - q / 2)).argmin())] for q in range(4)]
+    waves = numpy.array([numpy.exp(-1j * LAYERS.omega * s.time) for s in last])
+    matrix = numpy.array([[w.real, -w.imag] for w in waves])  # a cos - b sin: least squares, times need not be exact
+    return float(numpy.hypot(*numpy.linalg.lstsq(matrix, numpy.array([value(s) for s in last]), rcond=None)[0]))
+
+
+def interface_speed(run):
+    def at_half(snapshot):
+        u = snapshot["velocity_x"][0, :, 0]
+        return (u[len(u) // 2 - 1] + u[len(u) // 2]) / 2
+    return quarters(run, at_half)
+
+
+def shear_at(fraction):
+    """B_xy on the edge at that part of the height."""
+    return lambda run: quarters(run, lambda s: s["left_cauchy_green_xy"][0, :, 0][int(fraction * s["velocity_x"].shape[1])])
+
+
+def layers_error(run):
+    """rms of u(y) over a period, relative to the wall's speed."""
+    t, y, u, _ = profile_times(run.profile["y"])
+    last = t > t[-1] - 2 + 1e-6
+    want = numpy.array([(LAYERS.amplitude(y) * numpy.exp(1j * LAYERS.omega * time)).imag for time in t[last]])
+    return rms(u[last] - want)
+
+
+def layers_line(run):
+    t, y, u, _ = profile_times(run.profile["y"])
+    return (y, u[-1]), (y, (LAYERS.amplitude(y) * numpy.exp(1j * LAYERS.omega * t[-1])).imag)
+
+
+# S3
+def resting_error(run):
+    _, y, u, _ = profile_times(run.profile["y"])
+    return float(numpy.abs(u[-1] - exact.resting_layers(y, 0.5, 0.1)).max() / 0.15625)
+
+
+def resting_shear(fraction):
+    return lambda run: float(run.snapshots[-1]["left_cauchy_green_xy"][0, int(fraction * run.cells[1]), 0])
+
+
+def resting_line(run):
+    _, y, u, _ = profile_times(run.profile["y"])
+    return (y, u[-1]), (y, exact.resting_layers(y, 0.5, 0.1))
+
+
+# S4
+def wave_setup(a, b, mean):
+    """The wave u_a(b), in a 2-D box along x or y, in a thin 3-D one along z; `mean` is a velocity along b."""
+    def options(n, _):
+        cells = [4, 4, 4 if "z" in (a, b) else 1]
+        cells["xyz".index(b)] = n
+        return {"grid_cells": ",".join(map(str, cells)),
+                "grid_length": ",".join(str(c / n) if c > 1 else "1" for c in cells),
+                "initial_velocity": f"shear_wave_{a}{b}", "gel_axis": b, "profile_y": "mean", f"profile_{b}": "mean",
+                "initial_velocity_mean": ",".join(str(mean if d == b else 0) for d in "xyz"),
+                "snapshot_interval": 1, **WHOLE}
+    return options
+
+
+def wave_component(run, a, b):
+    u = run.snapshots[-1][f"velocity_{a}"]
+    return u.mean(axis=tuple(i for i in range(3) if i != 2 - "xyz".index(b)))
+
+
+def wave_error(a, b, mean):
+    def error(run):
+        u, t = wave_component(run, a, b), run.snapshots[-1].time
+        s = (numpy.arange(len(u)) + 0.5) / len(u)
+        return rms(u - exact.shear_wave(t, 1.5) * numpy.sin(2 * math.pi * (s - mean * t))) / 1.5
+    return error
+
+
+def wave_amplitude(a, b):
+    def amplitude(run):
+        u = wave_component(run, a, b)
+        return float(2 * abs(numpy.fft.fft(u)[1]) / len(u))
+    return amplitude
+
+
+def wave_line(a, b):
+    def line(run):
+        t, s, u, v = profile_times(run.profile[b])
+        f = u if a == "x" else v
+        found = [2 * f_t @ numpy.sin(2 * math.pi * s) / len(s) for f_t in f]
+        return (t, found), (t, exact.shear_wave(t, 1.5))
+    return line
+
+
+def wave(a, b, mean=0.0, quick=False):
+    what = f"u_{a} along {b}" + (f", carried at {mean}" if mean else "")
+    least = {"fast": lambda n: .005 * (64 / n)**2, "classic": lambda n: .01 * (64 / n)**2}
+    second = "second order: frequency (k h)^2/24, at t = 1 .25 % at 64 cells, twice; explicit Euler (dt ~ h^2) as much again"
+    def own_line(run):
+        u = wave_component(run, a, b)
+        s = (numpy.arange(len(u)) + 0.5) / len(u)
+        return (s, u), (s, exact.shear_wave(1, 1.5) * numpy.sin(2 * math.pi * (s - mean)))
+    return Case("S4", f"Plane shear wave, {what}", "shear_wave", wave_setup(a, b, mean),
+                every((32, 64), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)) if quick else (),
+                (Measure(f"{what}: rms error at t = 1, of u(0)", wave_error(a, b, mean), least, second, order={"fast": 1.9}),
+                 Measure(f"{what}: amplitude at t = 1", wave_amplitude(a, b), least, second, 1.23141718, True)),
+                wave_line(a, b) if (a, b, mean) == ("x", "y", 0) else own_line,
+                ("t" if (a, b, mean) == ("x", "y", 0) else b, f"u_{a}"))
+
+
+# S5
+def stagnation(run):
+    return float(run.snapshots[-1]["left_cauchy_green_xx"][0, run.cells[1] // 2, run.cells[0] // 2])
+
+
+def stagnation_exact(t, nu=0.01, k=2 * math.pi):
+    """B_xx = exp(2 k int_0^t e^{-2 nu k^2 s} ds) where u = sin kx cos ky e^{-2 nu k^2 t} stretches most."""
+    return math.exp(2 * k * (1 - math.exp(-2 * nu * k * k * t)) / (2 * nu * k * k))
+
+
+def stagnation_line(run):
+    b = run.snapshots[-1]["left_cauchy_green_xx"][0, run.cells[1] // 2]
+    return (run.centres(0), b), ([0.5], [stagnation_exact(run.snapshots[-1].time)])
+
+
+def centre_rotation(run):
+    """|B - I| in the vortex' centre (1/4, 1/4), which only turns: largest of the components there, four cells' mean."""
+    s, n = run.snapshots[-1], run.cells[0]
+    i = n // 4
+    worst = 0
+    for name, unit in (("xx", 1), ("yy", 1), ("xy", 0)):
+        b = s[f"left_cauchy_green_{name}"][0]
+        near = b[i, i] if name == "xy" else b[i - 1:i + 1, i - 1:i + 1].mean()
+        worst = max(worst, abs(float(near) - unit))
+    return worst
+
+
+def marked_disc(run):
+    return run.summary["bodies"][0]["taylor_deformation"]
+
+
+def marked_strain(run):
+    """B_xy and B_xx of the marked disc in its middle, against [[1 + g^2, g], [g, 1]]: largest distance."""
+    s = run.snapshots[-1]
+    g, j, i = 0.05 * s.time, run.cells[1] // 2, run.cells[0] // 2
+    found = (s["left_cauchy_green_xx"][0, j, i] - 1 - g * g, s["left_cauchy_green_xy"][0, j, i] - g,
+             s["left_cauchy_green_yy"][0, j, i] - 1)
+    return float(numpy.abs(found).max())
+
+
+def marked_line(run):
+    t = run.bodies.time
+    return (t, run.bodies.taylor_deformation[:, 0]), (t, [exact.sheared_circle(0.05 * x) for x in t])
+
+
+SECOND_LAYER = {"fast": lambda n: 2 * (2 / n)**2, "classic": lambda n: 2 / n}
+WHY_LAYER = "fast: second order, 2 (h/L_s)^2; classic: first order in the width of the interface, h/L_s"
+CASES = (
+    Case("S1", "Fluid over a solid layer, oscillating wall", "sheared_layers",
+         lambda n, _: {**column(n), "time_step": 0, "snapshot_interval": 0.5, **WHOLE},
+         every((32, 64)), every((32,), solvers=("acm",), methods=("fast",)),
+         (Measure("|u| at the interface", interface_speed, SECOND_LAYER, WHY_LAYER, .43700328, True),
+          Measure("|B_xy| on the wall", shear_at(0), SECOND_LAYER, WHY_LAYER, .29522648, True),
+          Measure("|B_xy| at the interface", shear_at(0.5), SECOND_LAYER, WHY_LAYER, .24588593, True),
+          Measure("rms error of u(y, t) over a period, of the wall's", layers_error, SECOND_LAYER, WHY_LAYER,
+                  order={"fast": 1.9})),
+         layers_line, ("y", "u at t = 26")),
+    Case("S3", "Channel flow over a solid layer at rest", "sheared_layers",
+         lambda n, _: {**column(n), "time_step": 0, "time_end": 30, "wall_ymax_velocity": "0,0,0",
+                       "wall_ymax_frequency": 0, "wall_ymax_phase": 0, "body_force": "0.5,0,0", "fluid_viscosity": 0.1,
+                       "layer_shear_modulus": 1, "snapshot_interval": 30, "profile_interval": 0, **WHOLE},
+         every((32, 64)), every((16, 32), methods=("fast",), solvers=("acm",)),
+         (Measure("largest error of u, of its maximum", resting_error, SECOND_LAYER, WHY_LAYER, order={"fast": 1.9}),
+          Measure("B_xy on the wall", resting_shear(0), SECOND_LAYER, WHY_LAYER, 0.375, True),
+          Measure("B_xy at the interface", resting_shear(0.5), SECOND_LAYER, WHY_LAYER, 0.125, True)),
+         resting_line, ("y", "u at t = 30")),
+    wave("x", "y", quick=True), wave("y", "x"), wave("z", "x"), wave("x", "z", quick=True), wave("y", "z"),
+    wave("x", "y", mean=0.5, quick=True),
+    Case("S5", "Strain where vortices stretch and turn", "shear_wave",
+         lambda n, _: {**square(n), "fluid_viscosity": 0.01, "initial_velocity": "taylor_green",
+                       "initial_velocity_amplitude": 1, "gel_shear_modulus": 0, "time_end": 0.1, "snapshot_interval": 0.1,
+                       "profile_interval": 0, **WHOLE},
+         every((33, 65), solvers=("acm",)), every((33, 65), methods=("fast",), solvers=("acm",)),
+         (Measure("B_xx in the stagnation point at t = .1", stagnation,
+                  {m: lambda n: 0.01 * (65 / n)**2 for m in ("fast", "classic")},
+                  "second order: strain rate (k h)^2/24 twice and WENO5, 1 % at 65^2",
+                  stagnation_exact(0.1), True, order={"fast": 1.9}),),
+         stagnation_line, ("x", "B_xx on y = 1/2")),
+    Case("S5", "A vortex' centre only turns", "shear_wave",
+         lambda n, _: {**square(n), "fluid_viscosity": 0.01, "initial_velocity": "taylor_green",
+                       "initial_velocity_amplitude": 1, "gel_shear_modulus": 0, "time_end": 0.1, "snapshot_interval": 0.1,
+                       "profile_interval": 0, **WHOLE},
+         every((32, 64), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)),
+         (Measure("largest |B - I| in the vortex' centre at t = .1", centre_rotation,
+                  {m: lambda n: 0.05 * (64 / n)**2 for m in ("fast", "classic")},
+                  "mean of four cells: h^2/4 times the curvature of B there, (2 k^2 u t)^2 ~ 30", order={"fast": 1.9}),),
+         lambda run: ((run.centres(0), run.snapshots[-1]["left_cauchy_green_xx"][0, run.cells[1] // 4]),
+                      ([0.25], [1])), ("x", "B_xx on y = 1/4")),
+    Case("S5", "A marked disc of fluid in simple shear", "disc_in_shear",
+         lambda n, _: {**square(n, 8), "wall_ymin_velocity": "-0.2,0,0", "wall_ymax_velocity": "0.2,0,0",
+                       "disc_shear_modulus": 0, "time_end": 20, "snapshot_interval": 20, **WHOLE},
+         every((64, 128), solvers=("acm",)), every((64,), methods=("fast",), solvers=("acm",)),
+         (Measure("Taylor deformation after a shear of 1", marked_disc, {"fast": lambda n: .01 * (128 / n)},
+                  "1 % at 16 cells per radius, as S6", exact.sheared_circle(1), True),
+          Measure("largest error of B in the middle", marked_strain, {m: 0.001 for m in ("fast", "classic")},
+                  "couette flow is linear: exact but for the time step")),
+         marked_line, ("t", "Taylor deformation")),
+)

@@ -1,0 +1,74 @@
+"""scripts/validate --quick passes; finished runs are kept, interrupted ones go on; a wrong result fails."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from validation import bodies, fluid, properties, solid  # noqa: E402
+from validation.runner import Runner  # noqa: E402
+
+CASES = fluid.CASES + solid.CASES + bodies.CASES + properties.CASES
+
+
+class Validation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        room = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(room.cleanup)
+        cls.room = pathlib.Path(room.name)
+
+    def validate(self, *arguments):
+        done = subprocess.run([ROOT / "scripts/validate", "--quick", "--work", self.room, *arguments], capture_output=True,
+                              text=True)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_1_quick(self):
+        status, out, errors = self.validate()
+        print(out)
+        self.assertEqual((status, errors), (0, ""), out)
+        page = (self.room / "quick/validation.md").read_text()
+        for name in {case.name for case in CASES}:
+            self.assertIn(f"\n| {name} |", page)
+            self.assertLess((self.room / f"quick/images/validation_{name.lower()}.png").stat().st_size, 40000, name)
+
+    def test_2_finished_runs_are_kept(self):
+        def written():
+            return {path: path.stat().st_mtime_ns for path in self.room.glob("f7*/summary.json")}
+        before = written()
+        self.assertTrue(before)
+        self.assertEqual(self.validate("--only", "F7")[0], 0)
+        self.assertEqual(written(), before)
+
+    def test_3_a_wrong_result_fails(self):
+        series = next(self.room.glob("f7*/series.csv"))
+        lines = series.read_text().splitlines()
+        lines[-1] = lines[-1].replace(lines[-1].split(",")[3], "0.5")  # kinetic energy
+        series.write_text("\n".join(lines) + "\n")
+        status, out, _ = self.validate("--only", "F7")
+        self.assertEqual(status, 1)
+        self.assertRegex(out, r"F7  kinetic energy at t = 1.2 .*FAIL")
+        self.assertRegex(out, r"F7  largest rise of the energy .*FAIL")
+
+    def test_4_an_interrupted_run_goes_on(self):
+        runner = Runner(pathlib.Path(os.environ["EULASTIC"]), self.room)
+        case = next(case for case in CASES if case.name == "S10")
+        setting = case.quick[0]
+        words, directory = runner.command(case, setting, setting.keys[0], None, {"time_end": 0.2})
+        whole = runner.run(words, directory)
+        other = self.room / "interrupted"
+        subprocess.run([*words, "-output_dir", other, "-stop_after_minutes", "1e-9", "-checkpoint_wall_minutes", "2"],
+                       env=runner.environment, stdout=subprocess.DEVNULL, check=True)
+        self.assertTrue(any(other.glob("checkpoint_*.h5")))
+        resumed = runner.run(words, other)
+        self.assertEqual(resumed.summary["state_hash"], whole.summary["state_hash"])
+        self.assertEqual(resumed.series.time[0], 0)
+        self.assertFalse(any(other.glob("checkpoint_*.h5")))
+
+
+if __name__ == "__main__":
+    unittest.main()
