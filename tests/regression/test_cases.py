@@ -105,6 +105,13 @@ class Cases(unittest.TestCase):
     def test_first_steps_fast(self):
         self.first_steps("fast")
 
+    def test_red_cells_keep_their_volume(self):
+        for solver, largest in (("smac", 1e-10), ("acm", 1e-4)):
+            run = self.run_case("channel_rbc", "-grid_cells", "32,32,32", "-time_end", "120", "-pressure_solver", solver,
+                                ranks=2, name=solver)
+            self.assertGreater(numpy.linalg.norm(run.bodies.centroid[-1] - run.bodies.centroid[0], axis=1).max(), 0.3)
+            self.assertLess(run.series.volume_drift.max(), largest, solver)
+
     def test_shear_wave_decays_as_it_must(self):
         run = self.run_case("shear_wave", "-time_end", "0.5", name="half")
         amplitude = 2 * run.profile["y"].velocity_x[-64:] @ numpy.sin(2 * numpy.pi * run.profile["y"].y[-64:]) / 64

@@ -110,7 +110,7 @@ class Docs(unittest.TestCase):
 
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():
-            for name in set(re.findall(r"\bscripts/[a-z_.]+[a-z_]", page.read_text())):
+            for name in set(re.findall(r"\bscripts/[a-z0-9_.]+[a-z0-9_]", page.read_text())):
                 self.assertTrue((ROOT / name).exists(), f"{page.name}: {name}")
 
     def test_options_that_are_mentioned_exist(self):

@@ -2,6 +2,7 @@
 small real run that is reused."""
 import importlib.machinery
 import importlib.util
+import os
 import pathlib
 import shutil
 import subprocess
@@ -50,7 +51,8 @@ class Shell(WithFolder):
             self.assertEqual(start("bash", "-n", path).returncode, 0, path)
 
     def test_help_from_anywhere(self):
-        for script in ("install", "build", "test", "quickstart", "run", "plot", "render", "compare_pressure_solvers"):
+        for script in ("install", "build", "test", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
+                       "paper_figure2"):
             done = start(SCRIPTS / script, "--help", cwd=self.folder)
             self.assertEqual(done.returncode, 0, script)
             self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
@@ -209,6 +211,47 @@ class Pictures(WithFolder):
 
 
 class RealRun(WithFolder):
+    def test_half_a_run_goes_on_from_its_checkpoint(self):
+        command = (SCRIPTS / "run", ROOT / "options/disc_in_channel.opts", self.folder, "-grid_cells", "16,16,1",
+                   "-time_end", "20", "-series_interval", "2", "-checkpoint_interval", "7")
+        self.assertEqual(start(*command).returncode, 0)
+        whole = Run(self.folder)
+        (self.folder / "request.txt").rename(self.folder / "unfinished.txt")  # as if it had been killed
+        (self.folder / "summary.json").unlink()
+        again = start(*command)
+        self.assertIn("goes on from its checkpoint", again.stdout)
+        self.assertTrue((self.folder / "request.txt").exists())
+        half = Run(self.folder)
+        self.assertEqual(half.summary["state_hash"], whole.summary["state_hash"])
+        numpy.testing.assert_array_equal(half.series.kinetic_energy, whole.series.kinetic_energy)
+        (self.folder / "request.txt").rename(self.folder / "unfinished.txt")
+        other = start(*command, "-fluid_viscosity", "2")  # another run: from its beginning
+        self.assertEqual(other.returncode, 0, other.stderr)
+        self.assertNotIn("goes on", other.stdout)
+        self.assertNotEqual(Run(self.folder).summary["state_hash"], whole.summary["state_hash"])
+
+    def test_figure_of_the_paper(self):
+        command = SCRIPTS / "paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10
+        done = start(*command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        runs = [Run(self.folder / solver) for solver in ("smac", "acm")]
+        self.assertEqual([run.options["pressure_solver"] for run in runs], ["smac", "acm"])
+        times = [snapshot.time for snapshot in runs[0].snapshots]
+        self.assertEqual((times[0], times[-1]), (0, 10))
+        picture = matplotlib.image.imread(self.folder / "paper_figure2.png")[..., :3]
+        height, width = picture.shape[0] // 2, picture.shape[1] // 4
+        for row in range(2):
+            for column in range(3):
+                panel = picture[row * height:(row + 1) * height, column * width:(column + 1) * width]
+                self.assertGreater((numpy.ptp(panel, axis=2) > 0.3).sum(), 1000, (row, column))  # colours
+        last = (self.folder / "paper_figure2.txt").read_text().splitlines()[4].split()
+        self.assertEqual(float(last[0]), 10)
+        ways = numpy.linalg.norm(runs[0].bodies.centroid[-1] - runs[0].bodies.centroid[0], axis=1)
+        self.assertAlmostEqual(float(last[1]), ways.mean(), delta=1e-4)
+        self.assertLess(float(last[3]), 1e-3 * ways.mean())
+        again = start(*command)
+        self.assertEqual(again.stdout.count("holds this run already"), 2 if os.environ.get("DISPLAY") else 4)
+
     def test_a_finished_run_is_used_again(self):
         case = self.folder / "case.opts"
         case.write_text("# a disc in a periodic box\n-grid_cells 16,16,1\n-grid_length 1,1,1\n-fluid_viscosity 0.1\n"
