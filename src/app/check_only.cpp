@@ -64,8 +64,9 @@ public:
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const SpeciesSpec &spec = config_.species[s];
-      if (spec.shape == Shape::state) {
-        report.line("species " + spec.name, "from %s", config_.initial_state.c_str());
+      if (spec.shape == Shape::voxels || spec.shape == Shape::state) {
+        const std::string &file = spec.shape == Shape::state ? config_.initial_state : spec.voxels.path;
+        report.line("species " + spec.name, "from %s", file.c_str());
         continue;
       }
       const double count = double(config_.places[s].size()), volume = volume_in_box(spec, config_.grid);

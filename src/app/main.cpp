@@ -1,6 +1,7 @@
 // eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
 #include "app/check_only.hpp"
 #include "app/run.hpp"
+#include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "io/hdf5_file.hpp"
 
@@ -28,6 +29,7 @@ int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
+  if (parsed.error.empty() && parsed.config.check_only) parsed.error = why_not_voxels(parsed.config);
   if (!parsed.error.empty()) {
     print_error(parsed.error);
     return exit_usage;

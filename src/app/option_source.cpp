@@ -48,7 +48,7 @@ std::string read_words_as_entries(const std::vector<std::string> &words, const s
                                   std::vector<Entry> *entries, std::string *options_file) {
   for (std::size_t w = 0; w < words.size(); ++w) {
     if (is_name(words[w])) {
-      Entry entry{words[w].substr(1), {}, where};
+      Entry entry{words[w].substr(1), {}, where, {}};
       if (w + 1 < words.size() && takes(entry.name, words[w + 1])) entry.value = words[++w];
       entries->push_back(entry);
     } else if (options_file && options_file->empty() && !words[w].empty()) {
@@ -103,6 +103,7 @@ std::string read_file(const std::string &path, int depth, std::vector<Source> *s
     const std::string beside = (std::filesystem::path(path).parent_path() / brought_in).string();
     if (const std::string wrong = read_file(beside, depth + 1, sources); !wrong.empty()) return wrong + where;
   }
+  for (Entry &entry : entries) entry.options_file = path;
   sources->push_back(std::move(entries));
   return {};
 }
@@ -111,6 +112,19 @@ std::string read_file(const std::string &path, int depth, std::vector<Source> *s
 
 std::string read_options_file(const std::string &path, std::vector<Source> *sources) {
   return read_file(path, 0, sources);
+}
+
+std::string find_input(const Entry &entry) {
+  namespace fs = std::filesystem;
+  const auto is_there = [](const fs::path &place) {
+    std::error_code ignored;
+    const std::string text = place.string();
+    return fs::exists(place, ignored) || fs::exists(text.substr(0, text.rfind(':')), ignored);
+  };
+  const fs::path path = entry.value;
+  if (entry.options_file.empty() || path.is_absolute() || is_there(path)) return entry.value;
+  const fs::path beside = fs::path(entry.options_file).parent_path() / path;
+  return is_there(beside) ? beside.string() : entry.value;
 }
 
 }  // namespace eulastic

@@ -69,7 +69,8 @@ void add_flow(Rows &rows, Config &config) {
   };
   rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
   rows.path("initial_state", config.initial_state,
-            "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)");
+            "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)")
+      .is_input = true;
 }
 
 void add_bodies(Rows &rows, Config &config) {

@@ -20,6 +20,7 @@ struct Option {
   bool bare = false;     ///< may stand without a value
   bool required = false;
   bool may_change = false;   ///< at a restart
+  bool is_input = false;     ///< a file to read: if it is not there, it is looked for beside the options file
   std::string alias_of;      ///< another way to give that option
   std::string default_note;  ///< what happens when it is not given, if the initial value does not say it
 

@@ -92,7 +92,9 @@ public:
         return refuse(option.alias_of.empty() ? "given twice" : "given twice, also as -" + name);
       if (entry.value.empty() && !option.bare) return refuse("a value is missing");
       if (!option.read) return refuse("out of place");
-      const std::string wrong = option.read(entry.value.empty() ? "true" : entry.value);
+      const std::string wrong = option.read(entry.value.empty() ? "true"
+                                            : option.is_input   ? find_input(entry)
+                                                                : entry.value);
       if (!wrong.empty()) return refuse(wrong);
       where_[name] = entry.where;
     }
@@ -125,7 +127,7 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   if (const Entry *method = last_given(sources, "method"))
     (void)read_method(method->value, config);  // what is wrong with it is reported later
   if (const Entry *state = last_given(sources, "initial_state")) {
-    config->initial_state = state->value;
+    config->initial_state = find_input(*state);
     for (SpeciesSpec &spec : config->species) spec.shape = Shape::state;
   }
   std::vector<Option> table = option_table(*config);

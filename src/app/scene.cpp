@@ -1,6 +1,7 @@
 #include "app/scene.hpp"
 
 #include "app/initial_state.hpp"
+#include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "bodies/fill_phase.hpp"
 #include "io/fail_together.hpp"
@@ -32,6 +33,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     std::vector<BodyPlace> places = config.places[s];
     Phase phase;
     PetscCall(fill_phase(grid, species, places, next_label, &phase));
+    if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &places));
     PetscCall(file.read_phase(species, next_label, &phase, &places));
     next_label += static_cast<int>(places.size());
     state.phases.push_back(std::move(phase));

@@ -1,9 +1,12 @@
 #include "app/species_options.hpp"
 
+#include "app/voxel_rows.hpp"
+
 namespace eulastic {
 namespace {
 
-const Names shape_names{"sphere", "biconcave", "ellipsoid", "cylinder", "slab", "tube", "constricted_tube", "state"};
+const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
+                        "tube",   "constricted_tube", "voxels",    "state"};
 const Names placement_names{"one", "list", "lattice", "random"};
 
 void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
@@ -11,7 +14,8 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
     rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
   };
   rows.choice("shape", spec.shape, shape_names,
-              "shape; tubes: all outside of a lumen; in 2-D its cut at z = 0; state: as in -initial_state, then the "
+              "shape; tubes: all outside of a lumen; voxels: from a file; in 2-D its cut at z = 0; state: as in "
+              "-initial_state, then the "
               "default")
       .required = !from_state;
   rows.real("radius", spec.radius, positive, "length", "radius, of tubes that of the lumen").required = true;
@@ -36,6 +40,9 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
   for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab, Shape::tube, Shape::constricted_tube});
   rows.real("interval", spec.interval, any_number, "length", "low and high side of the slab").required = true;
   for_shapes(1, {Shape::slab});
+  const std::size_t voxels = rows.rows.size();
+  add_voxel_rows(rows, spec.voxels);
+  for_shapes(rows.rows.size() - voxels, {Shape::voxels});
 }
 
 // 3 integers for a lattice, 1 for bodies at random: read before it is known which.
@@ -79,11 +86,12 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   Option &centre =
       rows.real("centre", spec.centre, any_number, "length", "centre of the body, of the lumen, of its throat");
   centre.default_note = "centre of the box";
-  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab and state";
+  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab, voxels and state";
   centre.applies = [&spec] {
-    return spec.placement == Placement::one && spec.shape != Shape::slab && spec.shape != Shape::state;
+    return spec.placement == Placement::one && spec.shape != Shape::slab && spec.shape < Shape::voxels;
   };
-  rows.path("positions", spec.positions_file, "CSV file with the bodies").required = true;
+  Option &positions = rows.path("positions", spec.positions_file, "CSV file with the bodies");
+  positions.required = positions.is_input = true;
   for_placement(1, {Placement::list});
   add_count(rows, spec);
   for_placement(1, {Placement::lattice, Placement::random});
@@ -116,6 +124,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
       .required = true;
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
+  add_attached_row(rows, spec);
   add_placement(rows, spec);
   rows.prefix.clear();
 }

@@ -81,8 +81,9 @@ std::string check_flow(const Config &config) {
 std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (spec.shape == Shape::state && config.initial_state.empty())
     return "-" + spec.name + "_shape: state needs -initial_state";
-  if (spec.shape == Shape::state && spec.placement != Placement::one)
-    return "-" + spec.name + "_placement: has no meaning with -" + spec.name + "_shape state; accepted: one";
+  if ((spec.shape == Shape::voxels || spec.shape == Shape::state) && spec.placement != Placement::one)
+    return "-" + spec.name + "_placement: has no meaning with -" + spec.name + "_shape " +
+           (spec.shape == Shape::state ? "state" : "voxels") + "; accepted: one";
   if (spec.shape == Shape::slab) {
     const auto [low, high] = spec.interval;
     if (!(low < high)) return "-" + spec.name + "_interval: the low side must be below the high side";

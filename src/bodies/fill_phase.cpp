@@ -75,7 +75,7 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
   const auto &components = tensor_components(grid.dimension());
   phase->species = spec.name;
   phase->material.shear_modulus = spec.shear_modulus;
-  phase->material.attached = is_attached(spec.shape);
+  phase->material.attached = spec.attached.value_or(is_attached(spec.shape));
   phase->fraction = FieldBlock(grid, 1);
   phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
   phase->label = FieldBlock(grid, 1);

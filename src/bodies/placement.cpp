@@ -131,7 +131,7 @@ std::string why_not(const SpeciesSpec &spec, const Surface &surface, const GridS
 std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, std::vector<BodyPlace> *places) {
   const bool flat = grid.cells[2] == 1;
   places->clear();
-  if (spec.shape == Shape::state) return {};  // its bodies come with the fields
+  if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files
   std::string reason = why_no_shape(spec, flat ? 2 : 3);
   if (!reason.empty()) return reason;
   Real3 middle{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2};

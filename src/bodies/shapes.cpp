@@ -126,6 +126,7 @@ double shape_volume(const SpeciesSpec &spec, int dimension) {
       return spec.interval[1] - spec.interval[0];
     case Shape::tube:
     case Shape::constricted_tube:
+    case Shape::voxels:
     case Shape::state:
       return 0;
   }

@@ -4,17 +4,29 @@
 #include "grid/grid.hpp"
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <string>
 
 namespace eulastic {
 
-enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constricted_tube, state };
-// state: from -initial_state
+enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constricted_tube, voxels, state };
+// voxels: from a file; state: from -initial_state
 
 /// A wall: infinite, attached to the sides of the box, hardly moving.
 constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Shape::constricted_tube; }
+/// Unless it is said.
 constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
 enum class Placement { one, list, lattice, random };
+
+/// One body from a file: a volume of voxels, or a closed surface.
+struct VoxelSpec {
+  static constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+  std::string path;                                ///< FILE or FILE:DATASET
+  Real3 spacing{not_given, not_given, not_given};  ///< of voxels; the unit of length of a surface
+  Real3 origin{not_given, not_given, not_given};   ///< low corner of the first voxel; where (0,0,0) of a surface is
+  bool invert = false;                             ///< the outside is solid
+};
 
 struct SpeciesSpec {
   std::string name;
@@ -25,8 +37,10 @@ struct SpeciesSpec {
   Real3 semi_axes{};                 ///< ellipsoid
   int axis = 1;                      ///< symmetry axis of biconcave, cylinder, tubes; normal of slab: 0, 1, 2
   std::array<double, 2> interval{};  ///< slab
-  double shear_modulus = 0;          ///< pressure units
-  Real3 initial_stretch{1, 1, 1};    ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
+  VoxelSpec voxels;
+  double shear_modulus = 0;        ///< pressure units
+  std::optional<bool> attached;    ///< default by shape: is_attached()
+  Real3 initial_stretch{1, 1, 1};  ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
   Placement placement = Placement::one;
   Real3 centre{};
   bool centre_given = false;  ///< default: box centre

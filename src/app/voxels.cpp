@@ -1,0 +1,127 @@
+#include "app/voxels.hpp"
+
+#include "base/events.hpp"
+#include "bodies/closed_surface.hpp"
+#include "bodies/fill_phase.hpp"
+#include "bodies/resample.hpp"
+#include "io/fail_together.hpp"
+#include "io/stl_file.hpp"
+#include "io/volume_file.hpp"
+
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+class VoxelBody {
+public:
+  std::string open(const SpeciesSpec &spec, const GridSpec &grid) {
+    const VoxelSpec &voxels = spec.voxels;
+    VolumeFormat format;
+    std::string file, dataset, wrong = find_volume(voxels.path, &format, &file, &dataset);
+    if (!wrong.empty()) return wrong;
+    if (format == VolumeFormat::stl) return open_surface(voxels, file, grid);
+    wrong = format == VolumeFormat::hdf5 ? open_hdf5_volume(file, dataset, &volume_) : open_nrrd_volume(file, &volume_);
+    if (!wrong.empty()) return wrong;
+    return place_volume(voxels, file, grid);
+  }
+
+  std::string fill(const Grid &grid, View fraction) {
+    if (!volume_) return fill_surface(grid, triangles_, fraction);
+    const auto read = [this](const Int3 &begin, const Int3 &end, double *values) {
+      return volume_->read(begin, end, values);
+    };
+    return resample(grid, box_, read, fraction);
+  }
+
+private:
+  std::string open_surface(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
+    if (std::string wrong = read_stl(file, &triangles_); !wrong.empty()) return wrong;
+    if (const std::string wrong = why_not_closed(triangles_); !wrong.empty()) return file + ": " + wrong;
+    Real3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (Triangle &triangle : triangles_)
+      for (Real3 &corner : triangle)
+        for (int d = 0; d < 3; ++d) {
+          const double unit = std::isnan(voxels.spacing[d]) ? 1 : voxels.spacing[d];
+          corner[d] = (std::isnan(voxels.origin[d]) ? 0 : voxels.origin[d]) + unit * corner[d];
+          low[d] = std::min(low[d], corner[d]);
+          high[d] = std::max(high[d], corner[d]);
+        }
+    if (enclosed_volume(triangles_) == 0) return file + ": the surface encloses no volume";
+    return why_outside(file, grid, low, high);
+  }
+
+  // What options say comes first, then the file, then: the volume fills the box. A plane fills it in z.
+  std::string place_volume(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
+    box_.count = volume_->count();
+    const bool flat = grid.cells[2] == 1;
+    if (flat && box_.count[2] != 1)
+      return file + ": " + std::to_string(box_.count[2]) + " voxels in z; accepted in 2-D (one cell in z): 1";
+    Real3 high{};
+    for (int d = 0; d < 3; ++d) {
+      double spacing = voxels.spacing[d], corner = voxels.origin[d];
+      if (std::isnan(spacing)) spacing = volume_->spacing()[d];
+      if (std::isnan(corner)) corner = volume_->corner()[d];
+      const bool fills = flat && d == 2;
+      box_.spacing[d] = fills || std::isnan(spacing) ? grid.length[d] / box_.count[d] : spacing;
+      box_.corner[d] = fills || std::isnan(corner) ? 0 : corner;
+      high[d] = box_.corner[d] + box_.count[d] * box_.spacing[d];
+    }
+    return why_outside(file, grid, box_.corner, high);
+  }
+
+  static std::string why_outside(const std::string &file, const GridSpec &grid, const Real3 &low, const Real3 &high) {
+    for (int d = 0; d < 3; ++d)
+      if (!(low[d] < grid.length[d] && high[d] > 0)) {
+        char text[128];
+        std::snprintf(text, sizeof text, ": it is outside the box: %c = %.6g ... %.6g, the box is 0 ... %.6g", "xyz"[d],
+                      low[d], high[d], grid.length[d]);
+        return file + text;
+      }
+    return {};
+  }
+
+  std::unique_ptr<VolumeFile> volume_;  // none: a surface
+  VoxelBox box_;
+  std::vector<Triangle> triangles_;
+};
+
+std::string about(const SpeciesSpec &spec, const std::string &wrong) {
+  return wrong.empty() ? wrong : "-" + spec.name + "_voxels: " + wrong;
+}
+
+}  // namespace
+
+std::string why_not_voxels(const Config &config) {
+  for (const SpeciesSpec &spec : config.species)
+    if (spec.shape == Shape::voxels)
+      if (std::string wrong = about(spec, VoxelBody().open(spec, config.grid)); !wrong.empty()) return wrong;
+  return {};
+}
+
+PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase,
+                           std::vector<BodyPlace> *places) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  const View fraction = phase->fraction[0], name = phase->label[0];
+  VoxelBody body;
+  PetscCall(fail_together(grid.comm(), about(spec, body.open(spec, grid.spec()))));
+  PetscCall(fail_together(grid.comm(), about(spec, body.fill(grid, fraction))));
+  int any = 0;
+  for (const Segment &row : grid.rows())
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      double &phi = fraction(i, row.j, row.k);
+      if (spec.voxels.invert) phi = 1 - phi;
+      name(i, row.j, row.k) = phi > 0 ? label : 0;
+      any |= phi > 0;
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));
+  PetscCall(fail_together(grid.comm(), about(spec, any ? "" : spec.voxels.path + " has nothing solid in the box")));
+  stretch_phase(grid, spec, phase);
+  Real3 middle;
+  for (int d = 0; d < 3; ++d) middle[d] = grid.spec().length[d] / 2;
+  places->assign(1, {middle, {}});
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

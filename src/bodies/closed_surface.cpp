@@ -1,0 +1,192 @@
+#include "bodies/closed_surface.hpp"
+
+#include "bodies/resample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace eulastic {
+namespace {
+
+// A triangle cut six times; even with round-off a cut makes at most 3/2 as many corners.
+struct Polygon {
+  int n = 0;
+  std::array<Real3, 36> corner;
+};
+
+// The part with x_d >= plane (side = 1) or <= plane (side = -1). Sutherland & Hodgman.
+Polygon cut(const Polygon &polygon, int d, double plane, int side) noexcept {
+  Polygon result;
+  for (int a = 0; a < polygon.n; ++a) {
+    const Real3 &p = polygon.corner[a], &q = polygon.corner[a + 1 < polygon.n ? a + 1 : 0];
+    const bool p_in = side * (p[d] - plane) >= 0, q_in = side * (q[d] - plane) >= 0;
+    if (p_in) result.corner[result.n++] = p;
+    if (p_in == q_in) continue;
+    // From the low end: the neighbouring triangle has the same point on this edge.
+    const Real3 &low = p[d] < q[d] ? p : q, &high = p[d] < q[d] ? q : p;
+    const double t = (plane - low[d]) / (high[d] - low[d]);
+    Real3 &point = result.corner[result.n++];
+    for (int e = 0; e < 3; ++e) point[e] = low[e] + t * (high[e] - low[e]);
+    point[d] = plane;
+  }
+  return result;
+}
+
+double low_end(const Polygon &polygon, int d) noexcept {
+  double x = polygon.corner[0][d];
+  for (int a = 1; a < polygon.n; ++a) x = std::min(x, polygon.corner[a][d]);
+  return x;
+}
+
+double high_end(const Polygon &polygon, int d) noexcept {
+  double x = polygon.corner[0][d];
+  for (int a = 1; a < polygon.n; ++a) x = std::max(x, polygon.corner[a][d]);
+  return x;
+}
+
+// Pieces between the cell faces c and c + 1, begin <= c < end. Each is cut out of the whole, so that its bits do not
+// depend on `begin`.
+template <class Visit>
+void for_strips(const Polygon &polygon, int d, int begin, int end, Visit visit) {
+  if (polygon.n < 3) return;
+  const double first = std::floor(low_end(polygon, d)), last = std::max(std::ceil(high_end(polygon, d)), first + 1);
+  const int from = static_cast<int>(std::clamp(first, double(begin), double(end)));
+  const int to = static_cast<int>(std::clamp(last, double(begin), double(end)));
+  for (int c = from; c < to; ++c) {
+    if (first == c && last == c + 1.0)
+      visit(c, polygon);
+    else if (const Polygon piece = cut(cut(polygon, d, c, 1), d, c + 1.0, -1); piece.n >= 3)
+      visit(c, piece);
+  }
+}
+
+struct Projection {
+  double area = 0;    // along x, positive where the normal is
+  double moment = 0;  // integral of x over it
+};
+
+Projection project(const Polygon &polygon, double x) noexcept {
+  Projection sum;
+  const Real3 &o = polygon.corner[0];
+  for (int a = 1; a + 1 < polygon.n; ++a) {
+    const Real3 &p = polygon.corner[a], &q = polygon.corner[a + 1];
+    const double area = ((p[1] - o[1]) * (q[2] - o[2]) - (p[2] - o[2]) * (q[1] - o[1])) / 2;
+    sum.area += area;
+    sum.moment += area * ((o[0] - x) + (p[0] - x) + (q[0] - x)) / 3;
+  }
+  return sum;
+}
+
+std::uint64_t fixed(double volume) { return static_cast<std::uint64_t>(std::llround(std::ldexp(volume, 50))); }
+
+// Differences in x of the volumes, one cell more than owned; unsigned, so that a mess of triangles may wrap around.
+class Volumes {
+public:
+  explicit Volumes(const Grid &grid)
+      : grid_(grid), begin_(grid.layout().begin), n_(grid.owned()), sums_((n_[0] + 1) * std::size_t(n_[1]) * n_[2]) {}
+
+  void add(const Polygon &triangle, int sign) {
+    for_strips(triangle, 2, begin_[2], begin_[2] + n_[2], [&](int k, const Polygon &in_z) {
+      for_strips(in_z, 1, begin_[1], begin_[1] + n_[1], [&](int j, const Polygon &column) {
+        const double low = low_end(column, 0);
+        if (low >= begin_[0] + n_[0]) return;
+        if (low < 0)  // before the box: all cells are behind it
+          if (const Polygon before = cut(column, 0, 0, -1); before.n >= 3)
+            at(0, j, k) -= sign * fixed(project(before, 0).area);
+        for_strips(column, 0, 0, begin_[0] + n_[0], [&](int i, const Polygon &piece) {
+          const Projection p = project(piece, i + 1.0);
+          const std::uint64_t area = fixed(p.area), volume = fixed(-p.moment);
+          at(i, j, k) -= sign * volume;
+          at(i + 1, j, k) -= sign * (area - volume);
+        });
+      });
+    });
+  }
+
+  double next(int i, int j, int k, std::uint64_t *sum) {
+    *sum += at(begin_[0] + i, begin_[1] + j, begin_[2] + k);
+    return std::ldexp(double(static_cast<std::int64_t>(*sum)), -50);
+  }
+
+private:
+  // Cells on the low side of the owned ones are only summed up.
+  std::uint64_t &at(int i, int j, int k) {
+    const std::size_t row = std::size_t(k - begin_[2]) * n_[1] + (j - begin_[1]);
+    return sums_[row * (n_[0] + 1) + std::max(i - begin_[0], 0)];
+  }
+
+  const Grid &grid_;
+  Int3 begin_, n_;
+  std::vector<std::uint64_t> sums_;
+};
+
+}  // namespace
+
+std::string why_not_closed(const std::vector<Triangle> &triangles) {
+  using Edge = std::array<std::uint32_t, 2>;
+  std::vector<std::uint32_t> order(3 * triangles.size()), name(order.size());
+  const auto corner = [&](std::uint32_t n) -> const Real3 & { return triangles[n / 3][n % 3]; };
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return corner(a) < corner(b); });
+  for (std::size_t n = 0; n < order.size(); ++n)
+    name[order[n]] = n > 0 && corner(order[n]) == corner(order[n - 1]) ? name[order[n - 1]] : std::uint32_t(n);
+  std::vector<Edge> forward, backward;  // from the lower name to the higher one, and those from the higher
+  for (std::uint32_t n = 0; n < name.size(); ++n) {
+    const std::uint32_t a = name[n], b = name[n % 3 == 2 ? n - 2 : n + 1];
+    if (a < b) forward.push_back({a, b});
+    if (a > b) backward.push_back({b, a});
+  }
+  std::sort(forward.begin(), forward.end());
+  std::sort(backward.begin(), backward.end());
+  std::vector<Edge> alone;
+  std::set_symmetric_difference(forward.begin(), forward.end(), backward.begin(), backward.end(),
+                                std::back_inserter(alone));
+  const std::size_t all = forward.size() + backward.size();
+  if (alone.empty()) return {};
+  return "the surface is open or inconsistent: " + std::to_string(alone.size()) + " of its " + std::to_string(all) +
+         " sides of triangles have no partner; accepted: every edge shared by two triangles in opposite directions";
+}
+
+double enclosed_volume(const std::vector<Triangle> &triangles) {
+  double sum = 0;
+  const Real3 o = triangles.empty() ? Real3{} : triangles[0][0];
+  for (const Triangle &t : triangles) {
+    Triangle r;
+    for (int a = 0; a < 3; ++a)
+      for (int d = 0; d < 3; ++d) r[a][d] = t[a][d] - o[d];
+    sum += r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1]) + r[0][1] * (r[1][2] * r[2][0] - r[1][0] * r[2][2]) +
+           r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
+  }
+  return sum / 6;
+}
+
+std::string fill_surface(const Grid &grid, const std::vector<Triangle> &triangles, View fraction) {
+  Real3 h;
+  for (int d = 0; d < 3; ++d) h[d] = grid.spec().length[d] / grid.cells()[d];
+  const int sign = enclosed_volume(triangles) < 0 ? -1 : 1;
+  Volumes volumes(grid);
+  for (const Triangle &triangle : triangles) {
+    Polygon polygon;
+    polygon.n = 3;
+    for (int a = 0; a < 3; ++a)
+      for (int d = 0; d < 3; ++d) {
+        polygon.corner[a][d] = triangle[a][d] / h[d];
+        if (!(std::abs(polygon.corner[a][d]) < 1e9)) return "a corner is more than 1e9 cells away from the box";
+      }
+    volumes.add(polygon, sign);
+  }
+  for (const Segment &row : grid.rows()) {
+    std::uint64_t sum = 0;
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const double phi = volumes.next(i, row.j, row.k, &sum);
+      if (!(phi > -1e-9 && phi < 1 + 1e-9))
+        return "the surface crosses itself or has parts with opposite normals; accepted: no point inside it twice";
+      fraction(i, row.j, row.k) = clean_fraction(phi);
+    }
+  }
+  return {};
+}
+
+}  // namespace eulastic

@@ -1,0 +1,16 @@
+// Voxels become cells, conservatively: phi of a cell is the mean of the voxels over it, by the exact overlap of boxes.
+#pragma once
+
+#include "grid/voxels.hpp"
+
+namespace eulastic {
+
+/// Sets `fraction` of the owned cells; 0 where there are no voxels. The volume is kept to round-off, except for what
+/// lies outside the box. Only voxels that overlap the owned cells are read, at most 2^18 at a time. The same bits on
+/// any ranks. Returns what is wrong with the voxels, or nothing.
+std::string resample(const Grid &grid, const VoxelBox &box, const ReadVoxels &read, View fraction);
+
+/// Round-off next to 0 and 1 removed: a cell that is full is exactly full.
+double clean_fraction(double phi) noexcept;
+
+}  // namespace eulastic

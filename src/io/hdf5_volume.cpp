@@ -1,0 +1,161 @@
+// HDF5 datasets of voxels. Every rank opens the file on its own and reads the boxes it needs.
+#include "io/hdf5_handle.hpp"
+#include "io/volume_file.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+constexpr std::size_t chunk_cache = std::size_t{128} << 20;  // a layer of chunks is unpacked once
+constexpr double best_compression = 2000;                    // beyond deflate's 1032: such a header lies
+
+class Hdf5Volume : public VolumeFile {
+public:
+  std::string open(const std::string &file, const std::string &dataset) {
+    file_ = file;
+    (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
+    const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+    (void)H5Pset_cache(access.get(), 0, 10007, chunk_cache, 1.0);
+    handle_ = Hdf5FileHandle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()));
+    if (!handle_) return file + " is damaged or truncated: HDF5 cannot open it";
+    std::string name = dataset;
+    if (std::string wrong = choose(&name); !wrong.empty()) return wrong;
+    dataset_ = Hdf5Dataset(H5Dopen2(handle_.get(), name.c_str(), H5P_DEFAULT));
+    if (!dataset_) return file + ": there is no dataset " + name + "; accepted: " + list();
+    if (std::string wrong = read_type(name); !wrong.empty()) return wrong;
+    if (std::string wrong = read_shape(name); !wrong.empty()) return wrong;
+    std::vector<double> values;
+    if (std::string wrong = read_attribute("spacing", &values); !wrong.empty()) return wrong;
+    if (std::string wrong = set_spacing(values); !wrong.empty()) return wrong;
+    if (std::string wrong = read_attribute("origin", &values); !wrong.empty()) return wrong;
+    std::copy(values.begin(), values.end(), corner_.begin());
+    return {};
+  }
+
+protected:
+  std::string read_values(const Int3 &begin, const Int3 &end, double *values) override {
+    const hsize_t first[3] = {hsize_t(begin[2]), hsize_t(begin[1]), hsize_t(begin[0])};
+    const hsize_t count[3] = {hsize_t(end[2] - begin[2]), hsize_t(end[1] - begin[1]), hsize_t(end[0] - begin[0])};
+    const int skip = 3 - rank_;  // a plane has no z
+    const Hdf5Space space(H5Dget_space(dataset_.get())), memory(H5Screate_simple(rank_, count + skip, nullptr));
+    const std::size_t n = count[0] * count[1] * count[2];
+    if (mask_) bytes_.resize(n * size_);
+    const bool read =
+        H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first + skip, nullptr, count + skip, nullptr) >= 0 &&
+        H5Dread(dataset_.get(), mask_ ? type_.get() : H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
+                mask_ ? static_cast<void *>(bytes_.data()) : values) >= 0;
+    if (!read) return "its values cannot be read, it is truncated or damaged";
+    for (std::size_t v = 0; mask_ && v < n; ++v) {
+      const auto voxel = bytes_.begin() + static_cast<std::ptrdiff_t>(v * size_);
+      values[v] =
+          std::any_of(voxel, voxel + static_cast<std::ptrdiff_t>(size_), [](unsigned char b) { return b != 0; });
+    }
+    return {};
+  }
+
+private:
+  /// Names at the root of the file.
+  std::string list() const {
+    std::string names;
+    H5G_info_t info{};
+    (void)H5Gget_info(handle_.get(), &info);
+    for (hsize_t n = 0; n < std::min<hsize_t>(info.nlinks, 20); ++n) {
+      char name[256] = "";
+      (void)H5Lget_name_by_idx(handle_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, sizeof name, H5P_DEFAULT);
+      names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names.empty() ? "a file with datasets" : names;
+  }
+
+  // Without a name: solid_fraction, as our own files have it, or the only one.
+  std::string choose(std::string *name) const {
+    if (!name->empty()) return {};
+    *name = "solid_fraction";
+    if (H5Lexists(handle_.get(), name->c_str(), H5P_DEFAULT) > 0) return {};
+    const std::string names = list();
+    if (names.find(',') != std::string::npos)
+      return file_ + " has several datasets; accepted: " + file_ + ":DATASET, one of " + names;
+    *name = names;
+    return {};
+  }
+
+  std::string read_type(const std::string &name) {
+    type_ = Hdf5Type(H5Dget_type(dataset_.get()));
+    size_ = H5Tget_size(type_.get());
+    const H5T_class_t kind = H5Tget_class(type_.get());
+    mask_ = kind == H5T_INTEGER || kind == H5T_ENUM || kind == H5T_BITFIELD;  // h5py writes booleans as an enum
+    if ((!mask_ && kind != H5T_FLOAT) || size_ < 1 || size_ > 16)
+      return file_ + ": dataset " + name + " has neither integers, booleans nor floats";
+    return {};
+  }
+
+  std::string read_shape(const std::string &name) {
+    const std::vector<hsize_t> shape = hdf5_shape(dataset_.get());
+    rank_ = static_cast<int>(shape.size());
+    if (rank_ != 2 && rank_ != 3)
+      return file_ + ": dataset " + name + " has " + std::to_string(rank_) +
+             " dimensions; accepted: 3 as (nz, ny, nx), or 2 as (ny, nx)";
+    const Hdf5Property creation(H5Dget_create_plist(dataset_.get()));
+    const bool chunked = H5Pget_layout(creation.get()) == H5D_CHUNKED;
+    // An external dataset would be in another file, a virtual one in many.
+    if (H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL)
+      return file_ + ": dataset " + name + " lies in other files; accepted: datasets in one file";
+    if (chunked && H5Pget_nfilters(creation.get()) > 0 && !filters_are_there(creation.get()))
+      return file_ + ": dataset " + name + " is packed with a filter that this HDF5 has not; accepted: gzip, or none";
+    const double stored = double(H5Dget_storage_size(dataset_.get()));
+    if (stored == 0) return file_ + ": dataset " + name + " has no values";
+    hsize_t chunk[3] = {1, 1, 1};
+    if (chunked) (void)H5Pget_chunk(creation.get(), rank_, chunk);
+    const double chunk_bytes = double(chunk[0]) * double(chunk[1]) * double(chunk[2]) * double(size_);
+    const double most = chunked ? best_compression * stored : stored;
+    if (chunk_bytes > most) return file_ + ": dataset " + name + " has chunks larger than what the file holds";
+    return set_count({shape.rbegin(), shape.rend()}, double(size_), most);
+  }
+
+  static bool filters_are_there(hid_t creation) {
+    for (int f = 0; f < H5Pget_nfilters(creation); ++f) {
+      unsigned flags = 0, config = 0;
+      std::size_t elements = 0;
+      const H5Z_filter_t filter =
+          H5Pget_filter2(creation, static_cast<unsigned>(f), &flags, &elements, nullptr, 0, nullptr, &config);
+      if (filter < 0 || H5Zfilter_avail(filter) <= 0) return false;
+    }
+    return true;
+  }
+
+  // One number for each direction, x first; none if it is not there.
+  std::string read_attribute(const std::string &name, std::vector<double> *values) const {
+    values->clear();
+    if (H5Aexists(dataset_.get(), name.c_str()) <= 0) return {};
+    const Hdf5Attribute attribute(H5Aopen(dataset_.get(), name.c_str(), H5P_DEFAULT));
+    const Hdf5Space space(H5Aget_space(attribute.get()));
+    const Hdf5Type type(H5Aget_type(attribute.get()));
+    const H5T_class_t kind = H5Tget_class(type.get());
+    const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+    values->resize(count == 2 || count == 3 ? static_cast<std::size_t>(count) : 0);
+    const bool fine = (kind == H5T_FLOAT || kind == H5T_INTEGER) && count >= rank_ && count <= 3 &&
+                      H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, values->data()) >= 0 &&
+                      std::all_of(values->begin(), values->end(), [](double v) { return v - v == 0; });
+    return fine ? "" : file_ + ": attribute " + name + " must be " + std::to_string(rank_) + " finite numbers, x first";
+  }
+
+  Hdf5FileHandle handle_;
+  Hdf5Dataset dataset_;
+  Hdf5Type type_;
+  int rank_ = 3;
+  std::size_t size_ = 0;
+  bool mask_ = false;
+  std::vector<unsigned char> bytes_;
+};
+
+}  // namespace
+
+std::string open_hdf5_volume(const std::string &file, const std::string &dataset, std::unique_ptr<VolumeFile> *volume) {
+  auto opened = std::make_unique<Hdf5Volume>();
+  std::string wrong = opened->open(file, dataset);
+  if (wrong.empty()) *volume = std::move(opened);
+  return wrong;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,25 @@
+// The header of an NRRD file (teem.sourceforge.net/nrrd/format.html), as far as its fields change what the data mean.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <cstdint>
+
+namespace eulastic {
+
+struct NrrdHeader {
+  enum class Encoding { raw, gzip, ascii };
+  std::vector<unsigned long long> sizes;  ///< fastest first
+  int bytes = 0;                          ///< of a value
+  bool is_float = false;
+  bool big_endian = false;
+  Encoding encoding = Encoding::raw;
+  std::vector<double> spacing;  ///< empty = not given
+  std::vector<double> corner;   ///< low corner of the first voxel; empty = not given
+  std::int64_t data = 0;        ///< offset of the first value
+};
+
+/// Returns what is wrong, or nothing.
+std::string read_nrrd_header(const std::string &file, NrrdHeader *header);
+
+}  // namespace eulastic

@@ -1,0 +1,11 @@
+// Surfaces of triangles from STL files, binary or ascii.
+#pragma once
+
+#include "grid/voxels.hpp"
+
+namespace eulastic {
+
+/// Reads all of it; normals are ignored, the order of the corners counts. Returns what is wrong, or nothing.
+std::string read_stl(const std::string &file, std::vector<Triangle> *triangles);
+
+}  // namespace eulastic

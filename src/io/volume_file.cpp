@@ -1,0 +1,99 @@
+#include "io/volume_file.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned long long most_voxels = 1 << 20;  // in one direction
+
+bool is_file(const std::string &path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+}  // namespace
+
+const double VolumeFile::not_given = std::numeric_limits<double>::quiet_NaN();
+
+std::string find_volume(const std::string &path, VolumeFormat *format, std::string *file, std::string *dataset) {
+  *file = path;
+  dataset->clear();
+  const std::size_t colon = path.rfind(':');
+  if (!is_file(path) && colon != std::string::npos) {
+    *file = path.substr(0, colon);
+    *dataset = path.substr(colon + 1);
+  }
+  if (!is_file(*file)) return *file + " is not a file";
+  char magic[8] = "";
+  std::ifstream stream(*file, std::ios::binary);
+  stream.read(magic, sizeof magic);
+  if (!stream && stream.gcount() == 0) return *file + " is empty or cannot be read";
+  std::string suffix = fs::path(*file).extension().string();
+  for (char &c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::memcmp(magic, "\x89HDF\r\n\x1a\n", 8) == 0)
+    *format = VolumeFormat::hdf5;
+  else if (std::memcmp(magic, "NRRD000", 7) == 0)
+    *format = VolumeFormat::nrrd;
+  else if (suffix == ".stl")
+    *format = VolumeFormat::stl;
+  else
+    return *file + " is no HDF5, NRRD or .stl file, or its beginning is damaged";
+  if (!dataset->empty() && *format != VolumeFormat::hdf5)
+    return *file + " has no datasets; accepted: FILE:DATASET for HDF5 only";
+  return {};
+}
+
+std::string VolumeFile::set_count(const std::vector<unsigned long long> &slowest_last, double bytes,
+                                  double most_bytes) {
+  count_ = {1, 1, 1};
+  for (std::size_t d = 0; d < slowest_last.size(); ++d) {
+    const unsigned long long n = slowest_last[d];
+    if (n < 1 || n > most_voxels)
+      return file_ + ": " + std::to_string(n) + " voxels in " + "xyz"[d] + "; accepted: 1 ... " +
+             std::to_string(most_voxels);
+    count_[d] = static_cast<int>(n);
+    bytes *= double(n);
+  }
+  if (bytes > most_bytes || bytes > 9e18) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  ": %d x %d x %d voxels do not fit into what the file holds, it is truncated or damaged", count_[0],
+                  count_[1], count_[2]);
+    return file_ + text;
+  }
+  return {};
+}
+
+std::string VolumeFile::set_spacing(const std::vector<double> &spacing) {
+  for (std::size_t d = 0; d < spacing.size(); ++d) {
+    if (!std::isfinite(spacing[d]) || spacing[d] <= 0)
+      return file_ + ": spacing in " + "xyz"[d] + " is not a finite number > 0";
+    spacing_[d] = spacing[d];
+  }
+  return {};
+}
+
+std::string VolumeFile::read(const Int3 &begin, const Int3 &end, double *fractions) {
+  if (std::string wrong = read_values(begin, end, fractions); !wrong.empty()) return file_ + ": " + wrong;
+  const double *value = fractions;
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i, ++value)
+        if (!(*value >= 0 && *value <= 1)) {
+          char text[128];
+          std::snprintf(text, sizeof text, ": voxel [%d, %d, %d] is %.9g; accepted: 0 ... 1, or integers as a mask", k,
+                        j, i, *value);
+          return file_ + text;
+        }
+  return {};
+}
+
+}  // namespace eulastic
