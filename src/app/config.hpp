@@ -68,6 +68,7 @@ struct Config {
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none
   std::vector<SpeciesSpec> species;
+  bool body_series = true;  ///< bodies are named, followed and measured
   std::vector<std::vector<BodyPlace>> places;  ///< of the bodies of every species; by validate()
   Method method = method_preset(MethodKind::fast);
   TimeControl time;

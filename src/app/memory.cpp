@@ -37,7 +37,7 @@ double fields(const Config &config) {
   if (!method.staggered()) sum += tensor;
   if (!thinc) sum += 1;
   if (thinc && !work) sum += 3;
-  sum += phases * (2 + tensor);
+  sum += phases * (1 + config.body_series + tensor);
   return sum;
 }
 

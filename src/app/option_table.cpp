@@ -84,6 +84,8 @@ void add_bodies(Rows &rows, Config &config) {
     for (const SpeciesSpec &spec : config.species) names.push_back(spec.name);
     return join(names, ",");
   };
+  rows.boolean("body_series", config.body_series,
+               "name, follow and measure every body; false: no labels, no bodies.h5, no body in snapshots, and no cost");
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
     add_species_rows(rows, spec, !config.initial_state.empty());

@@ -39,14 +39,15 @@ SnapshotField as_field(const WallStress &wall, Stored precision) {
   return field;
 }
 
-SnapshotSelection selection(const OutputControl &output) {
+SnapshotSelection selection(const Config &config) {
+  const OutputControl &output = config.output;
   const auto wanted = [&](const char *name) { return wants(output, name); };
   SnapshotSelection s;
   s.velocity = wanted("velocity");
   s.pressure = wanted("pressure");
   s.solid_fraction = wanted("solid_fraction");
   s.left_cauchy_green = wanted("left_cauchy_green");
-  s.body = wanted("body");
+  s.body = wanted("body") && config.body_series;
   s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
   return s;
 }
@@ -163,7 +164,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   }
   if (snapshot) {
     PetscCall(solver_->phases_now(&phases));
-    const SnapshotSelection wanted = selection(config_.output);
+    const SnapshotSelection wanted = selection(config_);
     std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
     std::vector<WallStress> walls;
     if (wants(config_.output, "wall_shear_stress"))

@@ -37,7 +37,8 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     PetscCall(file.read_phase(species, next_label, &phase, &places));
     next_label += static_cast<int>(places.size());
     state.phases.push_back(std::move(phase));
-    solver->bodies().add_phase(grid, places);
+    solver->bodies().add_phase(grid, config.body_series ? places : std::vector<BodyPlace>());
+    if (!config.body_series) state.phases.back().label = FieldBlock();
   }
   if (file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
   PetscFunctionReturn(0);

@@ -6,7 +6,7 @@ using namespace eulastic;
 
 namespace {
 
-PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t hash[2]) {
+PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t hash[2], std::uint64_t *flow = nullptr) {
   PetscFunctionBeginUser;
   Grid grid;
   Solver solver;
@@ -21,18 +21,24 @@ PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t ha
     PetscCall(solver.step(1));
   }
   PetscCall(state_hash(grid, solver.state(), &hash[1]));
+  EXPECT_EQ(solver.bodies().bodies() > 0, config.body_series);
+  EXPECT_EQ(bool(solver.state().phases[1].label), config.body_series);
+  for (Phase &phase : solver.state().phases) phase.label = FieldBlock();
+  if (flow) PetscCall(state_hash(grid, solver.state(), flow));
   PetscFunctionReturn(0);
 }
+
+const std::string capillary =
+    "-time_end 1 -grid_cells 40,24,24 -grid_length 42,25,25 -boundary_y wall -boundary_z wall -body_force 1e-3,0,0 "
+    "-species vessel,rbc,plt -vessel_shape tube -vessel_axis x -vessel_diameter 24 -vessel_shear_modulus .05 "
+    "-rbc_shape biconcave -rbc_diameter 8 -rbc_shear_modulus .02 -rbc_placement random -rbc_orientation random "
+    "-rbc_hematocrit 0.15 -plt_shape ellipsoid -plt_semi_axes 2,2,1.6 -plt_shear_modulus .02 -plt_placement random "
+    "-plt_orientation random -plt_count 6 ";
 
 }  // namespace
 
 TEST(Seeding, SameSceneOnAnyRanks) {
-  const ParseResult result = parse_line(
-      "-time_end 1 -grid_cells 40,24,24 -grid_length 42,25,25 -boundary_y wall -boundary_z wall -body_force 1e-3,0,0 "
-      "-species vessel,rbc,plt -vessel_shape tube -vessel_axis x -vessel_diameter 24 -vessel_shear_modulus .05 "
-      "-rbc_shape biconcave -rbc_diameter 8 -rbc_shear_modulus .02 -rbc_placement random -rbc_orientation random "
-      "-rbc_hematocrit 0.15 -plt_shape ellipsoid -plt_semi_axes 2,2,1.6 -plt_shear_modulus .02 -plt_placement random "
-      "-plt_orientation random -plt_count 6");
+  const ParseResult result = parse_line(capillary);
   ASSERT_EQ(result.error, "");
   std::uint64_t alone[2] = {}, together[2] = {};
   ASSERT_EQ(first_steps(PETSC_COMM_SELF, result.config, alone), 0);
@@ -40,4 +46,15 @@ TEST(Seeding, SameSceneOnAnyRanks) {
   EXPECT_EQ(alone[0], together[0]);
   EXPECT_EQ(alone[1], together[1]);
   EXPECT_NE(alone[0], alone[1]);
+}
+
+TEST(BodySeries, OffTheFlowIsTheSame) {
+  std::uint64_t hash[2] = {}, flow[2] = {};
+  for (const bool on : {true, false}) {
+    const ParseResult result = parse_line(capillary + "-body_series " + (on ? "true" : "false"));
+    ASSERT_EQ(result.error, "");
+    ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, hash, &flow[on]), 0);
+    EXPECT_EQ(hash[1] == flow[on], !on) << "labels are part of the state, or are not there";
+  }
+  EXPECT_EQ(flow[0], flow[1]);
 }

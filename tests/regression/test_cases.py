@@ -112,6 +112,13 @@ class Cases(unittest.TestCase):
             self.assertGreater(numpy.linalg.norm(run.bodies.centroid[-1] - run.bodies.centroid[0], axis=1).max(), 0.3)
             self.assertLess(run.series.volume_drift.max(), largest, solver)
 
+    def test_nothing_of_bodies_when_off(self):
+        run = self.run_case("channel_rbc", "-grid_cells", "16,16,16", "-time_steps_max", "2", "-body_series", "false",
+                            name="unnamed")
+        self.assertEqual((run.summary["bodies"], run.summary["volume_drift"], run.bodies), ([], 0, None))
+        self.assertIn("solid_fraction", run.snapshots[-1])
+        self.assertNotIn("body", run.snapshots[-1])
+
     def test_shear_wave_decays_as_it_must(self):
         run = self.run_case("shear_wave", "-time_end", "0.5", name="half")
         amplitude = 2 * run.profile["y"].velocity_x[-64:] @ numpy.sin(2 * numpy.pi * run.profile["y"].y[-64:]) / 64
