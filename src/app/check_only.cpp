@@ -83,10 +83,14 @@ public:
     report.line("velocity scale (estimate)", "%.6g", speed);
     report.line("shear rate (estimate)", "%.6g", scale.shear_rate);
     report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
-    for (const SpeciesSpec &spec : config_.species)
-      if (spec.shear_modulus > 0)
+    for (const SpeciesSpec &spec : config_.species) {
+      const double modulus = spec.material().shear_modulus;
+      if (spec.law == Law::mooney_rivlin)
+        report.line("shear modulus of " + spec.name, "%.6g (at rest: 2 (c1 + c2))", modulus);
+      if (modulus > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
-                    config_.fluid.viscosity * scale.shear_rate / spec.shear_modulus);
+                    config_.fluid.viscosity * scale.shear_rate / modulus);
+    }
   }
 
   void time_step(Report &report, int ranks) const {
@@ -94,8 +98,8 @@ public:
     extremes.speed = flow_scale().speed;
     for (const SpeciesSpec &spec : config_.species) {
       const Real3 &l = spec.initial_stretch;
-      const double stretch = stretch_squared(l[0] * l[0] + l[1] * l[1] + l[2] * l[2], dimension_);
-      extremes.stiffness = std::max(extremes.stiffness, spec.shear_modulus * stretch);
+      const double trace = l[0] * l[0] + l[1] * l[1] + l[2] * l[2];
+      extremes.stiffness = std::max(extremes.stiffness, largest_stiffness(spec.material(), trace, dimension_));
     }
     const TimeStepLimits limits =
         time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, extremes,

@@ -7,6 +7,7 @@ namespace {
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
                         "tube",   "constricted_tube", "voxels",    "state"};
+const Names law_names{"neo_hookean", "mooney_rivlin"};
 const Names placement_names{"one", "list", "lattice", "random"};
 
 void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
@@ -43,6 +44,22 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
   const std::size_t voxels = rows.rows.size();
   add_voxel_rows(rows, spec.voxels);
   for_shapes(rows.rows.size() - voxels, {Shape::voxels});
+}
+
+void add_law(Rows &rows, SpeciesSpec &spec) {
+  const auto for_law = [&](std::size_t count, Law wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, {wanted});
+  };
+  rows.choice("law", spec.law, law_names,
+              "constitutive law: sigma = G B, or 2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B, without the trace");
+  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
+      .required = true;
+  for_law(1, Law::neo_hookean);
+  rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
+      .required = true;
+  rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
+  rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
+  for_law(3, Law::mooney_rivlin);
 }
 
 // 3 integers for a lattice, 1 for bodies at random: read before it is known which.
@@ -120,8 +137,7 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
 void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.prefix = spec.name + "_";
   add_shape(rows, spec, from_state);
-  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
-      .required = true;
+  add_law(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
   add_attached_row(rows, spec);

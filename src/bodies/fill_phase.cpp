@@ -74,8 +74,7 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
   VerbScope scope(Verb::bodies);
   const auto &components = tensor_components(grid.dimension());
   phase->species = spec.name;
-  phase->material.shear_modulus = spec.shear_modulus;
-  phase->material.attached = spec.attached.value_or(is_attached(spec.shape));
+  phase->material = spec.material();
   phase->fraction = FieldBlock(grid, 1);
   phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
   phase->label = FieldBlock(grid, 1);

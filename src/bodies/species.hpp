@@ -1,6 +1,7 @@
 // A species: bodies of one shape and one material, and where they are placed.
 #pragma once
 
+#include "field/material.hpp"
 #include "grid/grid.hpp"
 
 #include <array>
@@ -38,7 +39,9 @@ struct SpeciesSpec {
   int axis = 1;                      ///< symmetry axis of biconcave, cylinder, tubes; normal of slab: 0, 1, 2
   std::array<double, 2> interval{};  ///< slab
   VoxelSpec voxels;
-  double shear_modulus = 0;        ///< pressure units
+  Law law = Law::neo_hookean;
+  double shear_modulus = 0;        ///< neo-Hookean; pressure units
+  double c1 = 0, c2 = 0, c3 = 0;   ///< Mooney-Rivlin; pressure units
   std::optional<bool> attached;    ///< default by shape: is_attached()
   Real3 initial_stretch{1, 1, 1};  ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
   Placement placement = Placement::one;
@@ -54,6 +57,12 @@ struct SpeciesSpec {
   long seed = 1;
   Real3 orientation{};  ///< Euler angles in degrees: rotations about x, then y, then z
   bool random_orientation = false;
+
+  Material material() const {
+    Material m = law == Law::neo_hookean ? Material{shear_modulus} : Material::mooney_rivlin(c1, c2, c3);
+    m.attached = attached.value_or(is_attached(shape));
+    return m;
+  }
 };
 
 }  // namespace eulastic

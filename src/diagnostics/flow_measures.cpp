@@ -1,6 +1,7 @@
 #include "diagnostics/flow_measures.hpp"
 
 #include "base/events.hpp"
+#include "diagnostics/energy_rates.hpp"
 #include "field/exact_sum.hpp"
 
 #include <algorithm>
@@ -77,16 +78,19 @@ private:
   }
 
   // The edges on a wall normal to b own half a cell; those on the high wall count with the last cell.
+  // A face that lies on a wall does not move: where that wall meets a moving one there is no shear.
   void add_cross_differences(const Segment &row, int a, int b) {
     const int last = grid_.owned()[b] - 1, index = b == 1 ? row.j : row.k;
+    if (a != 0 && grid_.touches_low(a) && (a == 1 ? row.j : row.k) == 0) return;
+    const int begin = a == 0 && grid_.touches_low(0) ? 1 : 0;
     const bool low = grid_.touches_low(b), high = grid_.touches_high(b);
     if (b == 0) {
       if (low) add_difference(row, a, b, -1, 0, 1, 0.5);
       add_difference(row, a, b, -1, low ? 1 : 0, n_, 1);
       if (high) add_difference(row, a, b, +1, last, last + 1, 0.5);
     } else {
-      add_difference(row, a, b, -1, 0, n_, low && index == 0 ? 0.5 : 1);
-      if (high && index == last) add_difference(row, a, b, +1, 0, n_, 0.5);
+      add_difference(row, a, b, -1, begin, n_, low && index == 0 ? 0.5 : 1);
+      if (high && index == last) add_difference(row, a, b, +1, begin, n_, 0.5);
     }
   }
 
@@ -126,12 +130,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
     sums.add_row(gradient_squared, measure.squared_gradient(row), n, first);
     for (std::size_t p = 0; p < phases.size(); ++p) {
       const double *phi = phases[p].fraction[0].row(row.j, row.k);
-      for (int i = 0; i < n; ++i) energy[i] = 0;
-      for (int c = 0; c < dimension; ++c) {  // the diagonal comes first
-        const double *b = phases[p].tensor[c].row(row.j, row.k);
-        for (int i = 0; i < n; ++i) energy[i] += b[i] - 1;
-      }
-      for (int i = 0; i < n; ++i) energy[i] *= phi[i];
+      strain_energy(grid, phases[p], row, energy.data());
       sums.add_row(first_of_phases + 2 * static_cast<int>(p), phi, n, first);
       sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
     }
@@ -159,7 +158,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   m.phase_volume.clear();
   for (std::size_t p = 0; p < phases.size(); ++p) {
     m.phase_volume.push_back(sum[first_of_phases + 2 * p] * volume);
-    m.elastic_energy += 0.5 * phases[p].material.shear_modulus * sum[first_of_phases + 2 * p + 1] * volume;
+    m.elastic_energy += sum[first_of_phases + 2 * p + 1] * volume;
   }
   PetscFunctionReturn(0);
 }

@@ -22,7 +22,7 @@ struct FlowMeasures {
   double divergence_rms = 0;  ///< of div v h / U: h the smallest spacing, U = max(speed_max, |f| dt); 0/0 = 0
   double divergence_max = 0;
   double viscous_dissipation = 0;    ///< integral of mu grad v : grad v, energy / time
-  double elastic_energy = 0;         ///< sum over phases of the integral of G/2 phi (tr B - 3)
+  double elastic_energy = 0;         ///< strain energy: sum over phases of the integral of phi W
   std::vector<double> phase_volume;  ///< integral of phi, per phase
 };
 

@@ -1,6 +1,7 @@
 #include "diagnostics/wall_shear_stress.hpp"
 
 #include "base/events.hpp"
+#include "diagnostics/edge_stress.hpp"
 
 #include <algorithm>
 
@@ -40,17 +41,12 @@ public:
   }
 
   void add_elastic(int c, const Phase &phase, WallStress *stress) const {
-    const auto &components = tensor_components(grid_.dimension());
-    int shear = 0;
-    while (components[shear].a != std::min(c, d_) || components[shear].b != std::max(c, d_)) ++shear;
-    const ConstView phi = phase.fraction[0], b = phase.tensor[shear];
-    const std::ptrdiff_t back = phi.stride(c);
-    const double factor = (high_ ? -0.5 : 0.5) * phase.material.shear_modulus;
-    add(c, stress, [=, d = d_, up = high_ ? 1 : 0](const Int3 &cell) {
-      const double *p = &phi(cell[0], cell[1], cell[2]);
+    if (!phase.material.elastic()) return;
+    add(c, stress, [&](const Int3 &cell) {
       Int3 edge = cell;
-      edge[d] += up;
-      return factor * (p[0] + p[-back]) * b(edge[0], edge[1], edge[2]);
+      edge[d_] += high_ ? 1 : 0;
+      const double traction = edge_stress(grid_.dimension(), phase, c, d_, edge[0], edge[1], edge[2]);
+      return high_ ? -traction : traction;
     });
   }
 

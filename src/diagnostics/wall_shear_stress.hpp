@@ -1,4 +1,4 @@
-// The tangential traction of fluid and attached bodies on the walls: mu du/dn + sum of G phi B_tn, n into the box.
+// The tangential traction of fluid and attached bodies on the walls: mu du/dn + elastic stress, n into the box.
 //
 // du/dn is one-sided and second order, from the wall's velocity and two points; averaged to the centres of the wall's
 // cells.

@@ -2,16 +2,12 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "field/material.hpp"
 #include "grid/active_segments.hpp"
 
 #include <string>
 
 namespace eulastic {
-
-struct Material {
-  double shear_modulus = 0;  ///< G, pressure units; 0 = a marked part of the fluid
-  bool attached = false;     ///< to a wall, hardly moving (slab, tube): B is extended linearly
-};
 
 struct Phase {
   std::string species;  ///< name of the species it belongs to

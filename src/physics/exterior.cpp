@@ -66,6 +66,16 @@ struct Point {
   std::ptrdiff_t offset;
 };
 
+// Whether all edges around the centre phi[0] evolve.
+bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimension, double least) {
+  for (int a = 0; a < dimension; ++a)
+    for (int b = a + 1; b < dimension; ++b)
+      for (const std::ptrdiff_t x : {-stride[a], stride[a]})
+        for (const std::ptrdiff_t y : {-stride[b], stride[b]})
+          if (!(kernels::average4(phi, x, y) >= least)) return false;
+  return true;
+}
+
 // What the neighbour at `step` says of b[0]: its own value, or the line through it and the next.
 double extended(const double *b, std::ptrdiff_t step, bool linear) {
   return linear ? 2 * b[step] - b[2 * step] : b[step];
@@ -99,16 +109,21 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
   unsigned char *mask = mask_.data();
   std::ptrdiff_t step[2] = {0, 0};
   int steps = 0;
+  const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
   for (int d = 0; d < 3; ++d)
     if (at[d]) step[steps++] = fraction.stride(d);
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
   const Reach all(grid, at, layers);
   const int first = all.begin[0], width = all.end[0] - first;
   for (int k = all.begin[2]; k < all.end[2]; ++k)
-    for (int j = all.begin[1]; j < all.end[1]; ++j)
-      flag_row(width, fraction.row(j, k) + first, step, steps ? rule.edge : rule.centre,
-               mask + layout.offset(first, j, k));
-  const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
+    for (int j = all.begin[1]; j < all.end[1]; ++j) {
+      const double *phi = fraction.row(j, k) + first;
+      unsigned char *row = mask + layout.offset(first, j, k);
+      flag_row(width, phi, step, steps ? rule.edge : rule.centre, row);
+      if (linear_ && steps == 0)
+        for (int i = 0; i < width; ++i)
+          if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
+    }
   std::vector<Point> front, next;
   // Claims the unclaimed face neighbours of a point for layer L.
   const auto claim = [&](const Point &from, const Reach &box, unsigned char L) {

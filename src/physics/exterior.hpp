@@ -6,8 +6,8 @@
 // evolves, and afterwards an exchange of three.
 #pragma once
 
-#include "field/phase.hpp"
 #include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
 #include "physics/transport.hpp"
 
 namespace eulastic {
@@ -16,7 +16,7 @@ namespace eulastic {
 /// and empty centres does not decide.
 inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30};
 /// Attached bodies: only where all is solid. With linear extension that is second order wherever the surface lies.
-inline constexpr EvolveRule evolve_where_full{1 - 1e-6, 1 - 1e-6, 1e-30};
+inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30};
 inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
   return material.attached ? evolve_where_full : evolve_above_half;
 }
@@ -36,7 +36,7 @@ public:
 
 private:
   struct Entry {
-    std::ptrdiff_t offset;   ///< from the field's first double
+    std::ptrdiff_t offset;     ///< from the field's first double
     unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
     unsigned char second;      ///< the same of the points behind them: there linear extension is possible
   };

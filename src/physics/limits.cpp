@@ -47,6 +47,23 @@ double stretch_squared(double trace, int dimension) {
   return y * y;
 }
 
+double inverse_stretch_squared(double trace, int dimension) {
+  if (dimension == 2) return stretch_squared(trace, dimension);
+  // 2/y + y^2 = trace, y the least stretch: the least positive root of the same cubic.
+  const double t = std::max(trace, 3.0);
+  const double y = 2 * std::sqrt(t / 3) * std::cos((std::acos(-std::sqrt(27 / (t * t * t))) - 2 * pi) / 3);
+  return 1 / (y * y);
+}
+
+double largest_stiffness(const Material &material, double trace, int dimension) {
+  const double stretch = stretch_squared(trace, dimension);
+  if (material.law == Law::neo_hookean) return material.shear_modulus * stretch;
+  const double inverse = inverse_stretch_squared(trace, dimension), excess = std::max(trace - 3, 0.0);
+  const double spread = stretch - 1 / inverse;
+  return 2 * (material.c1 + 2 * material.c3 * excess) * stretch + 2 * material.c2 * inverse +
+         2 * material.c3 * spread * spread;
+}
+
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes) {
   PetscFunctionBeginUser;
@@ -98,8 +115,8 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
   extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
   extremes->stiffness = 0;
   for (std::size_t p = 0; p < phases.size(); ++p)
-    extremes->stiffness = std::max(
-        extremes->stiffness, phases[p].material.shear_modulus * stretch_squared(largest[4 + p], grid.dimension()));
+    extremes->stiffness =
+        std::max(extremes->stiffness, largest_stiffness(phases[p].material, largest[4 + p], grid.dimension()));
   PetscFunctionReturn(0);
 }
 

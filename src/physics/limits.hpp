@@ -10,7 +10,7 @@ namespace eulastic {
 /// Largest values over the whole grid; found with one Allreduce.
 struct FlowExtremes {
   Real3 speed{};             ///< max |u|, |v|, |w|
-  double stiffness = 0;      ///< max G lambda^2 over the phases, from the largest tr B of each where it is evolved
+  double stiffness = 0;      ///< largest_stiffness() over the phases, from the largest tr B of each where it is evolved
   double first_bad = -1;     ///< global cell index of the first non-finite velocity or B, -1 = all finite
   double max_speed() const;  ///< of the components
 };
@@ -20,6 +20,11 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
 double stretch_squared(double trace, int dimension);
+/// Largest principal value of the inverse of B for that trace (equibiaxial in 3-D).
+double inverse_stretch_squared(double trace, int dimension);
+
+/// Bound of rho c^2 of the shear waves in a body with tr B <= trace: the largest tangent stiffness, pressure units.
+double largest_stiffness(const Material &material, double trace, int dimension);
 
 /// Which limits hold.
 struct StepScheme {
@@ -33,7 +38,7 @@ struct TimeStepLimits {
   double viscous;       ///< 1/(2 nu S), S = sum 1/h^2; what a plain explicit step bears
   double elastic;       ///< 1/(c sqrt(S))
   double combined;      ///< dt^2 c^2 S + 2 nu dt S = 1
-  double kelvin_voigt;  ///< 2 mu/(G lambda^2)
+  double kelvin_voigt;  ///< 2 mu/stiffness
   double advective;     ///< sum (|u_i| + |f_i| dt) dt/h_i = share, the share of the scheme included; walls count
   double inertial;      ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
   double forcing;       ///< the shortest period of walls and body force

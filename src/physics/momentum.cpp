@@ -1,7 +1,7 @@
 #include "physics/momentum.hpp"
 
 #include "base/events.hpp"
-#include "kernels/elastic.hpp"
+#include "kernels/mooney_rivlin.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/row_scratch.hpp"
@@ -23,7 +23,7 @@ struct PredictorTerms {
   Real3 force, inverse, inverse_squared;
 };
 
-// rate += scale div(G phi dev B)_a on the stressed segments of a row.
+// rate += scale div(sigma)_a, the law's stress, on the stressed segments of a row.
 template <int Dim>
 EULASTIC_INLINE void elastic_force(const std::vector<Phase> &phases, const Real3 &inverse_spacing, double scale, int a,
                                    const Segment &row, double *rate) {
@@ -31,15 +31,21 @@ EULASTIC_INLINE void elastic_force(const std::vector<Phase> &phases, const Real3
   const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
   for (const Phase &phase : phases) {
-    if (phase.material.shear_modulus == 0) continue;
+    const Material &material = phase.material;
+    if (!material.elastic()) continue;
     const FieldBlock &B = phase.tensor;
     const ConstView phi = phase.fraction[0];
     const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
     const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
     const double inverse[3] = {inverse_spacing[a], inverse_spacing[b], inverse_spacing[c]};
-    for (const Segment &s : phase.stressed.row(row.j, row.k))
-      kernels::add_elastic_force<Dim>({s.i_begin, std::min(s.i_end, row.i_end), s.j, s.k}, phi, views, stride, inverse,
-                                      scale * phase.material.shear_modulus, rate);
+    const kernels::MooneyRivlin law{scale * 2 * material.c1, scale * 2 * material.c2, scale * 4 * material.c3};
+    for (const Segment &s : phase.stressed.row(row.j, row.k)) {
+      const Segment part{s.i_begin, std::min(s.i_end, row.i_end), s.j, s.k};
+      if (material.law == Law::neo_hookean)
+        kernels::add_elastic_force<Dim>(part, phi, views, stride, inverse, scale * material.shear_modulus, rate);
+      else
+        kernels::add_mooney_rivlin_force<Dim>(part, phi, views, B[at(b, c)], stride, inverse, law, rate);
+    }
   }
 }
 
@@ -105,9 +111,15 @@ EULASTIC_CLONES void elastic_3d(const Grid &g, double scale, const std::vector<P
   elastic_rows<3>(g, scale, phases, force);
 }
 
-double stressed_points(const std::vector<Phase> &phases) {
+// Flops per component of the velocity.
+double elastic_flops(int dimension, const std::vector<Phase> &phases) {
   double sum = 0;
-  for (const Phase &phase : phases) sum += phase.stressed.points();
+  for (const Phase &phase : phases) {
+    const bool flat = dimension == 2, neo_hookean = phase.material.law == Law::neo_hookean;
+    const double per_face = neo_hookean ? (flat ? kernels::elastic_flops_2d : kernels::elastic_flops_3d)
+                                        : (flat ? kernels::mooney_rivlin_flops_2d : kernels::mooney_rivlin_flops_3d);
+    sum += phase.stressed.points() * per_face;
+  }
   return sum;
 }
 
@@ -163,11 +175,9 @@ void run_predictor(const Grid &grid, const Fluid &fluid, PredictorTerms terms, F
     predict_2d(terms, out, scratch);
   else
     predict_3d(terms, out, scratch);
-  const double stressed = stressed_points(*terms.phases);
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
-  scope.flops(dim * (grid.owned_count() * per_face +
-                     stressed * (dim == 2 ? kernels::elastic_flops_2d : kernels::elastic_flops_3d)));
+  scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, *terms.phases)));
 }
 
 }  // namespace
@@ -201,7 +211,7 @@ PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vect
   VerbScope scope(Verb::momentum);
   const bool flat = grid.dimension() == 2;
   (flat ? elastic_2d : elastic_3d)(grid, scale, phases, force);
-  scope.flops(stressed_points(phases) * (flat ? 2 * kernels::elastic_flops_2d : 3 * kernels::elastic_flops_3d));
+  scope.flops(grid.dimension() * elastic_flops(grid.dimension(), phases));
   PetscFunctionReturn(0);
 }
 

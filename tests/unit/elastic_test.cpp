@@ -1,7 +1,6 @@
 // Elastic force and stretching on fields for which central differences are exact, in every component; energy.
 #include "kernels/upper_convected.hpp"
-#include "support/polynomials.hpp"
-#include "support/verbs.hpp"
+#include "support/solid_box.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,63 +8,6 @@ using namespace eulastic;
 using namespace eulastic::test;
 
 namespace {
-
-// A solid everywhere, phi and B polynomials of the given degree, velocity linear (L = gradients of v).
-struct Solid {
-  Grid grid;
-  Fluid fluid;
-  std::vector<Phase> phases;
-  FieldBlock velocity, pressure, velocity_star, next;
-  Polynomial phi, v[3], B[3][3];
-
-  Solid(bool flat, int degree, int seed) {
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
-    Random random(seed);
-    const int dim = grid.dimension();
-    velocity = FieldBlock(grid, dim);
-    velocity_star = FieldBlock(grid, dim);
-    pressure = FieldBlock(grid, 1);
-    for (int a = 0; a < dim; ++a) v[a] = Polynomial(random, 1);
-    phi = Polynomial(random, degree);
-    phi.c = 5;  // well above the threshold
-    B[2][2].c = 1;
-    const auto &components = tensor_components(dim);
-    for (const auto [a, b] : components) B[a][b] = B[b][a] = Polynomial(random, degree);
-    phases.resize(1);
-    Phase &phase = phases[0];
-    phase.material.shear_modulus = 0.7;
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-    next = FieldBlock(grid, phase.tensor.count());
-    phase.solid.build_all(grid);
-    phase.stressed.build_all(grid);
-    fill();
-  }
-
-  void fill() {
-    const auto &components = tensor_components(grid.dimension());
-    for (int a = 0; a < grid.dimension(); ++a) fill_everywhere(grid, velocity[a], at_face[a], v[a]);
-    fill_everywhere(grid, phases[0].fraction[0], at_centre, phi);
-    for (int c = 0; c < phases[0].tensor.count(); ++c)
-      fill_everywhere(grid, phases[0].tensor[c], components[c].staggering(), B[components[c].a][components[c].b]);
-  }
-
-  double deviator(int a, int b, const Point &x) const {
-    const double trace = B[0][0](x) + B[1][1](x) + B[2][2](x);
-    return B[a][b](x) - (a == b ? trace / 3 : 0);
-  }
-  double deviator_slope(int a, int b, int d, const Point &x) const {
-    const double trace = B[0][0].slope(d, x) + B[1][1].slope(d, x) + B[2][2].slope(d, x);
-    return B[a][b].slope(d, x) - (a == b ? trace / 3 : 0);
-  }
-  // L.B + B.L^T - v.grad B
-  double rate(int a, int b, const Point &x) const {
-    double sum = 0;
-    for (int d = 0; d < grid.dimension(); ++d)
-      sum += v[a].g[d] * B[d][b](x) + B[a][d](x) * v[b].g[d] - v[d](x) * B[a][b].slope(d, x);
-    return sum;
-  }
-};
 
 TEST(ElasticForce, ExactForLinearFractionAndTensor) {
   for (const bool flat : {false, true})
@@ -200,29 +142,7 @@ TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
       randomise(grid, phase.fraction, random, 1.5);
       randomise(grid, phase.tensor, random);
       randomise(grid, solid.velocity, random);
-      const Real3 &h = grid.spacing();
-      if (solenoidal) {  // the curl of a potential on the edges
-        FieldBlock psi(grid, 3);
-        randomise(grid, psi, random);
-        for (int a = 0; a < dim; ++a) {
-          const int b = (a + 1) % 3, c = (a + 2) % 3;
-          const auto shift = [&](const Int3 &x, int d) {
-            return Int3{x[0] + (d == 0), x[1] + (d == 1), x[2] + (d == 2)};
-          };
-          for (int k = 0; k < grid.owned()[2]; ++k)
-            for (int j = 0; j < grid.owned()[1]; ++j)
-              for (int i = 0; i < grid.owned()[0]; ++i) {
-                const Int3 x{i, j, k}, xb = shift(x, b), xc = shift(x, c);
-                const View B = psi[b], C = psi[c];
-                double curl = 0;
-                if (b < dim) curl += (C(xb[0], xb[1], xb[2]) - C(i, j, k)) / h[b];
-                if (c < dim) curl -= (B(xc[0], xc[1], xc[2]) - B(i, j, k)) / h[c];
-                solid.velocity[a](i, j, k) = 0.1 * curl;
-              }
-        }
-        GhostExchange exchange(grid);
-        ASSERT_EQ(exchange.update(solid.velocity, 3), 0);
-      }
+      if (solenoidal) randomise_solenoidal(grid, solid.velocity, random);
       FieldBlock force(grid, dim), zero(grid, dim), rate(grid, 1), D(grid, 1);
       ASSERT_EQ(predict(grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
       ASSERT_EQ(compute_divergence(grid, 1, solid.velocity, D), 0);

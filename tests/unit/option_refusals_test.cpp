@@ -191,6 +191,12 @@ TEST(OptionRefusals, InconsistentScenes) {
       {{"-species a -a_shape sphere -a_radius .1", {"-a_shear_modulus", "must be given"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus -1", {"-a_shear_modulus", "out of range"}}},
       periodic);
+  expect_refusals({{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
+                   {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
+                   {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
+                   {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
+                   {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
+                  periodic + "-species a -a_shape sphere -a_radius .1 ");
 }
 
 TEST(OptionRefusals, TwoDimensions) {

@@ -1,4 +1,5 @@
 // From the command line to a Config and back: what is accepted, where it arrives, which source wins.
+#include "app/check_only.hpp"
 #include "app/help_text.hpp"
 #include "app/option_table.hpp"
 #include "support/command_line.hpp"
@@ -168,7 +169,8 @@ TEST(Options, TextReadsBackTheSame) {
                      scene + " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
                              "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
                      "-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
-                     "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1"};
+                     "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1",
+                     "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c3 .6"};
   for (const std::string &line : scenes) {
     const ParseResult first = parse_line(line);
     ASSERT_EQ(first.error, "") << line;
@@ -185,6 +187,17 @@ TEST(Options, TextReadsBackTheSame) {
   const std::string noted = options_text(parse_line(scene, "-fluid_density 2 -log_view"));
   EXPECT_NE(noted.find("# PETSC_OPTIONS: -fluid_density 2 -log_view\n"), std::string::npos);
   EXPECT_NE(noted.find("\n-fluid_density 2\n"), std::string::npos);
+}
+
+TEST(Options, MooneyRivlinHasItsModulus) {
+  const ParseResult result = parse_line(
+      "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c2 2 -a_c3 .6");
+  ASSERT_EQ(result.error, "");
+  const Material m = result.config.species[0].material();
+  EXPECT_EQ(m.law, Law::mooney_rivlin);
+  EXPECT_EQ(m.shear_modulus, 12);
+  EXPECT_EQ(m.coefficients(), (Real3{8, 4, 2.4}));
+  EXPECT_NE(check_report(result.config, 1).find("shear modulus of a: 12 "), std::string::npos);
 }
 
 TEST(Options, TableIsComplete) {

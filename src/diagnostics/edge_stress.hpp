@@ -1,0 +1,34 @@
+// The elastic shear stress of a phase on one edge, as the momentum equation sees it.
+#pragma once
+
+#include "field/phase.hpp"
+#include "kernels/elastic_energy.hpp"
+
+namespace eulastic {
+
+inline kernels::MooneyRivlin law_of(const Material &material) {
+  const auto k = material.coefficients();
+  return {k[0], k[1], k[2]};
+}
+
+/// Pointers to the components of B of one cell, in their order.
+struct CellTensor {
+  CellTensor(const FieldBlock &tensor, int i, int j, int k) {
+    for (int c = 0; c < tensor.count(); ++c) component[c] = &tensor[c](i, j, k);
+  }
+  const double *component[6];
+};
+
+/// sigma_ab on the low edge of cell (i, j, k) normal to the directions a and b. One ghost layer of phi and B.
+inline double edge_stress(int dimension, const Phase &phase, int a, int b, int i, int j, int k) {
+  const ConstView phi = phase.fraction[0];
+  const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
+  const CellTensor B(phase.tensor, i, j, k);
+  const double *fraction = &phi(i, j, k);
+  const kernels::MooneyRivlin law = law_of(phase.material);
+  return dimension == 2
+             ? kernels::mooney_rivlin_shear<2>(fraction, kernels::tensor_at<2>(B.component, stride, a, b), 0, law)
+             : kernels::mooney_rivlin_shear<3>(fraction, kernels::tensor_at<3>(B.component, stride, a, b), 0, law);
+}
+
+}  // namespace eulastic

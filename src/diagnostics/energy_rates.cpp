@@ -1,0 +1,134 @@
+#include "diagnostics/energy_rates.hpp"
+
+#include "base/events.hpp"
+#include "diagnostics/edge_stress.hpp"
+#include "field/exact_sum.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+enum Sum { momentum_x, momentum_y, momentum_z, wall_power, elastic_power, extended_power, extended_energy, sums };
+
+struct Strides {
+  explicit Strides(ConstView view) : of{view.stride(0), view.stride(1), view.stride(2)} {}
+  std::ptrdiff_t of[3];
+};
+
+// sigma_e : grad v of the cells of a row.
+template <int Dim>
+void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
+  const kernels::MooneyRivlin law = law_of(phase.material);
+  const ConstView phi = phase.fraction[0];
+  const Strides stride(phi);
+  const double inverse[3] = {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
+  for (int i = row.i_begin; i < row.i_end; ++i) {
+    out[i] = 0;
+    if (phi(i, row.j, row.k) == 0) continue;
+    const double *v[3] = {};
+    for (int d = 0; d < Dim; ++d) v[d] = &velocity[d](i, row.j, row.k);
+    const CellTensor B(phase.tensor, i, row.j, row.k);
+    out[i] = phi(i, row.j, row.k) * kernels::power_density<Dim>(B.component, v, stride.of, inverse, law);
+  }
+}
+
+// Speed times traction of every tangential face beside a moving wall.
+class WallPower {
+public:
+  WallPower(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases, double viscosity)
+      : grid_(grid), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
+
+  void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
+    for (int c = 0; c < grid_.dimension(); ++c)
+      if (c != d && speed[c] != 0) add(d, high, c, speed[c], sums);
+  }
+
+private:
+  void add(int d, bool high, int c, double speed, ExactSums *sums) const {
+    Int3 begin{}, end = grid_.owned();
+    begin[d] = high ? end[d] - 1 : 0;
+    end[d] = begin[d] + 1;
+    if (grid_.touches_low(c)) begin[c] = 1;  // a face on another wall does not move
+    for (int k = begin[2]; k < end[2]; ++k)
+      for (int j = begin[1]; j < end[1]; ++j)
+        for (int i = begin[0]; i < end[0]; ++i) sums->add(wall_power, speed * traction(d, high, c, {i, j, k}));
+  }
+
+  /// Of the wall on what is inside, along c, per volume of the cell beside it.
+  double traction(int d, bool high, int c, const Int3 &cell) const {
+    const ConstView q = velocity_[c];
+    const double *inside = &q(cell[0], cell[1], cell[2]), *ghost = inside + (high ? q.stride(d) : -q.stride(d));
+    Int3 edge = cell;
+    edge[d] += high ? 1 : 0;
+    double elastic = 0;
+    for (const Phase &phase : phases_)
+      if (phase.material.elastic()) elastic += edge_stress(grid_.dimension(), phase, c, d, edge[0], edge[1], edge[2]);
+    const double viscous = viscosity_ * (*ghost - *inside) / grid_.spacing()[d];
+    return (viscous + (high ? elastic : -elastic)) / grid_.spacing()[d];
+  }
+
+  const Grid &grid_;
+  const FieldBlock &velocity_;
+  const std::vector<Phase> &phases_;
+  double viscosity_;
+};
+
+void add_elastic(const Grid &grid, const FieldBlock &velocity, const Phase &phase, double evolved, ExactSums *sums) {
+  if (!phase.material.elastic()) return;
+  const int n = grid.owned()[0], first = grid.layout().begin[0];
+  std::vector<double> power(n), energy(n);
+  for (const Segment &row : grid.rows()) {
+    const double *phi = phase.fraction[0].row(row.j, row.k);
+    strain_energy(grid, phase, row, energy.data());
+    (grid.dimension() == 2 ? stress_power<2> : stress_power<3>)(grid, phase, velocity, row, power.data());
+    sums->add_row(elastic_power, power.data(), n, first);
+    for (int i = 0; i < n; ++i)
+      if (phi[i] >= evolved) power[i] = energy[i] = 0;
+    sums->add_row(extended_power, power.data(), n, first);
+    sums->add_row(extended_energy, energy.data(), n, first);
+  }
+}
+
+}  // namespace
+
+void strain_energy(const Grid &grid, const Phase &phase, const Segment &row, double *out) {
+  const kernels::MooneyRivlin law = law_of(phase.material);
+  const ConstView phi = phase.fraction[0];
+  const Strides stride(phi);
+  for (int i = row.i_begin; i < row.i_end; ++i) {
+    const CellTensor B(phase.tensor, i, row.j, row.k);
+    const double density = grid.dimension() == 2 ? kernels::energy_density<2>(B.component, stride.of, law)
+                                                 : kernels::energy_density<3>(B.component, stride.of, law);
+    out[i] = phi(i, row.j, row.k) * density;
+  }
+}
+
+PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+                                    const EnergyNumbers &numbers, EnergyRates *rates) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::sums);
+  ExactSums all(sums);
+  const int n = grid.owned()[0], first = grid.layout().begin[0];
+  for (int c = 0; c < grid.dimension(); ++c)
+    if (numbers.force[c] != 0)
+      for (const Segment &row : grid.rows()) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
+  const WallPower walls(grid, velocity, phases, numbers.viscosity);
+  for (int d = 0; numbers.walls && d < grid.dimension(); ++d)
+    for (const bool high : {false, true})
+      if (high ? grid.touches_high(d) : grid.touches_low(d))
+        walls.add(d, high, numbers.walls->motion[d][high].at(numbers.time), &all);
+  for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(grid, velocity, phases[p], numbers.evolved[p], &all);
+  double sum[sums];
+  PetscCall(all.reduce(grid.comm(), sum));
+  const double volume = grid.cell_volume();
+  rates->force_power = 0;
+  for (int c = 0; c < 3; ++c) rates->force_power += numbers.density * numbers.force[c] * sum[momentum_x + c] * volume;
+  rates->wall_power = sum[wall_power] * volume;
+  rates->elastic_power = sum[elastic_power] * volume;
+  rates->extended_power = sum[extended_power] * volume;
+  rates->extended_energy = sum[extended_energy] * volume;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

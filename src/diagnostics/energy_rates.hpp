@@ -1,0 +1,37 @@
+// What drives, drains and stores energy: the powers of body force, walls and elastic stress, and the strain energy.
+//
+// All as the discrete equations have them: the power of the elastic stress is minus that of the elastic force, and what
+// the walls do is what viscosity and solids on them take (docs/method.md). Exact sums: the same bits on any ranks.
+#pragma once
+
+#include "field/phase.hpp"
+#include "field/walls.hpp"
+
+namespace eulastic {
+
+/// What the rates depend on beside the fields.
+struct EnergyNumbers {
+  double density = 1, viscosity = 1;  ///< rho and mu (dynamic)
+  Real3 force{};                      ///< body force per mass, now
+  const Walls *walls = nullptr;       ///< null: none moves
+  double time = 0;
+  std::vector<double> evolved;  ///< least phi where B of a phase is evolved, per phase; below, it is extended
+};
+
+/// Energy per time; 2-D: per unit depth.
+struct EnergyRates {
+  double force_power = 0;
+  double wall_power = 0;       ///< of moving walls, through viscosity and solids attached to them
+  double elastic_power = 0;    ///< integral of sigma_e : grad v: flow to solids
+  double extended_power = 0;   ///< the part of it in cells where B is extended, and
+  double extended_energy = 0;  ///< the strain energy there
+};
+
+/// phi W (energy per volume) of the cells of a row, into out[0 .. cells).
+void strain_energy(const Grid &grid, const Phase &phase, const Segment &row, double *out);
+
+/// `velocity` (of `time`), phi and B with one ghost layer. One Allreduce.
+PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+                                    const EnergyNumbers &numbers, EnergyRates *rates);
+
+}  // namespace eulastic

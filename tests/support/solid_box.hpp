@@ -1,0 +1,87 @@
+// A box full of solid whose fields are polynomials or random numbers, ghosts included, for tests of the elastic terms.
+#pragma once
+
+#include "support/polynomials.hpp"
+#include "support/verbs.hpp"
+
+namespace eulastic::test {
+
+// A solid everywhere, phi and B polynomials of the given degree, velocity linear (L = gradients of v).
+struct Solid {
+  Grid grid;
+  Fluid fluid;
+  std::vector<Phase> phases;
+  FieldBlock velocity, pressure, velocity_star, next;
+  Polynomial phi, v[3], B[3][3];
+
+  Solid(bool flat, int degree, int seed) {
+    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    Random random(seed);
+    const int dim = grid.dimension();
+    velocity = FieldBlock(grid, dim);
+    velocity_star = FieldBlock(grid, dim);
+    pressure = FieldBlock(grid, 1);
+    for (int a = 0; a < dim; ++a) v[a] = Polynomial(random, 1);
+    phi = Polynomial(random, degree);
+    phi.c = 5;  // well above the threshold
+    B[2][2].c = 1;
+    const auto &components = tensor_components(dim);
+    for (const auto [a, b] : components) B[a][b] = B[b][a] = Polynomial(random, degree);
+    phases.resize(1);
+    Phase &phase = phases[0];
+    phase.material.shear_modulus = 0.7;
+    phase.fraction = FieldBlock(grid, 1);
+    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
+    next = FieldBlock(grid, phase.tensor.count());
+    phase.solid.build_all(grid);
+    phase.stressed.build_all(grid);
+    fill();
+  }
+
+  void fill() {
+    const auto &components = tensor_components(grid.dimension());
+    for (int a = 0; a < grid.dimension(); ++a) fill_everywhere(grid, velocity[a], at_face[a], v[a]);
+    fill_everywhere(grid, phases[0].fraction[0], at_centre, phi);
+    for (int c = 0; c < phases[0].tensor.count(); ++c)
+      fill_everywhere(grid, phases[0].tensor[c], components[c].staggering(), B[components[c].a][components[c].b]);
+  }
+
+  double deviator(int a, int b, const Point &x) const {
+    const double trace = B[0][0](x) + B[1][1](x) + B[2][2](x);
+    return B[a][b](x) - (a == b ? trace / 3 : 0);
+  }
+  double deviator_slope(int a, int b, int d, const Point &x) const {
+    const double trace = B[0][0].slope(d, x) + B[1][1].slope(d, x) + B[2][2].slope(d, x);
+    return B[a][b].slope(d, x) - (a == b ? trace / 3 : 0);
+  }
+  // L.B + B.L^T - v.grad B
+  double rate(int a, int b, const Point &x) const {
+    double sum = 0;
+    for (int d = 0; d < grid.dimension(); ++d)
+      sum += v[a].g[d] * B[d][b](x) + B[a][d](x) * v[b].g[d] - v[d](x) * B[a][b].slope(d, x);
+    return sum;
+  }
+};
+
+/// A solenoidal velocity at all faces of a periodic grid: the curl of a random potential on the edges.
+inline void randomise_solenoidal(const Grid &grid, FieldBlock &velocity, Random &random) {
+  const Real3 &h = grid.spacing();
+  FieldBlock psi(grid, 3);
+  randomise(grid, psi, random);
+  for (int a = 0; a < grid.dimension(); ++a) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    const auto next = [&](View q, int i, int j, int k, int d) { return q(i + (d == 0), j + (d == 1), k + (d == 2)); };
+    for (int k = 0; k < grid.owned()[2]; ++k)
+      for (int j = 0; j < grid.owned()[1]; ++j)
+        for (int i = 0; i < grid.owned()[0]; ++i) {
+          double curl = 0;
+          if (b < grid.dimension()) curl += (next(psi[c], i, j, k, b) - psi[c](i, j, k)) / h[b];
+          if (c < grid.dimension()) curl -= (next(psi[b], i, j, k, c) - psi[b](i, j, k)) / h[c];
+          velocity[a](i, j, k) = 0.1 * curl;
+        }
+  }
+  GhostExchange exchange(grid);
+  EXPECT_EQ(exchange.update(velocity, 3), 0);
+}
+
+}  // namespace eulastic::test

@@ -1,0 +1,343 @@
+// Mooney-Rivlin: stress, energy and what one takes from the other, in every component; the bound of its stiffness.
+#include "diagnostics/edge_stress.hpp"
+#include "diagnostics/energy_rates.hpp"
+#include "kernels/upper_convected.hpp"
+#include "physics/limits.hpp"
+#include "support/solid_box.hpp"
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+using Matrix = std::array<Real3, 3>;
+
+const Material rubber = Material::mooney_rivlin(0.7, 0.4, 0.3);
+
+Matrix product(const Matrix &a, const Matrix &b) {
+  Matrix c{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+  return c;
+}
+
+Matrix transposed(const Matrix &a) {
+  Matrix t{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) t[i][j] = a[j][i];
+  return t;
+}
+
+double trace(const Matrix &a) { return a[0][0] + a[1][1] + a[2][2]; }
+
+double energy(const Material &m, const Matrix &B) {
+  const double I = trace(B), II = 0.5 * (I * I - trace(product(B, B)));
+  return m.c1 * (I - 3) + m.c2 * (II - 3) + m.c3 * (I - 3) * (I - 3);
+}
+
+// dev(2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B).
+Matrix stress(const Material &m, const Matrix &B) {
+  const Matrix BB = product(B, B);
+  Matrix s{};
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      s[a][b] = (2 * m.c1 + 4 * m.c3 * (trace(B) - 3)) * B[a][b] + 2 * m.c2 * (trace(B) * B[a][b] - BB[a][b]);
+  const double third = trace(s) / 3;
+  for (int a = 0; a < 3; ++a) s[a][a] -= third;
+  return s;
+}
+
+// A uniform B in the block of a solid.
+void fill_uniform(Solid &solid, const Matrix &B) {
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      solid.B[a][b] = Polynomial{};
+      solid.B[a][b].c = B[a][b];
+    }
+  solid.phi = Polynomial{};
+  solid.phi.c = 1;
+  solid.fill();
+}
+
+Matrix random_tensor(Random &random, bool flat) {
+  Matrix F{Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}};
+  for (int a = 0; a < (flat ? 2 : 3); ++a)
+    for (int b = 0; b < (flat ? 2 : 3); ++b) F[a][b] += 0.6 * random();
+  return product(F, transposed(F));
+}
+
+// The stress on its own places in the middle of the box.
+double computed_stress(const Solid &solid, int a, int b) {
+  const Phase &phase = solid.phases[0];
+  const int dim = solid.grid.dimension(), k = dim == 3 ? 2 : 0;
+  if (a != b) return edge_stress(dim, phase, a, b, 5, 3, k);
+  const CellTensor B(phase.tensor, 5, 3, k);
+  const ConstView q = phase.tensor[0];
+  const std::ptrdiff_t stride[3] = {q.stride(0), q.stride(1), q.stride(2)};
+  const kernels::MooneyRivlin law = law_of(phase.material);
+  return dim == 2 ? kernels::mooney_rivlin_normal<2>(kernels::tensor_at<2>(B.component, stride, a, 1 - a), 0, law)
+                  : kernels::mooney_rivlin_normal<3>(kernels::tensor_at<3>(B.component, stride, a, (a + 1) % 3), 0, law);
+}
+
+TEST(MooneyRivlin, StressOfUniformStrain) {
+  Random random(3);
+  for (const bool flat : {false, true})
+    for (int seed = 0; seed < 4; ++seed) {
+      Solid solid(flat, 0, 1);
+      const Matrix B = random_tensor(random, flat);
+      solid.phases[0].material = rubber;
+      fill_uniform(solid, B);
+      const Matrix expected = stress(rubber, B);
+      for (int a = 0; a < (flat ? 2 : 3); ++a)
+        for (int b = 0; b < (flat ? 2 : 3); ++b)
+          EXPECT_NEAR(computed_stress(solid, a, b), expected[a][b], 1e-13) << a << b;
+    }
+}
+
+TEST(MooneyRivlin, SimpleShearIsCubic) {
+  for (const double g : {-1.5, 0.3, 2.0})
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        if (a == b) continue;
+        Matrix B{Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}};
+        B[a][a] += g * g;
+        B[a][b] = B[b][a] = g;
+        for (const bool flat : {false, true}) {
+          if (flat && a + b != 1) continue;
+          Solid solid(flat, 0, 1);
+          for (const Material &m : {rubber, Material::mooney_rivlin(0, 0.5, 0), Material::mooney_rivlin(0, 0, 0.25)}) {
+            solid.phases[0].material = m;
+            fill_uniform(solid, B);
+            EXPECT_NEAR(computed_stress(solid, a, b), 2 * (m.c1 + m.c2) * g + 4 * m.c3 * g * g * g, 1e-13);
+          }
+        }
+      }
+}
+
+TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
+  for (const double l : {0.5, 1.0, 2.0}) {
+    const Matrix B{Real3{l * l, 0, 0}, Real3{0, 1 / l, 0}, Real3{0, 0, 1 / l}};
+    Solid solid(false, 0, 1);
+    solid.phases[0].material = rubber;
+    fill_uniform(solid, B);
+    std::vector<double> row(solid.grid.owned()[0]);
+    strain_energy(solid.grid, solid.phases[0], solid.grid.rows()[7], row.data());
+    const double first = l * l + 2 / l - 3, second = 2 * l + 1 / (l * l) - 3;
+    EXPECT_NEAR(row[4], 0.7 * first + 0.4 * second + 0.3 * first * first, 1e-14);
+  }
+}
+
+// Faces of all directions, random fields: -rho div(sigma) times dt.
+double predicted_force(Solid &solid, const Material &material, FieldBlock &force) {
+  solid.phases[0].material = material;
+  FieldBlock zero(solid.grid, solid.grid.dimension());
+  EXPECT_EQ(predict(solid.grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
+  double largest = 0;
+  for (int a = 0; a < force.count(); ++a)
+    largest = std::max(largest, largest_error(solid.grid, force[a], at_face[a], [](const Point &) { return 0.0; }));
+  return largest;
+}
+
+TEST(MooneyRivlin, FirstCoefficientAloneIsNeoHookean) {
+  for (const bool flat : {false, true}) {
+    Solid solid(flat, 0, 1);
+    Random random(7);
+    randomise(solid.grid, solid.phases[0].fraction, random, 1.5);
+    randomise(solid.grid, solid.phases[0].tensor, random);
+    FieldBlock a(solid.grid, solid.grid.dimension()), b(solid.grid, solid.grid.dimension());
+    const double size = predicted_force(solid, Material{1.4}, a);
+    predicted_force(solid, Material::mooney_rivlin(0.7, 0, 0), b);
+    for (int d = 0; d < a.count(); ++d)
+      for (const Segment &s : solid.grid.rows())
+        for (int i = 0; i < s.i_end; ++i)
+          EXPECT_NEAR(a[d](i, s.j, s.k), b[d](i, s.j, s.k), 1e-14 * size);
+  }
+}
+
+TEST(MooneyRivlin, NoForceWithoutStrain) {
+  for (const bool flat : {false, true}) {
+    Solid solid(flat, 2, 5);
+    const auto phi = solid.phi;
+    fill_uniform(solid, {Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}});
+    fill_everywhere(solid.grid, solid.phases[0].fraction[0], at_centre, phi);
+    FieldBlock force(solid.grid, solid.grid.dimension());
+    EXPECT_EQ(predicted_force(solid, rubber, force), 0);
+  }
+}
+
+// div sigma of a smooth B, sampled: the error falls with the square of the spacing.
+double force_error(bool flat, int cells) {
+  Grid grid;
+  GridSpec spec = uneven_box(flat, {cells, cells - 2, cells + 3});
+  EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  const auto &components = tensor_components(grid.dimension());
+  const auto tensor = [&](const Point &x) {
+    Matrix B{};
+    const double k[3] = {2 * M_PI / spec.length[0], 2 * M_PI / spec.length[1], flat ? 0 : 2 * M_PI / spec.length[2]};
+    for (const auto [a, b] : components)
+      B[a][b] = B[b][a] = (a == b) + 0.3 * std::sin(k[0] * x[0] + a) * std::cos(k[1] * x[1] + 2 * b + k[2] * x[2]);
+    if (flat) B[2][2] = 1;
+    return B;
+  };
+  const auto fraction = [&](const Point &x) { return 1 + 0.5 * std::cos(2 * M_PI * x[1] / spec.length[1]); };
+  std::vector<Phase> phases(1);
+  Phase &phase = phases[0];
+  phase.material = rubber;
+  phase.fraction = FieldBlock(grid, 1);
+  phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
+  phase.solid.build_all(grid);
+  phase.stressed.build_all(grid);
+  fill_everywhere(grid, phase.fraction[0], at_centre, fraction);
+  for (int c = 0; c < phase.tensor.count(); ++c)
+    fill_everywhere(grid, phase.tensor[c], components[c].staggering(),
+                    [&](const Point &x) { return tensor(x)[components[c].a][components[c].b]; });
+  FieldBlock force(grid, grid.dimension());
+  EXPECT_EQ(add_elastic_force(grid, 1, phases, force), 0);
+  double largest = 0;
+  for (int a = 0; a < grid.dimension(); ++a)
+    largest = std::max(largest, largest_error(grid, force[a], at_face[a], [&](const Point &x) {
+                         double sum = 0;
+                         for (int d = 0; d < grid.dimension(); ++d) {
+                           Point low = x, high = x;
+                           low[d] -= 1e-4, high[d] += 1e-4;
+                           sum += (fraction(high) * stress(rubber, tensor(high))[a][d] -
+                                   fraction(low) * stress(rubber, tensor(low))[a][d]) / 2e-4;
+                         }
+                         return sum;
+                       }));
+  return largest;
+}
+
+TEST(MooneyRivlin, ForceIsOfSecondOrder) {
+  for (const bool flat : {false, true}) {
+    const double coarse = force_error(flat, 16), fine = force_error(flat, 32);
+    EXPECT_GT(order(coarse, fine), 1.7) << coarse << " " << fine;
+  }
+}
+
+// d(B)/dt by stretching alone.
+template <int Dim>
+void stretch(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
+  const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
+  for (const Segment &s : grid.rows())
+    for (int a = 0; a < Dim; ++a)
+      for (int b = a; b < Dim; ++b) {
+        const int other = a == b ? (a + 1) % Dim : b, third = Dim == 3 ? 3 - a - other : other;
+        const auto inverse = [&](int d) { return 1 / grid.spacing()[d]; };
+        const kernels::Directions d{v[0].stride(a), v[0].stride(other), v[0].stride(third),
+                                    inverse(a),     inverse(other),     inverse(third)};
+        double *out = rate[at(a, b)].row(s.j, s.k);
+        if (a == b)
+          kernels::add_diagonal_stretch<Dim>(s, B[a], B[at(a, other)], B[at(a, third)], v[a], d, out);
+        else
+          kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[at(a, b)], B[at(b, third)], B[at(a, third)], v[a], v[b], d,
+                                          out);
+      }
+}
+
+double total_energy(const Grid &grid, const Phase &phase) {
+  double sum = 0;
+  std::vector<double> row(grid.owned()[0]);
+  for (const Segment &s : grid.rows()) {
+    strain_energy(grid, phase, s, row.data());
+    for (const double e : row) sum += e;
+  }
+  return sum * grid.cell_volume();
+}
+
+struct Exchange {
+  double force = 0, stress = 0, energy = 0;  // power of the force, of the stress, rate of the energy
+};
+
+// Random B; phi random or uniform; v solenoidal. The energy is quadratic in B: a central difference is its rate.
+Exchange exchange_of(bool flat, const Material &material, bool uniform) {
+  Solid solid(flat, 0, 30);
+  const Grid &grid = solid.grid;
+  Phase &phase = solid.phases[0];
+  phase.material = material;
+  Random random(31);
+  randomise(grid, phase.fraction, random, 1.5);
+  if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
+  randomise(grid, phase.tensor, random, 0.4);
+  randomise_solenoidal(grid, solid.velocity, random);
+  FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.count());
+  EXPECT_EQ(add_elastic_force(grid, 1, solid.phases, force), 0);
+  Exchange e;
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (const Segment &s : grid.rows())
+      for (int i = 0; i < s.i_end; ++i)
+        e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * grid.cell_volume();
+  EnergyRates rates;
+  EnergyNumbers numbers;
+  numbers.evolved = {0};
+  EXPECT_EQ(measure_energy_rates(grid, solid.velocity, solid.phases, numbers, &rates), 0);
+  e.stress = rates.elastic_power;
+  (flat ? stretch<2> : stretch<3>)(grid, phase.tensor, solid.velocity, rate);
+  GhostExchange exchange(grid);
+  EXPECT_EQ(exchange.update(rate, 1), 0);
+  FieldBlock before;
+  before.copy_from(phase.tensor);
+  for (const double sign : {1.0, -1.0}) {
+    const std::size_t doubles = before.bytes() / sizeof(double);
+    for (std::size_t n = 0; n < doubles; ++n) phase.tensor.data()[n] = before.data()[n] + sign * rate.data()[n];
+    e.energy += sign / 2 * total_energy(grid, phase);
+  }
+  return e;
+}
+
+// What the force takes from the flow is what the stress takes, whatever phi is, and what the energy gains: for c2 that
+// needs a uniform phi, as a symmetric stress cannot do it where phi changes.
+TEST(ElasticExchange, PowerOfForceAndStressAndRateOfEnergy) {
+  for (const bool flat : {false, true})
+    for (const Material &material : {Material{0.9}, Material::mooney_rivlin(0.7, 0, 0.3), rubber})
+      for (const bool uniform : {false, true}) {
+        const Exchange e = exchange_of(flat, material, uniform);
+        EXPECT_GT(std::fabs(e.energy), 0.01);
+        EXPECT_NEAR(e.force, -e.stress, 1e-13) << flat << uniform;
+        if (uniform || material.c2 == 0) {
+          EXPECT_NEAR(e.energy, e.stress, 1e-12) << flat << uniform;
+        }
+      }
+}
+
+// rho c^2 of a wave along n that moves along m is the second derivative of W for F -> (1 + e m n) F.
+TEST(LargestStiffness, BoundsEveryWave) {
+  Random random(5);
+  double closest = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const double l1 = std::exp(1.2 * random()), l2 = std::exp(1.2 * random());
+    const Real3 l{l1 * l1, l2 * l2, 1 / (l1 * l1 * l2 * l2)};
+    const Matrix B{Real3{l[0], 0, 0}, Real3{0, l[1], 0}, Real3{0, 0, l[2]}};
+    const double angle = 4 * random(), tilt = 4 * random(), turn = 4 * random();
+    const Real3 along{std::cos(angle) * std::cos(tilt), std::sin(angle) * std::cos(tilt), std::sin(tilt)};
+    const Real3 e1{-std::sin(angle), std::cos(angle), 0};
+    const Real3 e2{-std::cos(angle) * std::sin(tilt), -std::sin(angle) * std::sin(tilt), std::cos(tilt)};
+    const Material m = Material::mooney_rivlin(std::fabs(random()), std::fabs(random()), std::fabs(random()));
+    const double d = 1e-3;
+    double w[3];
+    for (int s = -1; s <= 1; ++s) {
+      Matrix F{Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}};
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) F[a][b] += s * d * (std::cos(turn) * e1[a] + std::sin(turn) * e2[a]) * along[b];
+      w[s + 1] = energy(m, product(product(F, B), transposed(F)));
+    }
+    const double stiffness = (w[2] - 2 * w[1] + w[0]) / (d * d), bound = largest_stiffness(m, trace(B), 3);
+    ASSERT_LE(stiffness, bound * (1 + 1e-3));
+    closest = std::max(closest, stiffness / bound);
+  }
+  EXPECT_GT(closest, 0.8);  // not far too careful
+}
+
+TEST(LargestStiffness, KnownValues) {
+  for (const int dim : {2, 3}) {
+    EXPECT_NEAR(largest_stiffness(rubber, 3, dim), rubber.shear_modulus, 1e-12);
+    EXPECT_EQ(largest_stiffness(Material{2}, 5, dim), 2 * stretch_squared(5, dim));
+    for (const double g : {0.5, 2.0})  // the slope of the cubic of simple shear
+      EXPECT_GE(largest_stiffness(rubber, 3 + g * g, dim), 2 * (0.7 + 0.4) + 12 * 0.3 * g * g);
+  }
+  EXPECT_NEAR(inverse_stretch_squared(2 * 4 + 1. / 16, 3), 16, 1e-12);  // B = diag(4, 4, 1/16)
+  EXPECT_NEAR(inverse_stretch_squared(4 + 0.25 + 1, 2), 4, 1e-12);
+}
+
+}  // namespace
