@@ -22,7 +22,13 @@ const std::vector<std::string> series_columns{"time",
                                               "divergence_rms",
                                               "divergence_max",
                                               "solid_volume",
-                                              "volume_drift"};
+                                              "volume_drift",
+                                              "force_power",
+                                              "wall_power",
+                                              "elastic_power",
+                                              "energy_lost",
+                                              "energy_lost_elastic",
+                                              "energy_lost_extended"};
 
 bool wants(const OutputControl &output, const char *name) {
   const auto &fields = output.snapshot_fields;
@@ -70,6 +76,7 @@ PetscErrorCode Outputs::resume(const Config &config, const Grid &grid, Solver *s
   series_due_ = {config.output.series_interval, position.series_time};
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
   first_volume_ = position.first_volume;
+  energy_ = position.energy;
   PetscCall(
       series_.open(grid.comm(), directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config.samples, grid, directory, position.series_time, position.profile_time));
@@ -115,6 +122,22 @@ PetscErrorCode Outputs::measure() {
   PetscFunctionReturn(0);
 }
 
+// Of a state that measure() has seen.
+PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  const Fluid &fluid = config_.fluid;
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver_->phases_now(&phases));
+  energy->kinetic = measured_.flow.kinetic_energy;
+  energy->elastic = measured_.flow.elastic_energy;
+  energy->dissipation = measured_.flow.viscous_dissipation;
+  const EnergyNumbers numbers{fluid.density, fluid.viscosity, fluid.body_force.at(state.time),
+                              &config_.walls, state.time,     solver_->evolved_fraction()};
+  PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
+  PetscFunctionReturn(0);
+}
+
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
   for (const BodyMeasure &body : measured_.bodies) {
@@ -151,12 +174,18 @@ PetscErrorCode Outputs::write_due(bool last) {
   }
   if (series) {
     PetscCall(measure());
+    EnergyState energy;
+    PetscCall(measure_energy(&energy));
+    energy_.advance(state.time, energy);
+    const FlowMeasures &flow = measured_.flow;
     double solid = 0;
-    for (const double volume : measured_.flow.phase_volume) solid += volume;
-    PetscCall(series_.write({state.time, double(state.step), state.dt, measured_.flow.kinetic_energy, measured_.flow.elastic_energy,
-                             measured_.flow.viscous_dissipation, measured_.flow.bulk_velocity[0], measured_.flow.bulk_velocity[1],
-                             measured_.flow.bulk_velocity[2], measured_.flow.speed_max, measured_.flow.divergence_rms, measured_.flow.divergence_max, solid,
-                             measured_.volume_drift}));
+    for (const double volume : flow.phase_volume) solid += volume;
+    PetscCall(series_.write({state.time, double(state.step), state.dt, flow.kinetic_energy, flow.elastic_energy,
+                             flow.viscous_dissipation, flow.bulk_velocity[0], flow.bulk_velocity[1],
+                             flow.bulk_velocity[2], flow.speed_max, flow.divergence_rms, flow.divergence_max, solid,
+                             measured_.volume_drift, energy.rates.force_power, energy.rates.wall_power,
+                             energy.rates.elastic_power, energy_.lost(), energy_.lost_elastic(),
+                             energy_.lost_extended()}));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));
       ++bodies_rows_;
@@ -187,6 +216,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   position->snapshot_time = snapshot_due_.last_time;
   position->profile_time = samples_.profile_time();
   position->first_volume = first_volume_;
+  position->energy = energy_;
   PetscFunctionReturn(0);
 }
 
@@ -215,6 +245,19 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.volume_drift = measured_.volume_drift;
   summary.kinetic_energy = measured_.flow.kinetic_energy;
   summary.elastic_energy = measured_.flow.elastic_energy;
+  EnergyState energy;
+  PetscCall(measure_energy(&energy));
+  EnergyBudget budget = energy_;  // only lines of series.csv advance that of the run
+  budget.advance(state.time, energy);
+  summary.viscous_dissipation = energy.dissipation;
+  summary.force_power = energy.rates.force_power;
+  summary.wall_power = energy.rates.wall_power;
+  summary.elastic_power = energy.rates.elastic_power;
+  summary.energy_supplied = budget.supplied();
+  summary.energy_dissipated = budget.dissipated();
+  summary.energy_lost = budget.lost();
+  summary.energy_lost_elastic = budget.lost_elastic();
+  summary.energy_lost_extended = budget.lost_extended();
   summary.bulk_velocity = measured_.flow.bulk_velocity[0];
   summary.bodies = records();
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved

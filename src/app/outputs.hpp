@@ -5,6 +5,7 @@
 #include "app/due.hpp"
 #include "app/guards.hpp"
 #include "app/sample_files.hpp"
+#include "diagnostics/energy_budget.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
@@ -21,7 +22,8 @@ namespace eulastic {
 struct OutputsPosition {
   long series_rows = 0, bodies_rows = 0, snapshots = 0;
   double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
-  std::vector<double> first_volume;             ///< of every body, at t = 0
+  std::vector<double> first_volume;                                ///< of every body, at t = 0
+  EnergyBudget energy;
 };
 
 class Outputs {
@@ -44,6 +46,7 @@ public:
 
 private:
   std::vector<BodyRecord> records() const;
+  PetscErrorCode measure_energy(EnergyState *energy);
 
   Config config_;
   const Grid *grid_ = nullptr;
@@ -56,6 +59,7 @@ private:
   std::unique_ptr<SnapshotFields> snapshot_fields_;
   Due series_due_, snapshot_due_;
   Measured measured_;
+  EnergyBudget energy_;
   std::vector<double> first_volume_;
   long bodies_rows_ = 0, snapshots_before_ = 0;
   double mach_max_ = 0;

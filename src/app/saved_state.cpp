@@ -45,6 +45,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   reals["flow_scales"] = {s.speed_scale, s.crossing_rate, s.travel};
   reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
   reals["output_times"] = {o.series_time, o.snapshot_time, o.profile_time};
+  reals["energy_budget"] = o.energy.numbers();
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
@@ -81,6 +82,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.series_time = reals["output_times"][0];
   o.snapshot_time = reals["output_times"][1];
   o.profile_time = reals["output_times"][2];
+  o.energy.set_numbers(reals["energy_budget"]);
   s.step = integers["step"][0];
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];

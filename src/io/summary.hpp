@@ -20,6 +20,8 @@ struct Summary {
   double acm_sweeps_per_step = 0, ksp_iterations_per_step = 0, rkl_stages_per_step = 0;
   double divergence_rms = 0, divergence_max = 0, mach_max = 0, volume_drift = 0;
   double kinetic_energy = 0, elastic_energy = 0, bulk_velocity = 0;
+  double viscous_dissipation = 0, force_power = 0, wall_power = 0, elastic_power = 0;  ///< rates at the end
+  double energy_supplied = 0, energy_dissipated = 0, energy_lost = 0, energy_lost_elastic = 0, energy_lost_extended = 0;
   std::uint64_t state_hash = 0;
   std::vector<BodyRecord> bodies;
 };

@@ -90,6 +90,12 @@ EvolveRule Solver::evolve_rule(const Phase &phase) const {
   return rule;
 }
 
+std::vector<double> Solver::evolved_fraction() const {
+  std::vector<double> least;
+  for (const Phase &phase : now_.phases) least.push_back(evolve_rule(phase).centre);
+  return least;
+}
+
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, extremes));

@@ -49,6 +49,8 @@ public:
   /// The phases at the time of the velocity. With the staggered integrator they live half a step behind: a copy is
   /// brought up, the state is not touched. Valid until the next step.
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
+  /// Least phi at a centre where B of each phase is evolved.
+  std::vector<double> evolved_fraction() const;
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
   long sweeps() const { return sweeps_before_ + pressure_solver_->sweeps(); }

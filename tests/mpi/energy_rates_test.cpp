@@ -1,0 +1,173 @@
+// Powers of force, walls and elastic stress: the sums of velocity times the discrete forces, on any number of ranks.
+#include "diagnostics/energy_budget.hpp"
+#include "diagnostics/flow_measures.hpp"
+#include "physics/momentum.hpp"
+#include "support/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+Function wild(double a) {
+  return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z + a * x * y); };
+}
+
+struct Box {
+  Grid grid;
+  Walls walls;
+  FieldBlock velocity;
+  std::vector<Phase> phases;
+
+  Box(MPI_Comm comm, bool flat, const std::array<bool, 3> &has_walls) {
+    GridSpec spec;
+    spec.cells = {7, 13, flat ? 1 : 9};
+    spec.length = {1, 2, 1.5};
+    for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = has_walls[d] ? Boundary::wall : Boundary::periodic;
+    EXPECT_EQ(grid.create(comm, spec), 0);
+    velocity = FieldBlock(grid, grid.dimension());
+    for (int c = 0; c < grid.dimension(); ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
+  }
+
+  void move_walls(const Real3 &speed) {
+    for (int d = 0; d < grid.dimension(); ++d)
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < 3; ++c)
+          if (c != d) walls.motion[d][side].velocity[c] = speed[c] * (1 - 3 * side + d);
+  }
+
+  void add_phase(const Material &material, double seed) {
+    const auto &components = tensor_components(grid.dimension());
+    Phase &phase = phases.emplace_back();
+    phase.material = material;
+    phase.fraction = FieldBlock(grid, 1);
+    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
+    phase.solid.build_all(grid);
+    phase.stressed.build_all(grid);
+    set(grid, phase.fraction[0], at_centre,
+        [&](double x, double y, double z) { return std::fabs(wild(seed)(x, y, z)); });
+    for (int c = 0; c < phase.tensor.count(); ++c) {
+      const double unit = components[c].a == components[c].b;
+      set(grid, phase.tensor[c], components[c].staggering(),
+          [&](double x, double y, double z) { return unit + 0.4 * wild(seed + c)(x, y, z); });
+    }
+  }
+
+  void fill_ghosts() {
+    GhostExchange exchange(grid);
+    EXPECT_EQ(exchange.update(velocity, 2), 0);
+    fill_wall_ghosts_velocity(grid, walls, 0, velocity, 2);
+    for (Phase &phase : phases) {
+      EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
+      EXPECT_EQ(exchange.update(phase.tensor, 2), 0);
+      fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
+      fill_wall_ghosts_tensor(grid, phase.tensor, 2);
+    }
+  }
+
+  // Sum of v . (mu lap v + div sigma_e) over all faces but those on walls, where v = 0.
+  double power_of_forces(double viscosity) {
+    FieldBlock force(grid, grid.dimension());
+    EXPECT_EQ(add_elastic_force(grid, 1, phases, force), 0);
+    double power = 0;
+    for (int c = 0; c < grid.dimension(); ++c)
+      for (const Segment &row : grid.rows())
+        for (int i = 0; i < row.i_end; ++i) {
+          const double *p = &velocity[c](i, row.j, row.k);
+          double sum = force[c](i, row.j, row.k);
+          for (int d = 0; d < grid.dimension(); ++d)
+            sum += viscosity * (p[velocity[c].stride(d)] - 2 * *p + p[-velocity[c].stride(d)]) /
+                   (grid.spacing()[d] * grid.spacing()[d]);
+          if (*p != 0) power += *p * sum * grid.cell_volume();
+        }
+    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, grid.comm());
+    return power;
+  }
+};
+
+struct Measures {
+  FlowMeasures flow;
+  EnergyRates rates;
+};
+
+Measures measure(Box &box, double viscosity) {
+  Measures m;
+  box.fill_ghosts();
+  EXPECT_EQ(measure_flow(box.grid, box.velocity, box.phases, {1.3, viscosity, 0, 0}, &m.flow), 0);
+  const EnergyNumbers numbers{1.3,        viscosity, {0.3, 0.2, 0},
+                              &box.walls, 0,         std::vector<double>(box.phases.size(), 0.5)};
+  EXPECT_EQ(measure_energy_rates(box.grid, box.velocity, box.phases, numbers, &m.rates), 0);
+  return m;
+}
+
+// Moving walls all around: what viscosity takes in all is the walls' power less the dissipation, corners included.
+TEST(EnergyRates, WallsAndDissipationAreThePowerOfTheViscousForce) {
+  for (const bool flat : {false, true})
+    for (const std::array<bool, 3> &has_walls :
+         {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}}) {
+      Box box(PETSC_COMM_WORLD, flat, has_walls);
+      box.move_walls({0.7, -0.4, flat ? 0 : 0.3});
+      const Measures m = measure(box, 0.2);
+      EXPECT_GT(std::fabs(m.rates.wall_power), 0.1);
+      EXPECT_NEAR(box.power_of_forces(0.2), m.rates.wall_power - m.flow.viscous_dissipation,
+                  1e-12 * m.flow.viscous_dissipation);
+    }
+}
+
+// With solids, one of them Mooney-Rivlin, on walls that move along x.
+TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
+  for (const bool flat : {false, true}) {
+    Box box(PETSC_COMM_WORLD, flat, {false, true, true});
+    box.move_walls({0.7, 0, 0});
+    box.add_phase(Material{0.6}, 4);
+    box.add_phase(Material::mooney_rivlin(0.3, 0.4, 0.2), 9);
+    const Measures m = measure(box, 0.2);
+    EXPECT_GT(std::fabs(m.rates.elastic_power), 0.1);
+    EXPECT_NEAR(box.power_of_forces(0.2), m.rates.wall_power - m.flow.viscous_dissipation - m.rates.elastic_power,
+                1e-12 * m.flow.viscous_dissipation);
+    EXPECT_NEAR(m.rates.force_power,
+                1.3 * (flat ? 2 : 3) * (0.3 * m.flow.bulk_velocity[0] + 0.2 * m.flow.bulk_velocity[1]), 1e-13);
+  }
+}
+
+TEST(EnergyRates, SameBitsAsOnOneRank) {
+  for (const bool flat : {false, true}) {
+    Measures m[2];
+    for (int alone = 0; alone < 2; ++alone) {
+      Box box(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, flat, {true, true, false});
+      box.move_walls({0.7, -0.4, 0});
+      box.add_phase(Material::mooney_rivlin(0.3, 0.4, 0.2), 9);
+      m[alone] = measure(box, 0.2);
+      EXPECT_NE(m[alone].rates.extended_power, 0);
+      EXPECT_NE(m[alone].rates.extended_energy, 0);
+    }
+    EXPECT_EQ(std::memcmp(&m[0].rates, &m[1].rates, sizeof m[0].rates), 0);
+    EXPECT_EQ(m[0].flow.elastic_energy, m[1].flow.elastic_energy);
+  }
+}
+
+TEST(EnergyBudget, IsExactForRatesThatAreLinearInTime) {
+  EnergyBudget budget, resumed;
+  const auto state = [](double t) {  // supplied 1 + t, dissipated t/2, to solids 0.3 t, where extended 0.1 t
+    EnergyState s;
+    s.rates = {0.5 + t, 0.5, 0.3 * t, 0.1 * t, 0.02 * t * t};
+    s.dissipation = 0.5 * t;
+    s.elastic = 7 + 0.1 * t * t;
+    s.kinetic = 3 + t;
+    return s;
+  };
+  for (const double t : {0.0, 0.5, 0.6}) budget.advance(t, state(t));
+  resumed.set_numbers(budget.numbers());
+  resumed.advance(2, state(2));
+  EXPECT_NEAR(resumed.supplied(), 4, 1e-14);
+  EXPECT_NEAR(resumed.dissipated(), 1, 1e-14);
+  EXPECT_NEAR(resumed.lost(), 4 - 1 - 2 - 0.4, 1e-14);
+  EXPECT_NEAR(resumed.lost_elastic(), 0.6 - 0.4, 1e-14);
+  EXPECT_NEAR(resumed.lost_extended(), 0.2 - 0.08, 1e-14);
+}
+
+}  // namespace
