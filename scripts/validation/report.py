@@ -8,8 +8,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from PIL import Image  # noqa: E402  (matplotlib's own)
 
+from .notes import NOTES  # noqa: E402
+
 HEADER = ["case", "measure", "method, solver", "at", "reference", "ours", "error", "tolerance", "tolerance from",
           "errors, coarse to fine (order)", "verdict"]
+MISSING = "missing"
 WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 
 
@@ -21,6 +24,12 @@ def failed(case, setting, text):
     return dict(zip(HEADER, [case.name, text.replace("|", "/"), setting.label, "", "", "", "", "", "", "", WORDS[False]]))
 
 
+def unfinished(case, setting, keys):
+    text = f"{case.title}: not run yet"
+    row = failed(case, setting, text)
+    return {**row, "at": " ".join(map(name_of, keys)), "verdict": MISSING}
+
+
 def judge(case, setting, runs, measure):
     """Rows of one measure: the value at the finest key and, if asked for, the order."""
     def error(value):
@@ -28,9 +37,9 @@ def judge(case, setting, runs, measure):
 
     key = list(runs)[-1]
     if measure.whole:
-        ladder, ours = [], measure.ours(runs)
+        ladder, ours, at = [], measure.ours(runs), " ".join(map(name_of, runs))
     else:
-        values = {k: measure.ours(run) for k, run in runs.items()}
+        values, at = {k: measure.ours(run) for k, run in runs.items()}, name_of(key)
         ladder, ours = [(k, error(value)) for k, value in values.items()], values[key]
     limit = measure.tolerance.get(setting.label, measure.tolerance.get(setting.method))
     limit = limit(key) if callable(limit) else limit
@@ -38,7 +47,7 @@ def judge(case, setting, runs, measure):
     shown = " ".join(f"{e:.2g}" for _, e in ladder) + (f" ({order:.2f})" if order is not None else "")
     percent = (lambda e: f"{100 * e:.2g} %") if measure.relative else (lambda e: f"{e:.2g}")
     verdict = None if limit is None else bool(error(ours) <= limit)  # a nan fails
-    rows = [[case.name, measure.what, setting.label, name_of(key), f"{measure.reference:.7g}", f"{ours:.6g}",
+    rows = [[case.name, measure.what, setting.label, at, f"{measure.reference:.7g}", f"{ours:.6g}",
              percent(error(ours)), "" if limit is None else percent(limit), measure.why, shown, WORDS[verdict]]]
     least = measure.order.get(setting.method)
     if least is not None and len(ladder) > 1:
@@ -97,20 +106,28 @@ runs are kept in build/validation, a killed one goes on.
     scripts/validate              # everything: hours
     scripts/validate --quick      # a short form of every reference, part of scripts/test
     scripts/validate --only S6
+    scripts/validate --finished   # run nothing: the page of what is there
 
 "at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
 coarser grids stand in front of it, with the observed order. Errors in % are relative. Tolerances that depend on the
 grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
-of the fast one. The cases, with their options, formulas and sources, are in scripts/validation.
+of the fast one. "missing" marks runs that were not made. The cases, with their options, formulas and sources, are in
+scripts/validation.
 
 {counts}
 
 {table}
+
+## What is known about misses and limits
+
+{notes}
 {plots}"""
 
 
 def write_page(rows, titles, pictures, path):
     counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
-                       ((WORDS[True], "passed"), (WORDS[False], "failed"), (WORDS[None], "reported")))
-    plots = "".join(f"\n![{titles[name]}](images/{picture.name})\n\n*{name}: {titles[name]}*\n" for name, picture in pictures.items())
-    path.write_text(PAGE.format(counts=counts + ".", table=table(rows), plots=plots))
+                       ((WORDS[True], "passed"), (WORDS[False], "failed"), (WORDS[None], "reported"), (MISSING, "missing")))
+    plots = "".join(f"\n![{titles[name]}](images/{picture.name})\n\n*{name}: {titles[name]}*\n"
+                    for name, picture in pictures.items())
+    notes = "\n".join(f"- {name}: {text}" for name, text in NOTES.items() if name in titles)
+    path.write_text(PAGE.format(notes=notes, counts=counts + ".", table=table(rows), plots=plots))

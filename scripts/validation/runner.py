@@ -34,9 +34,12 @@ class Runner:
         directory = self.work / f"{tail}_{hashlib.sha256(text.encode()).hexdigest()[:12]}"
         return [str(self.program), str(file), *words], directory
 
-    def run(self, words, directory):
+    def is_done(self, directory):
         summary = directory / "summary.json"
-        if summary.exists() and json.loads(summary.read_text())["exit_reason"] in ("time_end", "steps"):
+        return summary.exists() and json.loads(summary.read_text())["exit_reason"] in ("time_end", "steps")
+
+    def run(self, words, directory):
+        if self.is_done(directory):
             return Run(directory)
         words = words + ["-output_dir", str(directory), "-checkpoint_wall_minutes", "2", "-checkpoint_keep", "1"]
         if directory.exists() and any(directory.glob("checkpoint_*.h5")):
@@ -51,10 +54,13 @@ class Runner:
             checkpoint.unlink()
         return Run(directory)
 
-    def chain(self, case, setting, more):
-        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there."""
+    def chain(self, case, setting, more, finished=False):
+        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there.
+        With `finished` only those that have been run, up to the first that has not."""
         runs, directories = {}, {}
         for key in setting.keys:
             words, directories[key] = self.command(case, setting, key, directories.__getitem__, more)
+            if finished and not self.is_done(directories[key]):
+                break
             runs[key] = self.run(words, directories[key])
         return runs

@@ -1,0 +1,20 @@
+"""What is known about rows that fail, for the page: measured, not guessed."""
+
+NOTES = {
+    "F6": "At Re = 1000 the errors fall at second order, .018, .0045 at 64^2, 128^2: 128^2 is too coarse for this "
+          "tolerance, 256^2 is what the order asks for (.0011).",
+    "S1": "classic: B_xy at the interface does not converge. Its interface is a layer in which B takes the shear rate of "
+          "both sides; the velocity and B_xy on the wall do converge. The order of fast with ACM suffers from "
+          "`-acm_tolerance`: with SMAC it is 2.00.",
+    "S6": "With density 1, that is rho gd R^2/mu = .05, inertia raises D by .9 % and turns the disc by .8 degrees at "
+          "Ca = .1 (128^2); the runs have density .1.",
+    "S7": "The automatic time step, 5 to 6 % of mu/G, delays the disc by 1.4 time steps: first order. l at G t/mu = .5 on "
+          "160^2 is 1.3898, 1.3823, 1.3773 with steps of 5.3, 2, .5, the same with SMAC, without inertia and with density "
+          "1. RKL2 damps modes that are stiff (nu k^2 dt >> 1) by 1/2 per step only, so a velocity that should follow the "
+          "stress at once follows one step later, and the force of n+1/2 adds half a step. Steady states do not feel it. For "
+          "1 % of a transient without inertia take `-time_step` below .005 mu/G. In space the order is 1.",
+    "S9": "First order in space: 2.8, 1.2, .6 % at 8, 16, 32 cells per radius; a box twice as large changes the rate by "
+          ".1 %, half the time step by .01 %.",
+    "S12": "48 cells are halved to 3: levels with odd numbers of cells are not symmetric, so mirrored scenes agree to the "
+           "tolerance of the sweeps instead of round-off; 64 cells give the mirrored bits.",
+}
