@@ -1,21 +1,24 @@
 // eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
 #include "app/check_only.hpp"
 #include "app/run.hpp"
+#include "app/signals.hpp"
 #include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "io/hdf5_file.hpp"
 
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 
 using namespace eulastic;
 
 namespace {
 
-// Keeps PETSc's first message for our one line and prints no traceback.
+// Keeps PETSc's first message for our one line, not those of cleaning up after it, and prints no traceback.
 PetscErrorCode keep_message(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
                             const char *message, void *text) {
-  if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+  std::string &kept = *static_cast<std::string *>(text);
+  if (type == PETSC_ERROR_INITIAL && message && kept.empty()) kept = message;
   return code;
 }
 
@@ -59,9 +62,7 @@ int act(ParseResult &parsed) {
   return code;
 }
 
-}  // namespace
-
-int main(int argc, char **argv) {
+int program(int argc, char **argv) {
   const char *environment = std::getenv("PETSC_OPTIONS");
   ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
   unsetenv("PETSC_OPTIONS");
@@ -74,8 +75,32 @@ int main(int argc, char **argv) {
   int petsc_count = static_cast<int>(petsc.size()) - 1;
   char **petsc_arguments = petsc.data();
   if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
+  catch_faults();
   const int code = act(parsed);
   if (Hdf5File::left_open()) MPI_Abort(PETSC_COMM_WORLD, code);
   if (PetscFinalize() && code == exit_fine) return exit_failed;
   return code;
+}
+
+// What no verb expects, memory that is not there above all. The other ranks must not wait for this one.
+int give_up(const char *what) {
+  int initialised = 0, rank = 0;
+  MPI_Initialized(&initialised);
+  if (initialised) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::fprintf(stderr, "eulastic: error: rank %d: %s\n", rank, what);
+  std::fflush(stderr);
+  if (initialised) MPI_Abort(MPI_COMM_WORLD, exit_failed);
+  return exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+  try {
+    return program(argc, argv);
+  } catch (const std::bad_alloc &) {
+    return give_up("out of memory");
+  } catch (const std::exception &error) {
+    return give_up(error.what());
+  }
 }

@@ -186,6 +186,9 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
   }
   result.error = parse_into(arguments, &result);
   if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
+  constexpr std::size_t longest = 1000;                         // what was typed may be longer than anybody reads
+  if (const std::size_t length = result.error.size(); length > longest)
+    result.error.replace(longest / 2, length - longest, " ... ");
   for (char &c : result.error)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';  // one line, whatever was typed
   return result;

@@ -1,6 +1,9 @@
 #include "app/signals.hpp"
 
+#include <petscsys.h>
+#include <unistd.h>
 #include <csignal>
+#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -16,7 +19,26 @@ void handle(int signal, int flags) {
   (void)sigaction(signal, &action, nullptr);
 }
 
+// Others must not wait for a rank that is gone.
+PetscErrorCode end_all(int signal, void *) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  char text[160];
+  const int length = std::snprintf(
+      text, sizeof text, "eulastic: error: rank %d met signal %d (%s): a defect of the program or the machine\n", rank,
+      signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
+  (void)!::write(STDERR_FILENO, text, static_cast<std::size_t>(length));
+  MPI_Abort(PETSC_COMM_WORLD, 1);
+  return 0;
+}
+
 }  // namespace
+
+void catch_faults() {
+  PetscBool unwanted = PETSC_FALSE;
+  (void)PetscOptionsHasName(nullptr, nullptr, "-no_signal_handler", &unwanted);
+  if (!unwanted) (void)PetscPushSignalHandler(end_all, nullptr);
+}
 
 void catch_signals() {
   handle(SIGUSR1, 0);

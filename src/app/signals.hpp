@@ -1,10 +1,12 @@
-// Signals that ask a run to write a checkpoint and end: SIGUSR1, SIGTERM, SIGINT.
+// Signals that ask a run to write a checkpoint and end, SIGUSR1, SIGTERM, SIGINT; and those that end it.
 #pragma once
 
 namespace eulastic {
 
 /// Local. Call after PetscInitialize, which has handlers of its own. A second SIGINT ends the process at once.
 void catch_signals();
+/// Local. SIGSEGV, SIGFPE, SIGABRT and the like: one line, then all ranks end. Call after PetscInitialize.
+void catch_faults();
 /// Local: whether this process has been asked. All ranks must agree before anything is done about it.
 bool signal_caught();
 

@@ -133,7 +133,7 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
     for (int d = 0; d < grid.dimension(); ++d) {
       const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
       // A body that fills a periodic direction has a mean of -1/2 there and must stay.
-      if (std::abs(mean) > 0.75) references_[b][d] += static_cast<int>(std::lround(mean));
+      if (std::abs(mean) > 0.75 && std::abs(mean) < 0x1p20) references_[b][d] += static_cast<int>(std::lround(mean));
     }
   PetscFunctionReturn(0);
 }

@@ -163,7 +163,8 @@ std::string BodiesFile::cut(std::size_t rows) {
 
 PetscErrorCode BodiesFile::resume(long *rows) {
   PetscFunctionBeginUser;
-  if (rank_ == 0 && !std::filesystem::exists(path_)) *rows = 0;
+  std::error_code ignored;
+  if (rank_ == 0 && !std::filesystem::exists(path_, ignored)) *rows = 0;
   PetscCallMPI(MPI_Bcast(rows, 1, MPI_LONG, 0, comm_));
   PetscCall(fail_together(comm_, rank_ == 0 ? cut(static_cast<std::size_t>(*rows)) : std::string()));
   PetscFunctionReturn(0);

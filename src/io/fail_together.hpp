@@ -15,7 +15,8 @@ template <class Call>
 PetscErrorCode catch_together(Call call, std::string *problem) {
   const auto keep = [](MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
                        const char *message, void *text) {
-    if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+    std::string &kept = *static_cast<std::string *>(text);
+    if (type == PETSC_ERROR_INITIAL && message && kept.empty()) kept = message;  // not those of cleaning up after it
     return code;
   };
   PetscFunctionBeginUser;

@@ -106,10 +106,12 @@ PetscErrorCode Hdf5File::read_attribute(const std::string &object, const std::st
   PetscFunctionBeginUser;
   PetscCall(open_attribute(object, name, &attribute));
   const Hdf5Type type(H5Aget_type(attribute.get()));
-  const bool fixed = H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) == 0;
+  const Hdf5Space space(H5Aget_space(attribute.get()));
+  const bool fixed = H5Tget_class(type.get()) == H5T_STRING && H5Tis_variable_str(type.get()) == 0 &&
+                     H5Sget_simple_extent_npoints(space.get()) == 1;
   value->assign(fixed ? H5Tget_size(type.get()) : 0, '\0');
   PetscCall(check(fixed && H5Aread(attribute.get(), type.get(), value->data()) >= 0,
-                  "cannot read attribute " + name + " of " + object + " as a string of fixed length"));
+                  "cannot read attribute " + name + " of " + object + " as one string of fixed length"));
   value->resize(std::char_traits<char>::length(value->c_str()));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 // gtest under PETSc and MPI: rank 0 reports, every rank's failures count.
 #include "base/events.hpp"
+#include "support/leaks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,7 @@ int main(int argc, char **argv) {
   }
   int failed = RUN_ALL_TESTS();
   MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+  eulastic::test::check_leaks();
   PetscCall(PetscFinalize());
   return failed;
 }

@@ -233,3 +233,13 @@ TEST(OptionRefusals, ErrorsNameTheirSource) {
   EXPECT_NE(parse_line("-time_end 1", "-time_step x").error.find("in PETSC_OPTIONS"), std::string::npos);
   EXPECT_EQ(parse({"-x\ny"}).error.find('\n'), std::string::npos);
 }
+
+// Found by tests/fuzz.
+TEST(OptionRefusals, LongWords) {
+  for (const char *option : {"-initial_state", "-restart", "-cell_jitter"})
+    for (std::size_t length : {300, 5000}) {
+      const std::string error = parse_line(scene + " " + option + " " + std::string(length, 'a')).error;
+      EXPECT_NE(error.find(option), std::string::npos) << error;
+      EXPECT_LT(error.size(), 1100u);
+    }
+}

@@ -1,0 +1,293 @@
+// usage: fuzz [CASES [SEED]]
+// Wrong and nearly right input, CASES of it (default 10000), in one process: command lines, options files, position
+// lists, initial states, checkpoints. Prints how many of each kind were refused and accepted, and what was found: a
+// refusal of no line or of several, something written by a run that was refused, options that do not survive being
+// written, a case that takes longer than a minute. A crash ends the program and names its case.
+#include "app/check_only.hpp"
+#include "app/run.hpp"
+#include "base/events.hpp"
+#include "fuzz/command_lines.hpp"
+#include "fuzz/hdf5_files.hpp"
+#include "io/checkpoint.hpp"
+#include "support/leaks.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+using namespace eulastic;
+using namespace eulastic::fuzz;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string &present = *new std::string;  // the case under way; outlives everything
+
+void say_case(int signal) {
+  (void)!write(2, present.data(), present.size());
+  if (signal == SIGALRM) (void)!write(2, "\nfuzz: more than a minute\n", 26);
+  std::_Exit(1);
+}
+
+struct Outcome {
+  bool accepted = false;
+  std::string found;  ///< what is wrong with the program; empty = nothing
+};
+
+class Fuzzer {
+public:
+  explicit Fuzzer(const fs::path &room) : room_(room) {}
+
+  PetscErrorCode prepare();
+  Outcome command_line(Dice &dice) { return judge(spoiled_line(dice, valid_line(dice))); }
+  Outcome options_file(Dice &dice);
+  Outcome positions(Dice &dice);
+  Outcome initial_state(Dice &dice);
+  Outcome checkpoint(Dice &dice);
+
+private:
+  Outcome judge(const Words &words);
+  std::string run_it(const ParseResult &parsed, Outcome *outcome);
+  static std::string text_of(const fs::path &path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  fs::path put(const char *name, const std::string &text) const {
+    std::ofstream(room_ / name, std::ios::binary) << text;
+    return room_ / name;
+  }
+
+  fs::path room_;
+  std::vector<std::string> cases_;  ///< texts of options/
+  std::string checkpoint_;          ///< bytes of a good one
+  Words checkpoint_line_;
+};
+
+bool one_line(const std::string &message) {
+  return !message.empty() && message.find_first_of("\n\r") == std::string::npos && message.size() < 1500;
+}
+
+bool small(const Config &config) {
+  double cells = 1, bodies = 0;
+  for (int n : config.grid.cells) cells *= n;
+  for (const auto &places : config.places) bodies += double(places.size());
+  const double rows = config.time.end / config.output.series_interval;
+  return cells <= 4096 && bodies <= 100 && config.time.steps_max >= 1 && config.time.steps_max <= 3 && rows < 1e6;
+}
+
+// Runs what was accepted; what PETSc calls an error without a line for the user is found.
+std::string Fuzzer::run_it(const ParseResult &parsed, Outcome *outcome) {
+  const auto keep = [](MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
+                       const char *message, void *text) {
+    if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
+    return code;
+  };
+  std::string kept, refusal;
+  int code = -1;
+  const fs::path directory = parsed.config.output.directory;
+  fs::remove_all(directory);
+  (void)PetscPushErrorHandler(keep, &kept);
+  const PetscErrorCode failed = run(parsed, &code, &refusal);
+  (void)PetscPopErrorHandler();
+  if (failed) {
+    refusal = kept;
+    code = failed == PETSC_ERR_USER_INPUT ? exit_usage : exit_failed;
+    if (failed != PETSC_ERR_FILE_UNEXPECTED && failed != PETSC_ERR_NOT_CONVERGED && failed != PETSC_ERR_USER_INPUT)
+      outcome->found = "internal error " + std::to_string(failed) + ": " + kept;
+  }
+  if (code == exit_fine && !refusal.empty()) outcome->found = "exit code 0 with an error: " + refusal;
+  if (code != exit_fine && !one_line(refusal)) outcome->found = "not one line: " + refusal;
+  if (code == exit_usage && fs::exists(directory)) outcome->found = "refused, but something was written: " + refusal;
+  if (code != exit_usage && !fs::exists(directory / "options.txt") && !failed) outcome->found = "no options.txt";
+  for (const auto &entry : fs::exists(directory) ? fs::directory_iterator(directory) : fs::directory_iterator())
+    if (entry.path().extension() == ".tmp") outcome->found = "left behind: " + entry.path().string();
+  return refusal;
+}
+
+Outcome Fuzzer::judge(const Words &words) {
+  Outcome outcome;
+  Words line = words;
+  line.push_back("-output_dir");
+  line.push_back(room_ / "run");
+  for (const std::string &word : line) present += " '" + word + "'";
+  ParseResult parsed = parse(line);
+  if (!parsed.message.empty()) return outcome;
+  if (!parsed.error.empty()) {
+    if (!one_line(parsed.error)) outcome.found = "not one line: " + parsed.error;
+    return outcome;
+  }
+  outcome.accepted = true;
+  if (!one_line(Grid::why_not(parsed.config.grid, 1) + ".")) outcome.found = "not one line";
+  if (!Grid::why_not(parsed.config.grid, 1).empty()) return outcome;
+  (void)check_report(parsed.config, 1);
+  const std::string text = options_text(parsed);
+  const ParseResult again = parse({put("options.txt", text)});
+  const auto rows = [](const std::string &all) { return all.substr(all.find('\n')); };
+  if (!again.error.empty())
+    outcome.found = "options.txt is refused: " + again.error;
+  else if (rows(options_text(again)) != rows(text))
+    outcome.found = "options.txt is another case:\n" + text;
+  if (!parsed.config.check_only && small(parsed.config) && outcome.found.empty())
+    outcome.accepted = run_it(parsed, &outcome).empty();
+  return outcome;
+}
+
+Outcome Fuzzer::options_file(Dice &dice) {
+  const std::string text = dice.spoil(dice.of(cases_), 6);
+  present += text;
+  return judge({put("case.opts", text), "-check_only"});
+}
+
+Outcome Fuzzer::positions(Dice &dice) {
+  std::string text = dice.one_in(2) ? "x,y,z\n" : dice.one_in(2) ? "x,y,z,angle_x,angle_y,angle_z\n" : "";
+  for (std::size_t n = 1 + dice.below(4); n > 0; --n) {
+    for (int c = 0, columns = dice.one_in(3) ? 6 : 3; c < columns; ++c)
+      text += (c ? "," : "") + std::to_string(0.1 * static_cast<double>(dice.below(12)));
+    text += dice.one_in(4) ? "\r\n" : "\n";
+  }
+  if (!dice.one_in(3)) text = dice.spoil(text, 2);
+  present += text;
+  Words words{"-grid_cells",
+              "8,8,8",
+              "-time_end",
+              "1",
+              "-time_steps_max",
+              "1",
+              "-species",
+              "cell",
+              "-cell_shape",
+              "ellipsoid",
+              "-cell_semi_axes",
+              ".2,.1,.1",
+              "-cell_shear_modulus",
+              "1",
+              "-cell_placement",
+              "list",
+              "-cell_positions",
+              put("positions.csv", text)};
+  return judge(words);
+}
+
+Outcome Fuzzer::initial_state(Dice &dice) {
+  const int flat[3] = {8, 7, 1}, deep[3] = {6, 5, 4};
+  const bool is_flat = dice.one_in(2);
+  const fs::path file = room_ / "state.h5";
+  write_state(dice, file, is_flat ? flat : deep);
+  Words words{"-grid_cells", is_flat ? "8,7,1" : "6,5,4", "-time_end", "1", "-time_steps_max", "1", "-initial_state",
+              file,          "-fluid_viscosity",          ".1"};
+  if (dice.one_in(2)) words.insert(words.end(), {"-boundary_y", "wall"});
+  if (!dice.one_in(4)) words.insert(words.end(), {"-species", "cell", "-cell_shear_modulus", "1"});
+  if (dice.one_in(6)) words.insert(words.end(), {"-cell_shape", "sphere", "-cell_radius", ".2"});
+  return judge(words);
+}
+
+Outcome Fuzzer::checkpoint(Dice &dice) {
+  std::string bytes = checkpoint_;
+  const bool objects = dice.one_in(3);
+  if (!objects) {
+    if (dice.one_in(8)) bytes.resize(dice.below(bytes.size()));
+    for (std::size_t n = 1 + dice.below(3); n > 0 && !bytes.empty(); --n)
+      bytes[dice.below(bytes.size())] ^= static_cast<char>(1 << dice.below(8));
+  }
+  const fs::path file = put("checkpoint.h5", bytes);
+  if (objects) change_objects(dice, file);
+  Words words = checkpoint_line_;
+  words.insert(words.end(), {"-restart", file, "-time_steps_max", "3"});
+  return judge(words);
+}
+
+PetscErrorCode Fuzzer::prepare() {
+  PetscFunctionBeginUser;
+  for (const auto &entry : fs::directory_iterator(EULASTIC_OPTIONS_DIR)) cases_.push_back(text_of(entry.path()));
+  std::istringstream line(
+      "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 "
+      "-species cell -cell_shape sphere -cell_radius .3 -cell_shear_modulus 1");
+  for (std::string word; line >> word;) checkpoint_line_.push_back(word);
+  Words words = checkpoint_line_;
+  const fs::path directory = room_ / "good";
+  words.insert(words.end(), {"-time_steps_max", "2", "-checkpoint_interval", "1e-9", "-output_dir", directory});
+  int code = -1;
+  std::string refusal;
+  PetscCall(run(parse(words), &code, &refusal));
+  PetscCheck(code == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s", refusal.c_str());
+  checkpoint_ = text_of(list_checkpoints(directory).front());
+  PetscFunctionReturn(0);
+}
+
+struct Kind {
+  const char *name;
+  Outcome (Fuzzer::*run)(Dice &);
+  int share;  ///< of 20
+  long tried = 0, accepted = 0, found = 0;
+};
+
+PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *found) {
+  PetscFunctionBeginUser;
+  std::string room = (fs::temp_directory_path() / "eulastic_fuzz_XXXXXX").string();
+  PetscCheck(mkdtemp(room.data()), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", room.c_str());
+  Fuzzer fuzzer(room);
+  PetscCall(fuzzer.prepare());
+  std::vector<Kind> kinds{{"command line", &Fuzzer::command_line, 9},
+                          {"options file", &Fuzzer::options_file, 4},
+                          {"positions", &Fuzzer::positions, 3},
+                          {"initial state", &Fuzzer::initial_state, 2},
+                          {"checkpoint", &Fuzzer::checkpoint, 2}};
+  for (Kind &kind : kinds)
+    for (long n = 0; n < cases * kind.share / 20; ++n) {
+      Dice dice(seed * 1000003 + static_cast<unsigned long>(n));
+      present =
+          std::string("\nfuzz: ") + kind.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(n) + ":";
+      alarm(60);
+      const Outcome outcome = (fuzzer.*kind.run)(dice);
+      ++kind.tried;
+      kind.accepted += outcome.accepted;
+      if (outcome.found.empty()) continue;
+      ++kind.found;
+      std::fprintf(stderr, "%s\nfuzz: %s\n", present.c_str(), outcome.found.c_str());
+    }
+  alarm(0);
+  std::fprintf(out, "%-14s %8s %8s %8s %8s\n", "input", "tried", "refused", "accepted", "found");
+  Kind sum{"all", nullptr, 0};
+  for (const Kind &kind : kinds) {
+    sum.tried += kind.tried, sum.accepted += kind.accepted, sum.found += kind.found;
+    std::fprintf(out, "%-14s %8ld %8ld %8ld %8ld\n", kind.name, kind.tried, kind.tried - kind.accepted, kind.accepted,
+                 kind.found);
+  }
+  std::fprintf(out, "%-14s %8ld %8ld %8ld %8ld\n", sum.name, sum.tried, sum.tried - sum.accepted, sum.accepted,
+               sum.found);
+  *found = sum.found;
+  fs::remove_all(room);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+
+int main(int argc, char **argv) {
+  const long cases = argc > 1 ? std::atol(argv[1]) : 10000;
+  const unsigned long seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
+  std::FILE *out = fdopen(dup(1), "w");  // the runs themselves print to nowhere
+  if (!out || !std::freopen("/dev/null", "w", stdout)) return 1;
+  int none = 1;
+  PetscCall(PetscInitialize(&none, &argv, nullptr, nullptr));
+  PetscCall(register_events());
+  for (int signal : {SIGALRM, SIGABRT, SIGSEGV, SIGFPE, SIGBUS}) (void)std::signal(signal, say_case);
+  if (__sanitizer_set_death_callback)
+    __sanitizer_set_death_callback([] { (void)!write(2, present.data(), present.size()); });
+  long found = 0;
+  PetscCall(fuzz_all(cases, seed, out, &found));
+  if (H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) > 0) ++found, std::fprintf(stderr, "fuzz: HDF5 objects left open\n");
+  test::check_leaks();
+  PetscCall(PetscFinalize());
+  std::fclose(out);
+  return found > 0;
+}

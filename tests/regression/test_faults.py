@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""One rank fails, in every verb and in every way: all ranks end within seconds, with one line and an exit code.
+
+Needs EULASTIC, EULASTIC_MPIEXEC and EULASTIC_FAULT_LIBRARY (tests/support/fault.cpp, preloaded).
+"""
+import os
+import pathlib
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from restart_case import BINARY, ENDLESS, FLAT, MPIEXEC, OFTEN, ROOT, Restart  # noqa: E402
+
+LIBRARY = os.environ["EULASTIC_FAULT_LIBRARY"]
+VERBS = re.findall(r'"(Eul[A-Z]\w+)"', (ROOT / "src/base/events.cpp").read_text())
+# What a verb needs besides a fluid with bodies and the fast method.
+NEEDS = {"EulSMAC": ["-pressure_solver", "smac"]}
+SECONDS = 30  # far more than it takes, far less than for ever
+
+
+class Faults(Restart):
+    def fails(self, kind, verb, rank, ranks=2, count=3):
+        self.environment.update({"LD_PRELOAD": LIBRARY, "EULASTIC_FAULT": f"{kind} {verb} {rank} {count}",
+                                 "OMPI_MCA_orte_base_help_aggregate": "0"})
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks), BINARY, *FLAT, *OFTEN, *NEEDS.get(verb, []),
+                   "-time_steps_max", "20", "-output_dir", f"{kind}_{verb}_{rank}"]
+        result = subprocess.run(list(map(str, command)), cwd=self.room, env=self.environment, timeout=SECONDS,
+                                capture_output=True, text=True)
+        self.assertIn(f"fault: {kind} in {verb}", result.stderr, "the fault was not met")
+        self.assertNotEqual(result.returncode, 0)
+        return [line for line in result.stderr.splitlines() if line.startswith("eulastic: error:")]
+
+    def test_memory_in_every_verb(self):
+        for verb in VERBS:
+            with self.subTest(verb):
+                lines = self.fails("memory", verb, 1)
+                self.assertEqual(lines, ["eulastic: error: rank 1: out of memory"])
+
+    def test_error_in_every_verb(self):
+        for n, verb in enumerate(VERBS):
+            with self.subTest(verb):
+                lines = self.fails("error", verb, n % 2)
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], "MPI|cannot|disk full|damaged")
+
+    def test_crash_and_exit(self):
+        lines = self.fails("crash", "EulMomentum", 1)
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn("rank 1 met signal 11", lines[0])
+        self.fails("exit", "EulACM", 1)  # Open MPI has the word
+        self.fails("memory", "EulACM", 2, ranks=3)
+
+    def test_disk_of_one_rank(self):
+        for which in (0, 1):
+            with self.subTest(which):
+                shutil.rmtree(self.room / "run", ignore_errors=True)
+                process = self.start(*FLAT, *ENDLESS[:2], *OFTEN, ranks=2)
+                self.wait_until(self.checkpoints)
+                children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+                ranks = [int(p) for p in children if os.readlink(f"/proc/{p}/exe") == os.path.realpath(BINARY)]
+                resource.prlimit(ranks[which], resource.RLIMIT_FSIZE, (10000, 10000))
+                code = process.wait(SECONDS)
+                errors = process.stderr.read()
+                self.assertEqual(code, 1, errors)
+                self.assertEqual(errors.count("eulastic: error:"), 1, errors)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Every case of options/ for a few steps: the same state hash on 1 to 4 ranks, with AVX-512 and without, and with
+nothing skipped (programs that differ from the usual one in that only: tests/CMakeLists.txt).
+
+Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from read_run import read_options  # noqa: E402
+
+MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+CASES = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
+STEPS = 4
+
+
+def coarse(case):
+    """The case's cells, at most 18 (3-D) or 36 (2-D) in a direction, never fewer than four ranks can share."""
+    cells = [int(n) for n in read_options(ROOT / f"options/{case}.opts")["grid_cells"].split(",")]
+    most = 36 if cells[2] == 1 else 18
+    return ",".join(str(min(n, most)) for n in cells)
+
+
+class SameBits(unittest.TestCase):
+    def setUp(self):
+        room = tempfile.TemporaryDirectory()
+        self.addCleanup(room.cleanup)
+        self.room = pathlib.Path(room.name)
+
+    def summary(self, case, *options, ranks=1, program="EULASTIC"):
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        done = subprocess.run([*command, os.environ[program], ROOT / f"options/{case}.opts", "-grid_cells", coarse(case),
+                               "-time_steps_max", str(STEPS), "-snapshot_interval", "0", "-output_dir", self.room / "run",
+                               "-output_overwrite", *options], capture_output=True, text=True, timeout=300,
+                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.room / "run/summary.json").read_text())
+        self.assertEqual((summary["steps"], summary["ranks"]), (STEPS, ranks))
+        return summary
+
+    def compare(self, method, ranks):
+        skipped = 0
+        for case in CASES:
+            with self.subTest(case):
+                options = ["-method", method, "-time_step", "0"]
+                one = self.summary(case, *options)
+                for n in ranks:
+                    self.assertEqual(self.summary(case, *options, ranks=n)["state_hash"], one["state_hash"], f"{n} ranks")
+                avx2 = self.summary(case, *options, program="EULASTIC_AVX2")
+                self.assertEqual(avx2["state_hash"], one["state_hash"], "without AVX-512")
+                if not one["bodies"]:
+                    continue
+                whole = self.summary(case, *options, program="EULASTIC_WHOLE")
+                self.assertEqual(whole["state_hash"], one["state_hash"], "nothing skipped")
+                self.assertGreaterEqual(whole["active_fraction"], 1)
+                skipped += one["active_fraction"] < 0.9
+
+        self.assertGreater(skipped, 3)
+
+    def test_fast(self):
+        self.compare("fast", (2, 3, 4))
+
+    def test_classic(self):
+        self.compare("classic", (3,))
+
+
+if __name__ == "__main__":
+    unittest.main()
