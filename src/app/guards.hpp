@@ -23,9 +23,10 @@ struct Measured {
   double time = -1;  ///< of the state; negative: not yet
   FlowMeasures flow;
   std::vector<BodyMeasure> bodies;
-  double volume_drift = 0;  ///< of the body that has changed most
-  int drifting_body = -1;   ///< its index
-  double mach = 0;          ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
+  double volume_drift = 0;    ///< of the body that has changed most
+  double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
+  int drifting_body = -1;     ///< its index
+  double mach = 0;            ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 
 class Guards {

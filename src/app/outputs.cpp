@@ -108,11 +108,13 @@ PetscErrorCode Outputs::measure() {
   if (solver_->bodies().bodies() > 0) PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
-  m.volume_drift = 0;
+  const double few_cells = (grid_->dimension() == 3 ? 8 : 4) * grid_->cell_volume();
+  m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
-    if (drift <= m.volume_drift) continue;
-    m.volume_drift = drift;
+    m.volume_drift = std::max(m.volume_drift, drift);
+    if (drift <= m.resolved_drift || first_volume_[b] < few_cells) continue;
+    m.resolved_drift = drift;
     m.drifting_body = static_cast<int>(b);
   }
   const double sound_speed = solver_->sound_speed();

@@ -53,7 +53,7 @@ TEST_F(GuardsTest, EachTripsBeyondItsBoundOnly) {
   GuardControl &guard = config.guard;
   for (const Case &c :
        {Case{&guard.divergence, &bad.flow.divergence_rms, "-guard_divergence 0.25"},
-        Case{&guard.mach, &bad.mach, "-guard_mach 0.25"}, Case{&guard.volume_drift, &bad.volume_drift, "body 3"}}) {
+        Case{&guard.mach, &bad.mach, "-guard_mach 0.25"}, Case{&guard.volume_drift, &bad.resolved_drift, "body 3"}}) {
     *c.bound = 0.25;
     const double usual = std::exchange(*c.value, 0.25);
     EXPECT_FALSE(check(bad)) << c.name;
