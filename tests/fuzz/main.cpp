@@ -1,8 +1,8 @@
 // usage: fuzz [CASES [SEED]]
 // Wrong and nearly right input, CASES of it (default 10000), in one process: command lines, options files, position
-// lists, initial states, checkpoints. Prints how many of each kind were refused and accepted, and what was found: a
-// refusal of no line or of several, something written by a run that was refused, options that do not survive being
-// written, a case that takes longer than a minute. A crash ends the program and names its case.
+// lists, initial states, voxels, checkpoints. Prints how many of each kind were refused and accepted, and what was
+// found: a refusal of no line or of several, something written by a run that was refused, options that do not survive
+// being written, a case that takes longer than a minute. A crash ends the program and names its case.
 #include "app/check_only.hpp"
 #include "app/run.hpp"
 #include "base/events.hpp"
@@ -50,6 +50,7 @@ public:
   Outcome options_file(Dice &dice);
   Outcome positions(Dice &dice);
   Outcome initial_state(Dice &dice);
+  Outcome voxels(Dice &dice);
   Outcome checkpoint(Dice &dice);
 
 private:
@@ -189,6 +190,39 @@ Outcome Fuzzer::initial_state(Dice &dice) {
   return judge(words);
 }
 
+Outcome Fuzzer::voxels(Dice &dice) {
+  const int cells[3] = {8, 7, 6};
+  std::string bytes, option = "-cell_voxels", value;
+  switch (dice.below(3)) {
+    case 0:
+      bytes = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 3\nspacings: .2 .2 .2\nencoding: raw\n\n";
+      for (int v = 0; v < 48; ++v) bytes += static_cast<char>(dice.below(2));
+      value = room_ / "volume.nrrd";
+      break;
+    case 1: {
+      const float corners[4][3] = {{.2f, .2f, .2f}, {.8f, .2f, .2f}, {.2f, .8f, .2f}, {.2f, .2f, .8f}};
+      const int facets[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+      bytes = std::string(80, ' ') + std::string("\4\0\0\0", 4);
+      for (const auto &facet : facets) {
+        bytes += std::string(12, '\0');
+        for (int corner : facet) bytes.append(reinterpret_cast<const char *>(corners[corner]), 12);
+        bytes += std::string(2, '\0');
+      }
+      value = room_ / "surface.stl";
+      break;
+    }
+    default:
+      value = room_ / "volume.h5";
+      write_state(dice, value, cells);
+  }
+  if (!bytes.empty()) put(fs::path(value).filename().c_str(), dice.one_in(4) ? bytes : dice.spoil(bytes, 3));
+  if (bytes.empty() && !dice.one_in(4)) value += dice.one_in(3) ? ":pressure" : ":solid_fraction";
+  present += bytes;
+  return judge({"-grid_cells", dice.one_in(3) ? "8,7,1" : "8,7,6", "-time_end", "1", "-time_steps_max", "1",
+                "-fluid_viscosity", ".1", "-species", "cell", "-cell_shear_modulus", "1", "-cell_shape", "voxels",
+                option, value});
+}
+
 Outcome Fuzzer::checkpoint(Dice &dice) {
   std::string bytes = checkpoint_;
   const bool objects = dice.one_in(3);
@@ -235,10 +269,11 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
   PetscCheck(mkdtemp(room.data()), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", room.c_str());
   Fuzzer fuzzer(room);
   PetscCall(fuzzer.prepare());
-  std::vector<Kind> kinds{{"command line", &Fuzzer::command_line, 9},
+  std::vector<Kind> kinds{{"command line", &Fuzzer::command_line, 8},
                           {"options file", &Fuzzer::options_file, 4},
-                          {"positions", &Fuzzer::positions, 3},
+                          {"positions", &Fuzzer::positions, 2},
                           {"initial state", &Fuzzer::initial_state, 2},
+                          {"voxels", &Fuzzer::voxels, 2},
                           {"checkpoint", &Fuzzer::checkpoint, 2}};
   for (Kind &kind : kinds)
     for (long n = 0; n < cases * kind.share / 20; ++n) {
