@@ -55,9 +55,9 @@ struct CheckpointControl {
 struct GuardControl {
   double cfl = 1;              ///< sum of max |v_i| dt/h_i
   double divergence = 0.2;     ///< rms(div v) h/U
-  double mach = 0.5;           ///< U/beta of artificial compressibility
+  double mach = 1;           ///< U/beta of artificial compressibility
   double volume_drift = 0.2;   ///< relative, of any body
-  double energy_growth = 0.1;  ///< of kinetic + elastic energy without forcing, per energy at the start
+  double energy_growth = 0.3;  ///< of kinetic + elastic energy without forcing, per energy at the start
   double memory = 1;           ///< needed by the ranks of a node, per memory it has
 };
 

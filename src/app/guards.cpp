@@ -27,6 +27,14 @@ std::string where(const State &state, const Real3 &place) {
 // NaN is beyond every limit.
 bool beyond(double value, double limit) { return limit > 0 && !(value <= limit); }
 
+// Of the elastic energy: tr B - 3 is a difference of numbers of order 1.
+double round_off(const Solver &solver) {
+  double modulus = 0, volume = 1;
+  for (const Phase &phase : solver.state().phases) modulus = std::max(modulus, phase.material.shear_modulus);
+  for (int d = 0; d < solver.grid().dimension(); ++d) volume *= solver.grid().spec().length[d];
+  return 1e-12 * modulus * volume;
+}
+
 // For extremes that met such a value.
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
@@ -82,7 +90,8 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   }
   if (state.step == 0) PetscFunctionReturn(0);
   lowest_energy_ = std::min(lowest_energy_, energy);
-  const double growth = first_energy_ > 0 && !forced_ ? (energy - lowest_energy_) / first_energy_ : 0;
+  const double scale = first_energy_ + round_off(solver);
+  const double growth = first_energy_ > 0 && !forced_ ? (energy - lowest_energy_) / scale : 0;
   // Flow that has come to rest has no scale: no smaller one than a Courant number of 1e-6, as in the solver.
   const Real3 &h = solver.grid().spacing();
   const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.grid().dimension()) / state.dt;

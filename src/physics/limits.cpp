@@ -161,7 +161,9 @@ double TimeStepLimits::automatic(const char **name) const {
                          ? Bound{elastic_share * elastic, "elastic wave"}
                          : Bound{kelvin_voigt_share * kelvin_voigt, "Kelvin-Voigt"});
   else
-    bounds.push_back({combined_share * combined, elastic < viscous ? "elastic wave" : "viscous"});
+    bounds.push_back(combined_share * combined < elastic_share * elastic
+                         ? Bound{combined_share * combined, elastic < viscous ? "elastic wave" : "viscous"}
+                         : Bound{elastic_share * elastic, "elastic wave"});
   if (!scheme.staggered) bounds.push_back({inertial_share * inertial, "Euler 2 nu/U^2"});
   const auto least =
       std::min_element(bounds.begin(), bounds.end(), [](const Bound &a, const Bound &b) { return a.dt < b.dt; });

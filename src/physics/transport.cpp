@@ -5,6 +5,8 @@
 #include "kernels/weno5.hpp"
 #include "physics/row_scratch.hpp"
 
+#include <limits>
+
 namespace eulastic {
 namespace {
 
@@ -75,19 +77,20 @@ EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase,
     kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)], v[a],
                                     v[b], d, rate);
   const double exterior = a == b ? 1.0 : 0.0, threshold = a == b ? t.rule.centre : t.rule.edge;
+  const double least = a == b ? 0 : -std::numeric_limits<double>::max();  // positive_definite.hpp
   const double *now = B[f].row(s.j, s.k), *solid = phi.row(s.j, s.k);
   double *next = out[f].row(s.j, s.k);
   if (t.second_of_heun) {
 #pragma omp simd
     for (int i = s.i_begin; i < s.i_end; ++i) {
       const double moved = 0.5 * (next[i] + kernels::fma(t.dt, rate[i], now[i]));
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved < least ? least : moved;
     }
   } else {
 #pragma omp simd
     for (int i = s.i_begin; i < s.i_end; ++i) {
       const double moved = kernels::fma(t.dt, rate[i], now[i]);
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved;
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved < least ? least : moved;
     }
   }
 }

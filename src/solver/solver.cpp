@@ -2,6 +2,7 @@
 
 #include "bodies/labels.hpp"
 #include "physics/momentum.hpp"
+#include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
@@ -64,7 +65,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-    PetscCall(complete_exterior(phase.tensor));
+    PetscCall(complete_exterior(phase, phase.tensor));
   }
   PetscFunctionReturn(0);
 }
@@ -222,11 +223,11 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
   PetscFunctionBeginUser;
   PetscCall(
       transport_tensor(*grid_, {evolve_rule(phase), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
-  PetscCall(complete_exterior(next_tensor_));
+  PetscCall(complete_exterior(phase, next_tensor_));
   if (spec_.staggered()) {
     PetscCall(
         transport_tensor(*grid_, {evolve_rule(phase), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
-    PetscCall(complete_exterior(phase.tensor));
+    PetscCall(complete_exterior(phase, phase.tensor));
   } else {
     phase.tensor.swap(next_tensor_);
   }
@@ -234,11 +235,12 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
 }
 
 // Ghosts of B, after its extension outside the body where that is wanted.
-PetscErrorCode Solver::complete_exterior(FieldBlock &tensor) {
+PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor) {
   PetscFunctionBeginUser;
   if (spec_.exterior == SolidExterior::extrapolate) {
     PetscCall(exchange_->update(tensor, ExteriorLayers::layers));
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
+    PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
   }
   PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width));
   PetscFunctionReturn(0);

@@ -70,7 +70,7 @@ private:
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport(Phase &phase, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, double dt);
-  PetscErrorCode complete_exterior(FieldBlock &tensor);
+  PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor);
   PetscErrorCode follow_bodies(double dt);
 
   const Grid *grid_ = nullptr;

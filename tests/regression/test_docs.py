@@ -20,7 +20,8 @@ NOT_RUN = {
     "scripts/test": "this very test is part of it",
     "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
     "scripts/work_precision": "many long runs", "scripts/validate": "hours, and a part of scripts/test",
-    "scripts/accuracy_tables": "needs the runs of scripts/validate", ".ci/": "scripts/test again", "cmake": "compiles",
+    "scripts/accuracy_tables": "needs the runs of scripts/validate",
+    "scripts/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",
     "srun": "needs SLURM",
 }

@@ -46,6 +46,12 @@ struct Solid {
       fill_everywhere(grid, phases[0].tensor[c], components[c].staggering(), B[components[c].a][components[c].b]);
   }
 
+  // Transport keeps the diagonal of B above 0 (physics/positive_definite.hpp); here it is there already.
+  void make_positive() {
+    for (int a = 0; a < grid.dimension(); ++a) B[a][a].c += 20;
+    fill();
+  }
+
   double deviator(int a, int b, const Point &x) const {
     const double trace = B[0][0](x) + B[1][1](x) + B[2][2](x);
     return B[a][b](x) - (a == b ? trace / 3 : 0);

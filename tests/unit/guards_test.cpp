@@ -72,6 +72,7 @@ TEST_F(GuardsTest, EachTripsBeyondItsBoundOnly) {
 }
 
 TEST_F(GuardsTest, EnergyMayGrowOnlyByForcing) {
+  config.guard.energy_growth = 0.1;
   Measured bad = good;
   bad.flow.elastic_energy = 0.09;
   EXPECT_FALSE(check(bad));
@@ -85,6 +86,7 @@ TEST_F(GuardsTest, EnergyMayGrowOnlyByForcing) {
 }
 
 TEST_F(GuardsTest, EnergyIsComparedWithTheLowestSoFar) {
+  config.guard.energy_growth = 0.1;
   Guards guards(config);
   Stop stop;
   Measured m = good;

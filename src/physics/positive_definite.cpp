@@ -1,0 +1,51 @@
+#include "physics/positive_definite.hpp"
+
+#include "base/events.hpp"
+#include "kernels/stencils.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+struct Edges {
+  ConstView phi, aa, bb;
+  View ab;
+  std::ptrdiff_t a, b;  // strides
+  double threshold;
+};
+
+EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
+  const double *phi = e.phi.row(s.j, s.k), *aa = e.aa.row(s.j, s.k), *bb = e.bb.row(s.j, s.k);
+  double *ab = e.ab.row(s.j, s.k);
+#pragma omp simd
+  for (int i = s.i_begin; i < s.i_end; ++i) {
+    const double square = kernels::average4(aa + i, -e.a, -e.b) * kernels::average4(bb + i, -e.a, -e.b);
+    const double most = __builtin_sqrt(square > 0 ? square : 0.0);
+    const double limited = ab[i] > most ? most : ab[i] < -most ? -most : ab[i];
+    ab[i] = kernels::average4(phi + i, -e.a, -e.b) < e.threshold ? ab[i] : limited;
+  }
+}
+
+}  // namespace
+
+PetscErrorCode limit_shear(const Grid &grid, const EvolveRule &rule, const Phase &phase, FieldBlock &tensor) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::left_cauchy_green);
+  const auto &components = tensor_components(grid.dimension());
+  for (int f = 0; f < tensor.count(); ++f) {
+    const auto [a, b] = components[f];
+    if (a == b) continue;
+    const Staggering at = components[f].staggering();
+    const Edges edges{phase.fraction[0], tensor[a], tensor[b], tensor[f], tensor[f].stride(a), tensor[f].stride(b),
+                      rule.edge};
+    for (const Segment &s : phase.solid.all()) {
+      if (s.j >= grid.points_end(1, at[1]) || s.k >= grid.points_end(2, at[2])) continue;
+      limit_row(edges, {s.i_begin, std::min(s.i_end, grid.points_end(0, at[0])), s.j, s.k});
+    }
+    scope.flops(phase.solid.points() * 16);
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
