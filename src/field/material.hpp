@@ -11,7 +11,8 @@ enum class Law { neo_hookean, mooney_rivlin };
 /// and II the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
 struct Material {
   double shear_modulus = 0;  ///< G = 2 (c1 + c2) at rest, pressure units
-  bool attached = false;     ///< to a wall, hardly moving (slab, tube): B is extended linearly
+  bool attached = false;     ///< to a wall, hardly moving (slab, tube)
+  bool linear = false;       ///< B is extended linearly: attached, and the grid sees its waves damped
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
 

@@ -4,6 +4,7 @@
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -83,6 +84,12 @@ double extended(const double *b, std::ptrdiff_t step, bool linear) {
 
 }  // namespace
 
+bool damps_short_waves(const Grid &grid, const Fluid &fluid, const Material &material) {
+  double shortest = grid.spacing()[0];
+  for (int d = 1; d < grid.dimension(); ++d) shortest = std::fmin(shortest, grid.spacing()[d]);
+  return std::sqrt(material.shear_modulus / fluid.density) * shortest <= fluid.kinematic_viscosity();
+}
+
 PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
@@ -94,7 +101,7 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
         locations_.back().staggering = c.staggering();
       }
   }
-  linear_ = phase.material.attached;
+  linear_ = phase.material.linear;
   mask_.resize(static_cast<std::size_t>(grid.layout().size));
   for (Location &location : locations_) build_location(grid, phase, &location);
   PetscFunctionReturn(0);

@@ -8,6 +8,7 @@
 
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "physics/fluid.hpp"
 #include "physics/transport.hpp"
 
 namespace eulastic {
@@ -18,8 +19,12 @@ inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30};
 /// Attached bodies: only where all is solid. With linear extension that is second order wherever the surface lies.
 inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30};
 inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
-  return material.attached ? evolve_where_full : evolve_above_half;
+  return material.linear ? evolve_where_full : evolve_above_half;
 }
+
+/// Whether the fluid's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
+/// attached body amplifies those that it does not.
+bool damps_short_waves(const Grid &grid, const Fluid &fluid, const Material &material);
 
 /// Which points each layer holds; made anew whenever phi has changed.
 class ExteriorLayers {

@@ -61,6 +61,7 @@ PetscErrorCode Solver::prepare() {
   else
     next_fraction_ = FieldBlock(*grid_, 1);
   for (Phase &phase : now_.phases) {
+    phase.material.linear = phase.material.attached && damps_short_waves(*grid_, spec_.fluid, phase.material);
     PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
     PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
