@@ -7,9 +7,8 @@
 namespace eulastic {
 namespace {
 
-constexpr int euler_interval =
-    10;                          // steps between measurements; the large steps of the staggered scheme look each time
-constexpr double growth = 1.05;  // most that dt grows from one measurement to the next
+constexpr int euler_interval = 10;  // steps between measurements; large steps look each time
+constexpr double growth = 1.05;     // most that dt grows from one measurement to the next
 // The staggered scheme starts with small steps that double: at the start the flow need not balance the forces, RKL2
 // brings stiff modes only about half way in a step, and solids meanwhile move with what there is. All that delays the
 // run by about 1.4 of its first steps, once.
@@ -22,7 +21,8 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
                                        std::string *warning) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
-  const int interval = solver->spec().staggered() ? 1 : euler_interval;
+  const bool large_steps = solver->spec().staggered() || solver->spec().viscous == ViscousScheme::rkl;
+  const int interval = large_steps ? 1 : euler_interval;
   const bool look = state.step % interval == 0 || dt_ == 0;
   FlowExtremes extremes;
   if (look) {
