@@ -29,6 +29,18 @@ std::string try_to_open(const std::string &path, int flags) {
   return {};
 }
 
+// Whether some ranks can write behind the end of `path` and others cannot.
+bool ranks_differ(MPI_Comm comm, const std::string &path) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const off_t behind = file < 0 ? 0 : ::lseek(file, 0, SEEK_END) + (1 << 20);
+  int ends[2];  // least of "can" and of "cannot"
+  ends[0] = file >= 0 && ::pwrite(file, "", 1, behind) == 1;
+  ends[1] = 1 - ends[0];
+  if (file >= 0) (void)::close(file);
+  (void)MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_INT, MPI_MIN, comm);
+  return ends[0] == 0 && ends[1] == 0;
+}
+
 }  // namespace
 
 PetscErrorCode Hdf5File::check(bool fine, const std::string &what) const {
@@ -75,10 +87,15 @@ PetscErrorCode Hdf5File::commit() {
 
 bool Hdf5File::left_open_ = false;
 
+// A rank that alone cannot write would leave the others waiting in H5Fclose: then the file stays open.
 // HDF5 1.10 crashes in MPI_Finalize if a file cannot be closed. So an unfinished one first gives its space back: then
 // there is room for what a full disk had no room for.
 Hdf5File::~Hdf5File() {
   if (writing_ && file_) {
+    if (ranks_differ(comm_, temporary_name(path_))) {
+      file_.forget();
+      left_open_ = true;
+    }
     if (mpi_rank_ == 0) (void)!::truncate(temporary_name(path_).c_str(), 0);
     (void)MPI_Barrier(comm_);
   }

@@ -27,6 +27,8 @@ public:
 
   hid_t get() const noexcept { return id_; }
   explicit operator bool() const noexcept { return id_ >= 0; }
+  /// Leaves the object open for ever.
+  void forget() noexcept { id_ = H5I_INVALID_HID; }
   /// False if HDF5 could not: a file's last bytes may fail to reach the disk here.
   bool close() noexcept { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
 
