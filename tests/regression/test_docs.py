@@ -19,7 +19,7 @@ NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
     "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
-    "scripts/work_precision": "many long runs", "scripts/validate": "hours, and a part of scripts/test",
+    "scripts/work_precision": "many long runs", "scripts/paper_section5": "an hour; it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
     "scripts/accuracy_tables": "needs the runs of scripts/validate",
     "scripts/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",

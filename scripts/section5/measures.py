@@ -1,0 +1,144 @@
+"""Numbers of a run of options/capillary_*.opts: a tube along x, its cells, its platelets."""
+import numpy
+
+
+def tube(run):
+    """Radius of the lumen and where its axis is, (y, z)."""
+    return float(run.options["vessel_radius"]), [float(x) for x in run.options["vessel_centre"].split(",")[1:]]
+
+
+def force(run):
+    """Body force per volume along x."""
+    return float(run.options["fluid_density"]) * float(run.options["body_force"].split(",")[0])
+
+
+def area(run):
+    return numpy.pi * tube(run)[0] ** 2
+
+
+def shear_modulus(run, species):
+    return float(run.options[f"{species}_shear_modulus"])
+
+
+# Shear stress
+
+def edge_stress(run, snapshot, d):
+    """Means over x of the shear stress sigma_xy (d = 1) or sigma_xz (d = 2), less the flux of momentum rho u v, on the
+    edges between two cells along d: the plasma's part and that of the elastic bodies, each (nz, ny) less one along d.
+    sigma_xy = mu du/dy + sum of G avg4(phi) B_xy, as in the solver; the mean of dv/dx is 0 in a periodic box."""
+    axis = 2 - d  # of arrays (nz, ny, nx)
+    low, high = (numpy.s_[:-1], numpy.s_[1:])
+
+    def pair(values):  # on the two sides of the edges along d
+        cut = [numpy.s_[:]] * 3
+        return values[tuple(cut[:axis] + [low] + cut[axis + 1:])], values[tuple(cut[:axis] + [high] + cut[axis + 1:])]
+
+    u_low, u_high = pair(snapshot["velocity_x"].astype(float))
+    across = snapshot["velocity_" + "xyz"[d]].astype(float)
+    viscous = float(run.options["fluid_viscosity"]) * (u_high - u_low) / run.spacing[d]
+    viscous -= float(run.options["fluid_density"]) * (u_low + u_high) / 2 * pair((across + numpy.roll(across, 1, 2)) / 2)[1]
+    elastic = numpy.zeros_like(viscous)
+    for species in run.options["species"].split(","):
+        fraction = snapshot["solid_fraction_" + species].astype(float)
+        around = sum(pair(fraction + numpy.roll(fraction, 1, 2))) / 4
+        elastic += shear_modulus(run, species) * around * pair(
+            snapshot[f"left_cauchy_green_x{'xyz'[d]}_{species}"].astype(float))[1]
+    return viscous.mean(axis=2), elastic.mean(axis=2)
+
+
+def bilinear(values, y0, z0, h, y, z):
+    """values (nz, ny) at y0 + j h_y, z0 + k h_z, interpolated to the points y, z."""
+    s, t = (y - y0) / h[1], (z - z0) / h[2]
+    j, k = (numpy.floor(q).astype(int) for q in (s, t))
+    s, t = s - j, t - k
+    return (1 - t) * ((1 - s) * values[k, j] + s * values[k, j + 1]) + t * ((1 - s) * values[k + 1, j] + s * values[k + 1, j + 1])
+
+
+def shear_stress(run, snapshot, radii):
+    """What the fluid inside passes on through cylinders around the axis, force per area: (parts, radii), the parts of
+    viscosity (and momentum) and of elastic bodies. In a steady flow the two together are force x radius/2."""
+    h, (y0, z0) = run.spacing, tube(run)[1]
+    angle = (numpy.arange(720) + 0.5) * numpy.pi / 360
+    parts = numpy.zeros((2, len(radii)))
+    for d in (1, 2):
+        fields = edge_stress(run, snapshot, d)
+        first = [h[1] / 2, h[2] / 2]
+        first[d - 1] *= 2
+        for n, radius in enumerate(radii):
+            y, z = y0 + radius * numpy.cos(angle), z0 + radius * numpy.sin(angle)
+            normal = numpy.cos(angle) if d == 1 else numpy.sin(angle)
+            parts[:, n] -= [(normal * bilinear(field, *first, h, y, z)).mean() for field in fields]
+    return parts
+
+
+def wall_shear_stress(run):
+    """On the lumen's surface, from the last snapshot, in parts of force x diameter/4."""
+    radius = tube(run)[0]
+    return float(shear_stress(run, run.snapshots[-1], [radius]).sum() / (force(run) * radius / 2))
+
+
+def held_by_walls(run):
+    """Force on the walls of the box, from the last snapshot, in parts of the body force on all that is in it."""
+    total = sum(snapshot_wall[..., 0].sum() * run.spacing[0] * run.spacing[3 - d]
+                for d in (1, 2) for side in ("min", "max")
+                for snapshot_wall in [run.snapshots[-1][f"wall_shear_stress_{'xyz'[d]}{side}"].astype(float)])
+    return float(total / (force(run) * run.length.prod()))
+
+
+# Flow
+
+def after(run, part):
+    """The times of the second part of the run: from `part` of it on."""
+    return run.bodies.time >= part * run.bodies.time[-1]
+
+
+def flow_rate(run, part=1 / 3):
+    """Mean over the later part of the run, and its standard deviation in time; the wall stands still."""
+    late = run.series.time >= part * run.series.time[-1]
+    rate = run.series.bulk_velocity_x[late] * run.length[1] * run.length[2]
+    return rate.mean(), rate.std()
+
+
+def poiseuille(run):
+    """Flow rate of plasma alone."""
+    return numpy.pi * tube(run)[0] ** 4 * force(run) / (8 * float(run.options["fluid_viscosity"]))
+
+
+def of_species(run, name):
+    return numpy.flatnonzero(run.bodies.species == name)
+
+
+def hematocrit(run, part=1 / 3):
+    """Of the tube, as seeded, and of what flows out of it: volume flux of red cells over flow rate, later part."""
+    cells = of_species(run, "rbc")
+    volume = run.bodies.volume[:, cells]
+    flux = (volume * run.bodies.velocity[:, cells, 0])[after(run, part)].sum(axis=1).mean() / run.length[0]
+    return volume[0].sum() / (area(run) * run.length[0]), flux / flow_rate(run, part)[0]
+
+
+def pries(diameter, discharge):
+    """Relative apparent viscosity of blood in glass tubes of `diameter` um (Pries, Neuhaus, Gaehtgens, Am. J. Physiol.
+    263, H1770, 1992)."""
+    at_45 = 220 * numpy.exp(-1.3 * diameter) + 3.2 - 2.44 * numpy.exp(-0.06 * diameter ** 0.645)
+    narrow = 1 / (1 + 1e-11 * diameter ** 12)
+    power = (0.8 + numpy.exp(-0.075 * diameter)) * (narrow - 1) + narrow
+    return 1 + (at_45 - 1) * ((1 - discharge) ** power - 1) / ((1 - 0.45) ** power - 1)
+
+
+# Platelets
+
+def radial(run):
+    """Distance from the axis and radial velocity of every platelet at all times, (nt, n) each."""
+    who = of_species(run, "platelet")
+    place = run.bodies.centroid[:, who, 1:] - tube(run)[1]
+    velocity = run.bodies.velocity[:, who, 1:]
+    distance = numpy.linalg.norm(place, axis=2)
+    return distance, (place * velocity).sum(axis=2) / distance
+
+
+def radial_rms(run, part=1 / 3):
+    """Root mean square of the radial velocity over platelets and later times, and the standard error of it that the
+    platelets' differences suggest."""
+    square = (radial(run)[1][after(run, part)] ** 2).mean(axis=0)  # of each
+    value = numpy.sqrt(square.mean())
+    return value, square.std(ddof=1) / numpy.sqrt(len(square)) / (2 * value)

@@ -1,0 +1,209 @@
+"""docs/capillary.md: checks, a table, the pictures."""
+import math
+
+from . import measures
+
+WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
+
+PAGE = """# Red cells and platelets in a capillary
+
+Written by `scripts/paper_section5`; do not edit. Section 5 of Sugiyama et al. (HPCS 2013), red cells and platelets in
+an elastic vessel at hematocrits of 0, 5, 10, 15 and 20 %, at a size for two cores instead of the K computer:
+
+    scripts/paper_section5                # everything: about an hour; called again, it goes on
+    scripts/paper_section5 --finished     # run nothing: the page of what is there
+    scripts/paper_section5 --only h20     # one of: {cases}
+
+The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (tube) in a box of {cells} cells of
+{spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest; lengths in µm,
+times in µs, density 1. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
+same places whatever the hematocrit. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's
+own case, a vessel of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is
+options/capillary_paper.opts: `-check_only` says what it takes, 535 GB of memory and about 155 days of one core.
+
+{unfinished}## Figure 7: the cells
+
+![Snapshots at five hematocrits](images/section5_snapshots.png)
+
+*At the beginning and at the end, hematocrit from above 0, 5, 10, 15, 20 %. Of the vessel the far side of the lumen is
+drawn, behind it the velocity along x in the middle plane. Cells that cross a periodic end are drawn whole.*
+
+## Figure 8: where the platelets are
+
+![Distance of platelets from the axis](images/section5_platelets.png)
+
+*Distance of every platelet from the axis, without red cells and with the most of them. The grey line is the wall.*
+
+## Figure 9: how much they fluctuate
+
+![Radial velocity of platelets](images/section5_radial_velocity.png)
+
+*Root mean square of the radial velocity over the platelets: in twentieths of the run, and over its last two thirds; bars:
+standard error from the differences between platelets.*
+
+{trend}
+
+## Checks
+
+| check | {names} | wanted | verdict |
+|---|{columns}---|---|
+{checks}
+
+Rows without a verdict are reported. Means are over the last two thirds of a run, stresses those of the last snapshot.
+
+**The wall shear stress** is that at the lumen's surface, which no wall of the grid coincides with. It is taken from the
+fields: on a cylinder of radius r around the axis the mean of sigma_xr = mu du/dr + sum of G phi B_xr over bodies (less
+the flux of momentum), from the staggered velocities and the B of every species in the snapshot, is the force per area
+that what is inside passes on. A steady flow has force x r/2 there, at every r and whatever the bodies do; at the wall
+that is force x diameter/4. It says that the flow is steady, that the stress in momentum equation and bodies is the one
+the fields show, and that no force gets lost at the surface, where half of it is viscous and half elastic in the cell
+that contains it. The force on the walls of the box balances the body force on all that is in the box, the vessel
+included.
+
+![Shares of the shear stress](images/section5_stress.png)
+
+*Shear stress at the distance r from the axis at the end: what viscosity and what elastic bodies carry.*
+{tube}
+## Flow rate
+
+![Relative apparent viscosity](images/section5_viscosity.png)
+
+*Relative apparent viscosity: flow rate of plasma over that of blood at the same force; dashed: the fit of Pries,
+Neuhaus and Gaehtgens (Am. J. Physiol. 263, H1770, 1992) to blood in glass tubes of this diameter. The discharge
+hematocrit is the red cells' share of the volume that flows.*
+
+| hematocrit | red cells | asked | seeded | discharge | flow rate, µm³/ms | apparent viscosity | Pries et al. | gap |
+|---|---|---|---|---|---|---|---|---|
+{flow}
+
+Where the gap comes from: a cell here is a lump of neo-Hookean solid as viscous as plasma, not a membrane around a fluid,
+and cannot tank-tread; two or three grid cells span its thickness, and cells of one species that touch are one body
+to such a grid until they part again, so that crowded cells drag each other; the vessel is three cells wide
+and two diameters long, and each lag of cells behind the flow has its image in every period; and {strain:.0f} units of
+shear at the wall are few for cells to find the places and orientations of a long tube. With such a cell agreement
+to better than 10 to 30 % would be luck.
+"""
+
+TUBE = """
+## Plasma alone: Poiseuille's flow in the tube
+
+The same vessel and force without any cell, four cells long, until it is steady; the surface cuts the cells of the grid
+anywhere. tests/convergence/tube_test.cpp asserts the order.
+
+| cells across the lumen | rms error of u | order | error of flow rate |
+|---|---|---|---|
+{rows}
+
+u: root mean square over the lumen, in parts of the largest; order: from half as many cells; flow rate: relative.
+"""
+
+
+def percent(value, digits=2):
+    return f"{100 * value:.{digits}f} %"
+
+
+def checks(runs):
+    """(name, {case: text}, what is wanted, verdict or None) of every check that the runs allow."""
+    wall = {case: measures.wall_shear_stress(run) for case, run in runs.items()}
+    yield ("wall shear stress / (force x diameter/4)", {c: f"{w:.4f}" for c, w in wall.items()}, "1, within 1 %",
+           all(abs(w - 1) < 0.01 for w in wall.values()))
+    held = {case: measures.held_by_walls(run) for case, run in runs.items()}
+    yield ("force on the box / body force on all in it", {c: f"{w:.4f}" for c, w in held.items()}, "1, within 1 %",
+           all(abs(w - 1) < 0.01 for w in held.values()))
+    cells = {case: run for case, run in runs.items() if case != "plasma"}
+    off = {case: cells_off(run) for case, run in cells.items()}
+    yield ("red cells more or less than asked", {c: f"{n:+.2f}" for c, n in off.items()}, "within one",
+           all(abs(n) < 1 for n in off.values()))
+    rate = {case: measures.flow_rate(run)[0] / measures.poiseuille(run) for case, run in runs.items()}
+    yield ("flow rate / Poiseuille's", {c: f"{q:.4f}" for c, q in rate.items()}, "falls; plasma 1, within 1 %",
+           verdict(runs, lambda: abs(rate["plasma"] - 1) < 0.01 and list(rate.values()) == sorted(rate.values(), reverse=True)))
+    rms = {case: measures.radial_rms(run)[0] for case, run in runs.items()}
+    yield ("radial rms velocity of platelets, µm/ms", {c: f"{1e3 * v:.3f}" for c, v in rms.items()},
+           "more with red cells than without", verdict(runs, lambda: min(rms[c] for c in cells) > 2 * rms["plasma"]))
+    drift = {case: abs(run.series.solid_volume / run.series.solid_volume[0] - 1).max() for case, run in runs.items()}
+    yield ("change of the bodies' volume, all together", {c: f"{d:.1e}" for c, d in drift.items()}, "", None)
+    own = {case: run.series.volume_drift.max() for case, run in runs.items()}
+    yield ("change of a body's volume, the worst", {c: f"{d:.1e}" for c, d in own.items()}, "", None)
+
+
+def verdict(runs, holds):
+    """None as long as there is nothing to compare."""
+    return bool(holds()) if "plasma" in runs and len(runs) > 1 else None
+
+
+def cells_off(run):
+    """By how many cells the number of red cells differs from the hematocrit that was asked for."""
+    wanted = float(run.options["rbc_hematocrit"]) * measures.area(run) * run.length[0]
+    count = len(measures.of_species(run, "rbc"))
+    volume = run.bodies.volume[0, measures.of_species(run, "rbc")].sum() / count
+    return count - wanted / volume
+
+
+def flow_rows(runs):
+    diameter = 2 * measures.tube(runs["plasma"])[0]
+    plasma = measures.flow_rate(runs["plasma"])[0]
+    for case, run in runs.items():
+        rate, spread = measures.flow_rate(run)
+        text = f"{1e3 * rate:.0f} ± {1e3 * spread:.0f}"
+        if case == "plasma":
+            yield f"| 0 | 0 | 0 | 0 | 0 | {text} | 1 | 1 | |"
+            continue
+        seeded, discharge = measures.hematocrit(run)
+        here, there = plasma / rate, measures.pries(diameter, discharge)
+        count = len(measures.of_species(run, "rbc"))
+        asked = float(run.options["rbc_hematocrit"])
+        yield (f"| {percent(asked, 0)} | {count} | {percent(asked)} | {percent(seeded)} | {percent(discharge)} | {text} | "
+               f"{here:.3f} | {there:.3f} | {percent(here / there - 1, 0)} |")
+
+
+def tube_rows(tubes):
+    errors = {}
+    for cells, run in tubes.items():
+        radius, (y0, z0) = measures.tube(run)
+        y, z = run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0
+        share = 1 - (y ** 2 + z ** 2) / radius ** 2
+        largest = 2 * measures.poiseuille(run) / measures.area(run)
+        u = run.snapshots[-1]["velocity_x"].astype(float).mean(axis=2) / largest
+        errors[cells] = math.sqrt(((u - share)[share > 0] ** 2).mean())
+        rate = run.series.bulk_velocity_x[-1] * run.length[1] * run.length[2] / measures.poiseuille(run) - 1
+        order = f"{math.log2(errors[cells // 2] / errors[cells]):.2f}" if cells // 2 in errors else ""
+        yield f"| {2 * radius / run.spacing[1]:.1f} | {errors[cells]:.2e} | {order} | {rate:+.2e} |"
+
+
+def trend(runs):
+    """What Fig. 9 says, in words."""
+    if "plasma" not in runs or len(runs) < 2:
+        return "Not all runs are there yet."
+    rms = {case: [1e3 * v for v in measures.radial_rms(run)] for case, run in runs.items()}
+    cells = list(rms)[1:]
+    value = [rms[c][0] for c in cells]
+    rises = value == sorted(value)
+    words = "grows with every step of hematocrit" if rises else "grows with the hematocrit, though not with every step of it" \
+        if value[-1] > value[0] else "does not grow with the hematocrit beyond that"
+    return (f"In plasma alone platelets stay on their circles: {rms['plasma'][0]:.3f} µm/ms. Red cells push them about, "
+            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast with the fewest cells; the rms {words}: "
+            + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
+            + " µm/ms for " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %.\n"
+            "That is the paper's point: the motion of the red cells makes the platelets fluctuate, the more the more cells.")
+
+
+def write(runs, tubes, missing, path):
+    """Returns whether no check failed."""
+    run = list(runs.values())[0]
+    rows = list(checks(runs))
+    radius = measures.tube(run)[0]
+    wall_stress = measures.force(run) * radius / 2
+    text = PAGE.format(
+        cases="plasma, h05, h10, h15, h20, tube", diameter=2 * radius, length=run.length[0],
+        cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
+        viscosity=float(run.options["fluid_viscosity"]), platelets=len(measures.of_species(run, "platelet")),
+        capillary=wall_stress / measures.shear_modulus(run, "platelet"),
+        unfinished=f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else "", trend=trend(runs),
+        names=" | ".join(runs), columns="---|" * len(runs),
+        checks="\n".join(f"| {name} | {' | '.join(values.get(case, '') for case in runs)} | {wanted} | {WORDS[passed]} |"
+                         for name, values, wanted, passed in rows),
+        tube=TUBE.format(rows="\n".join(tube_rows(tubes))) if tubes else "",
+        flow="\n".join(flow_rows(runs)) if "plasma" in runs else "",
+        strain=wall_stress / float(run.options["fluid_viscosity"]) * run.bodies.time[-1])
+    path.write_text(text)
+    return not any(passed is False for *_, passed in rows)
