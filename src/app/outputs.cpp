@@ -1,6 +1,7 @@
 #include "app/outputs.hpp"
 
 #include "base/events.hpp"
+#include "physics/limits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -105,7 +106,8 @@ PetscErrorCode Outputs::measure() {
   const Real3 &f = fluid.body_force.force;
   PetscCall(measure_flow(*grid_, state.velocity, *phases,
                          {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &m.flow));
-  if (solver_->bodies().bodies() > 0) PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, &m.bodies));
+  if (solver_->bodies().bodies() > 0)
+    PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
   const double few_cells = (grid_->dimension() == 3 ? 8 : 4) * grid_->cell_volume();
@@ -152,6 +154,8 @@ std::vector<BodyRecord> Outputs::records() const {
     record.volume = body.volume;
     record.taylor_deformation = body.taylor_deformation;
     record.inclination = body.inclination;
+    record.elastic_energy = body.elastic_energy;
+    record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
     records.push_back(record);
   }
   return records;

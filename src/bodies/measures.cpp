@@ -11,8 +11,8 @@ namespace {
 
 constexpr double degrees = 180 / 3.14159265358979323846;
 // Order of the sums of one body; second moments xx, yy, zz, yz, xz, xy.
-constexpr int first_moment = 1, second_moment = 4, momentum = 10;
-constexpr int all_sums = 13, position_sums = 4;
+constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13;
+constexpr int all_sums = 14, position_sums = 4;
 
 // Calls visit(body index, phi, i, j, k) for every owned cell with a label.
 template <class Visit>
@@ -24,6 +24,27 @@ void for_each_cell(const Grid &grid, const std::vector<Phase> &phases, int bodie
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
         if (body >= 0 && body < bodies) visit(body, fraction(i, row.j, row.k), i, row.j, row.k);
       }
+  }
+}
+
+// Calls visit(body index, phi W, tr B or 0 where phi < 1/2) for every owned cell with a label.
+template <class Visit>
+void for_each_strain(const Grid &grid, const std::vector<Phase> &phases, int bodies, const RowEnergy &energy,
+                     Visit &&visit) {
+  std::vector<double> density(grid.owned()[0]);
+  for (const Phase &phase : phases) {
+    const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor[0], yy = phase.tensor[1],
+                    zz = phase.tensor[grid.dimension() == 3 ? 2 : 0];
+    for (const Segment &row : grid.rows()) {
+      energy(grid, phase, row, density.data());
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
+        if (body < 0 || body >= bodies) continue;
+        const double out_of_plane = grid.dimension() == 3 ? zz(i, row.j, row.k) : 1;
+        const double trace = xx(i, row.j, row.k) + yy(i, row.j, row.k) + out_of_plane;
+        visit(body, density[i], fraction(i, row.j, row.k) >= 0.5 ? trace : 0);
+      }
+    }
   }
 }
 
@@ -80,7 +101,13 @@ void set_lengths(const std::array<double, 6> &moments, int dimension, BodyMeasur
   body->inclination = angle > -90 ? angle : 90;
 }
 
-BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, double speed) {
+// Scales of the fixed-point numbers, and the largest tr B of every body.
+struct Largest {
+  double speed = 0, energy = 0;
+  std::vector<double> trace;
+};
+
+BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
   BodyMeasure body;
   const Real3 &h = grid.spacing();
   const double cells = sums.value(b, 0);
@@ -89,8 +116,10 @@ BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &
   for (int d = 0; d < 3; ++d) {
     mean[d] = cells > 0 ? sums.value(b, first_moment + d) / cells : 0;
     body.centroid[d] = (reference[d] + 0.5 + mean[d]) * h[d];
-    body.velocity[d] = cells > 0 ? sums.value(b, momentum + d) / cells * speed : 0;
+    body.velocity[d] = cells > 0 ? sums.value(b, momentum + d) / cells * largest.speed : 0;
   }
+  body.elastic_energy = sums.value(b, strain) * largest.energy * grid.cell_volume();
+  body.trace_max = std::max(largest.trace[b], 3.0);  // det B = 1
   if (!(cells > 0)) return body;
   std::array<double, 6> moments{};
   constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
@@ -139,7 +168,7 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
 }
 
 PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
-                                    std::vector<BodyMeasure> *result) const {
+                                    const RowEnergy &energy, std::vector<BodyMeasure> *result) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   const int dimension = grid.dimension();
@@ -147,11 +176,17 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
     const double *face = &velocity[d](i, j, k);
     return (face[0] + face[velocity[d].stride(d)]) / 2;
   };
-  double speed = 0;  // scale of the fixed-point velocities
+  std::vector<double> most(2 + bodies(), 0.0);  // speed, energy density, tr B of every body
   for_each_cell(grid, phases, bodies(), [&](int, double, int i, int j, int k) {
-    for (int d = 0; d < dimension; ++d) speed = std::max(speed, std::abs(centred(d, i, j, k)));
+    for (int d = 0; d < dimension; ++d) most[0] = std::max(most[0], std::abs(centred(d, i, j, k)));
   });
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &speed, 1, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  for_each_strain(grid, phases, bodies(), energy, [&](int b, double density, double trace) {
+    most[1] = std::max(most[1], std::abs(density));
+    most[2 + b] = std::max(most[2 + b], trace);
+  });
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, most.data(), static_cast<int>(most.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
+  const Largest largest{most[0], most[1], {most.begin() + 2, most.end()}};
   BodySums sums(bodies(), all_sums);
   for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
     const Real3 x = offset(grid, references_[b], {i, j, k});
@@ -159,16 +194,19 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
     for (int d = 0; d < dimension; ++d) {
       sums.add(b, first_moment + d, phi * x[d]);
       sums.add(b, second_moment + d, phi * x[d] * x[d]);
-      if (speed > 0) sums.add(b, momentum + d, phi * (centred(d, i, j, k) / speed));
+      if (largest.speed > 0) sums.add(b, momentum + d, phi * (centred(d, i, j, k) / largest.speed));
     }
     sums.add(b, second_moment + 3, phi * x[1] * x[2]);
     sums.add(b, second_moment + 4, phi * x[0] * x[2]);
     sums.add(b, second_moment + 5, phi * x[0] * x[1]);
   });
+  for_each_strain(grid, phases, bodies(), energy, [&](int b, double density, double) {
+    if (largest.energy > 0) sums.add(b, strain, density / largest.energy);
+  });
   PetscCall(sums.reduce(grid.comm()));
   result->clear();
   for (int b = 0; b < bodies(); ++b) {
-    result->push_back(evaluate(grid, sums, b, references_[b], speed));
+    result->push_back(evaluate(grid, sums, b, references_[b], largest));
     result->back().label = b + 1;
     result->back().species = species_[b];
   }

@@ -1,12 +1,14 @@
-// What is known of every body: volume, unwrapped centroid, velocity, lengths, deformation, inclination.
+// What is known of every body: volume, unwrapped centroid, velocity, lengths, deformation, inclination, strain.
 //
-// From the sums of phi, phi x, phi x x and phi u over the cells of a label, x in whole cells from a reference cell
-// that follows the body. Sums are integers: the same bits on any ranks. sum phi x x holds h^2/12 per volume too much,
-// on average over the positions of a curved surface in its cells (phi is averaged over a cell): it is subtracted.
+// From the sums of phi, phi x, phi x x, phi u and phi W over the cells of a label, x in whole cells from a reference
+// cell that follows the body. Sums are integers: the same bits on any ranks. sum phi x x holds h^2/12 per volume too
+// much, on average over the positions of a curved surface in its cells (phi is averaged over a cell): it is subtracted.
 #pragma once
 
 #include "bodies/placement.hpp"
 #include "field/phase.hpp"
+
+#include <functional>
 
 namespace eulastic {
 
@@ -19,7 +21,12 @@ struct BodyMeasure {
   Real3 semi_axes{};              ///< of the ellipsoid (2-D: ellipse) with the same second moments, longest first
   double taylor_deformation = 0;  ///< (a - c)/(a + c), longest and shortest of them
   double inclination = 0;         ///< of the long axis in the xy plane (of the xy moments) from x; (-90, 90] degrees
+  double elastic_energy = 0;      ///< sum of phi W over the label's cells
+  double trace_max = 0;           ///< largest tr B (with B_zz = 1 in 2-D) at centres with phi >= 1/2, and at least 3
 };
+
+/// phi W of the cells of a row, into out[0 .. cells); defined where the law is.
+using RowEnergy = std::function<void(const Grid &, const Phase &, const Segment &, double *out)>;
 
 class BodyTracker {
 public:
@@ -31,9 +38,9 @@ public:
   /// the unwrapping never depends on how often bodies are measured. One Allreduce.
   PetscErrorCode follow(const Grid &grid, const std::vector<Phase> &phases);
   /// Measures all bodies, changing nothing; every rank gets the result. `velocity`: u, v (, w) on faces with one
-  /// valid ghost layer. Two Allreduces.
+  /// valid ghost layer, as phi and B. Two Allreduces.
   PetscErrorCode measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
-                         std::vector<BodyMeasure> *bodies) const;
+                         const RowEnergy &energy, std::vector<BodyMeasure> *bodies) const;
 
   /// Unwrapped reference cells, one per body: with the fields, all a restart needs.
   const std::vector<Int3> &references() const { return references_; }

@@ -112,7 +112,9 @@ BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
                                                     {"velocity", 3, {}, 0},
                                                     {"volume", 1, {}, 0},
                                                     {"taylor_deformation", 1, {}, 0},
-                                                    {"inclination", 1, {}, 0}} {
+                                                    {"inclination", 1, {}, 0},
+                                                    {"elastic_energy", 1, {}, 0},
+                                                    {"largest_stretch", 1, {}, 0}} {
   (void)MPI_Comm_rank(comm, &rank_);
 }
 
@@ -130,9 +132,11 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
       columns_[3].waiting.push_back(body.volume);
       columns_[4].waiting.push_back(body.taylor_deformation);
       columns_[5].waiting.push_back(body.inclination);
+      columns_[6].waiting.push_back(body.elastic_energy);
+      columns_[7].waiting.push_back(body.largest_stretch);
     }
     ++waiting_;
-    const std::size_t bytes = waiting_ * (1 + 9 * bodies.size()) * sizeof(double);
+    const std::size_t bytes = waiting_ * (1 + 11 * bodies.size()) * sizeof(double);
     if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
   }
   PetscCall(fail_together(comm_, problem));

@@ -15,6 +15,8 @@ struct BodyRecord {
   double volume = 0;              ///< area in 2-D
   double taylor_deformation = 0;  ///< (a - c) / (a + c), lengths from second moments
   double inclination = 0;         ///< degrees of the long axis from x in the xy plane
+  double elastic_energy = 0;
+  double largest_stretch = 0;  ///< largest principal stretch anywhere in it, from tr B
 };
 
 }  // namespace eulastic

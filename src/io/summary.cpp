@@ -16,7 +16,9 @@ std::string summary_text(const Summary &s) {
                          .add("velocity", b.velocity)
                          .add("volume", b.volume)
                          .add("taylor_deformation", b.taylor_deformation)
-                         .add("inclination", b.inclination));
+                         .add("inclination", b.inclination)
+                         .add("elastic_energy", b.elastic_energy)
+                         .add("largest_stretch", b.largest_stretch));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))

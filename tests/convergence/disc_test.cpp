@@ -2,6 +2,7 @@
 #include "support/scene.hpp"
 
 #include "bodies/fill_phase.hpp"
+#include "diagnostics/energy_rates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,7 @@ History strong_disc(int cells, PressureKind pressure) {
     const std::vector<Phase> *phases = nullptr;
     std::vector<BodyMeasure> bodies;
     EXPECT_EQ(solver.phases_now(&phases), 0);
-    EXPECT_EQ(solver.bodies().measure(scene.grid, *phases, solver.state().velocity, &bodies), 0);
+    EXPECT_EQ(solver.bodies().measure(scene.grid, *phases, solver.state().velocity, strain_energy, &bodies), 0);
     if (n == 0) volume = bodies[0].volume;
     history.drift = std::max(history.drift, std::fabs(bodies[0].volume / volume - 1));
     history.x.push_back(bodies[0].centroid[0]);

@@ -3,6 +3,8 @@
 #include "bodies/labels.hpp"
 #include "bodies/measures.hpp"
 #include "bodies/shapes.hpp"
+#include "diagnostics/energy_rates.hpp"
+#include "diagnostics/flow_measures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -67,9 +69,17 @@ struct Scene {
             velocity[d](i, j, k) = function(d, x);
           }
   }
+  /// B_xx of every body by 1 + sin(7 x)/2: strains that differ from cell to cell.
+  void strain() {
+    for (Phase &phase : phases)
+      for (const Segment &row : grid.rows())
+        for (int i = 0; i < row.i_end; ++i)
+          if (phase.fraction[0](i, row.j, row.k) > 0)
+            phase.tensor[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
+  }
   std::vector<BodyMeasure> measure() const {
     std::vector<BodyMeasure> bodies;
-    EXPECT_EQ(tracker.measure(grid, phases, velocity, &bodies), 0);
+    EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &bodies), 0);
     return bodies;
   }
 };
@@ -89,7 +99,16 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
                 {{{0.1, 1.3, 0.05}, flat ? Real3{0, 0, 25} : Real3{15, 30, 25}}, {{1.2, 0.6, 1.6}, {}}});
       scene.add(species(Shape::biconcave, 0.5), {{{1.0, 2.0, 3.0}, {}}});
       scene.set_velocity([](int d, const Real3 &x) { return std::sin(3 * x[0] + d) * std::cos(2 * x[1] - x[2]); });
+      scene.phases[0].material.shear_modulus = 0.7;
+      scene.phases[1].material.shear_modulus = 30;
+      scene.strain();
       all[c] = scene.measure();
+      FlowMeasures flow;
+      ASSERT_EQ(measure_flow(scene.grid, scene.velocity, scene.phases, {1, 1, 0, 0}, &flow), 0);
+      double energy = 0;
+      for (const BodyMeasure &body : all[c]) energy += body.elastic_energy;
+      EXPECT_GT(std::abs(energy), 1e-3);
+      EXPECT_NEAR(energy, flow.elastic_energy, 1e-12 * std::abs(energy));
     }
     ASSERT_EQ(all[0].size(), 3u);
     EXPECT_EQ(all[0][2].species, 1);
@@ -103,6 +122,10 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
       EXPECT_EQ(many.semi_axes, one.semi_axes);
       EXPECT_EQ(many.taylor_deformation, one.taylor_deformation);
       EXPECT_EQ(many.inclination, one.inclination);
+      EXPECT_NE(many.elastic_energy, 0);
+      EXPECT_EQ(many.elastic_energy, one.elastic_energy);
+      EXPECT_GT(many.trace_max, 3.3);
+      EXPECT_EQ(many.trace_max, one.trace_max);
     }
   }
 }
@@ -131,6 +154,28 @@ TEST(BodyMeasures, EllipsoidsHaveTheirAxesAcrossSeams) {
         EXPECT_NEAR(body.centroid[d], centre[d], 3e-4);
         EXPECT_NEAR(body.velocity[d], is_flat && d == 2 ? 0 : 0.3 - 0.7 * d, 1e-14);
       }
+    }
+  }
+}
+
+// B = diag(l^2) everywhere inside: W = G/2 (tr B - 3), per body of its own species.
+TEST(BodyMeasures, StretchedBodiesHaveTheirEnergy) {
+  for (const bool flat : {false, true}) {
+    Scene scene(PETSC_COMM_WORLD, box({24, 24, flat ? 1 : 24}, {1, 1, 1}));
+    double trace[2];
+    for (int s = 0; s < 2; ++s) {
+      SpeciesSpec spec = species(Shape::sphere, 0.15);
+      const double stretch = s ? 1.5 : 1.2;
+      spec.initial_stretch = {stretch, flat ? 1 / stretch : 1, flat ? 1 : 1 / stretch};
+      trace[s] = stretch * stretch + 1 / (stretch * stretch) + 1;
+      scene.add(spec, {{{0.25 + 0.5 * s, 0.5, 0.5}, {}}});
+      scene.phases.back().material.shear_modulus = 1 + 3 * s;
+    }
+    scene.set_velocity([](int, const Real3 &) { return 0.0; });
+    const std::vector<BodyMeasure> bodies = scene.measure();
+    for (int s = 0; s < 2; ++s) {
+      EXPECT_NEAR(bodies[s].elastic_energy, (1 + 3 * s) / 2.0 * (trace[s] - 3) * bodies[s].volume, 1e-13);
+      EXPECT_NEAR(bodies[s].trace_max, trace[s], 1e-14);
     }
   }
 }
@@ -182,7 +227,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   restarted.add_phase(scene.grid, {{start, {}}});
   restarted.set_references(scene.tracker.references());
   std::vector<BodyMeasure> again;
-  ASSERT_EQ(restarted.measure(scene.grid, scene.phases, scene.velocity, &again), 0);
+  ASSERT_EQ(restarted.measure(scene.grid, scene.phases, scene.velocity, strain_energy, &again), 0);
   EXPECT_EQ(again[0].centroid, scene.measure()[0].centroid);
 }
 

@@ -37,7 +37,9 @@ std::vector<BodyRecord> bodies_at(int row) {
   std::vector<BodyRecord> bodies(3);
   for (int b = 0; b < 3; ++b) {
     const double x = 100 * row + 10 * b;
-    bodies[b] = {b + 1, b < 2 ? "rbc" : "platelet", {x, x + 1, x + 2}, {x + 3, x + 4, x + 5}, x + 6, x + 7, x + 8};
+    bodies[b] = {
+        b + 1, b < 2 ? "rbc" : "platelet", {x, x + 1, x + 2}, {x + 3, x + 4, x + 5}, x + 6, x + 7, x + 8, x + 9,
+        x + 10};
   }
   return bodies;
 }
@@ -64,7 +66,7 @@ TEST(BodiesFile, GrowsAndIsReadableAllTheTime) {
   const std::vector<double> centroid = table.read("centroid", &shape);
   ASSERT_EQ(shape, (std::vector<hsize_t>{rows, 3, 3}));
   const std::vector<double> velocity = table.read("velocity", &shape);
-  const char *const scalars[] = {"volume", "taylor_deformation", "inclination"};
+  const char *const scalars[] = {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch"};
   for (int n = 0; n < rows; ++n) {
     EXPECT_EQ(time[n], 0.5 * n);
     for (int b = 0; b < 3; ++b)
@@ -73,7 +75,7 @@ TEST(BodiesFile, GrowsAndIsReadableAllTheTime) {
         EXPECT_EQ(velocity[(n * 3 + b) * 3 + d], 100 * n + 10 * b + d + 3);
       }
   }
-  for (int s = 0; s < 3; ++s) {
+  for (int s = 0; s < 5; ++s) {
     const std::vector<double> values = table.read(scalars[s], &shape);
     ASSERT_EQ(shape, (std::vector<hsize_t>{rows, 3}));
     for (int n = 0; n < rows; ++n)
