@@ -220,7 +220,7 @@ GROUPS = [
     Group("thin", "plates three cells thick", thin, ["sheared", "across", "random", "cavity", "slab"], MODULI[1:-1:2] + [1000],
           "", "G/(ρU²)", [("sheared", 1e-3), ("random", 10), ("across", .1), ("slab", 1000)]),
     Group("contact", "touching walls and each other", contact, CONTACTS, THREE, "", "G/(ρU²)",
-          [(k, 1) for k in CONTACTS[::2]] + [(k, 0.01) for k in CONTACTS[1::2]]),
+          [(k, 1) for k in CONTACTS[::2]] + [(k, 0.01) for k in CONTACTS[1::2]] + [(k, 100) for k in CONTACTS[-3:-1]]),
     Group("reversing", "walls that reverse", reversing, [0.1, 1, 10, 100, 1000], [0.01, 1, 100], "ω L/U", "G/(ρU²)",
           [(10, 1), (1000, 100)]),
     Group("stretched", "a stretched ellipse let go", stretched, [1.5, 2, 3, 4, 5], MODULI[1:], "stretch", "G (ρ = L = 1, μ = 0.01)",

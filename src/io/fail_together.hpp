@@ -7,7 +7,8 @@
 
 namespace eulastic {
 
-/// Collective. Succeeds if `problem` is empty on every rank; else fails on all with the text of the lowest rank.
+/// Collective. Succeeds if `problem` is empty on every rank; else fails on all with the text of the lowest rank. Ends
+/// the job if a rank that has failed waits in vain for the others.
 PetscErrorCode fail_together(MPI_Comm comm, const std::string &problem);
 
 /// Runs `call`, all of whose errors are of fail_together() or fatal; such an error becomes `problem` instead.

@@ -4,6 +4,7 @@
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace eulastic {
 namespace {
@@ -23,7 +24,8 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
     const double square = kernels::average4(aa + i, -e.a, -e.b) * kernels::average4(bb + i, -e.a, -e.b);
     const double most = __builtin_sqrt(square > 0 ? square : 0.0);
     const double limited = ab[i] > most ? most : ab[i] < -most ? -most : ab[i];
-    ab[i] = kernels::average4(phi + i, -e.a, -e.b) < e.threshold ? ab[i] : limited;
+    const bool finite = __builtin_fabs(ab[i]) <= std::numeric_limits<double>::max();  // what is not must show
+    ab[i] = kernels::average4(phi + i, -e.a, -e.b) < e.threshold || !finite ? ab[i] : limited;
   }
 }
 
@@ -37,8 +39,8 @@ PetscErrorCode limit_shear(const Grid &grid, const EvolveRule &rule, const Phase
     const auto [a, b] = components[f];
     if (a == b) continue;
     const Staggering at = components[f].staggering();
-    const Edges edges{phase.fraction[0], tensor[a], tensor[b], tensor[f], tensor[f].stride(a), tensor[f].stride(b),
-                      rule.edge};
+    const Edges edges{phase.fraction[0],   tensor[a],           tensor[b], tensor[f],
+                      tensor[f].stride(a), tensor[f].stride(b), rule.edge};
     for (const Segment &s : phase.solid.all()) {
       if (s.j >= grid.points_end(1, at[1]) || s.k >= grid.points_end(2, at[2])) continue;
       limit_row(edges, {s.i_begin, std::min(s.i_end, grid.points_end(0, at[0])), s.j, s.k});

@@ -22,8 +22,7 @@ struct TransportTerms {
 };
 
 template <int Dim>
-EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out,
-                                 RowScratch &scratch) {
+EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &scratch) {
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
@@ -31,7 +30,8 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi,
     for (int j = 0; j < n[1]; ++j) {
       const Segment row{0, n[0], j, k};
       for (int i = 0; i < n[0]; ++i) rate[i] = 0;
-      for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
+      for (int d = 0; d < Dim; ++d)
+        kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
       kernels::subtract_advection<Dim>(row, phi[0], carried, t.inverse.data(), epsilon, rate);
       const double *now = phi[0].row(j, k);
       double *next = out[0].row(j, k);
@@ -65,10 +65,10 @@ EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase,
   const FieldBlock &v = *t.velocity;
   const ConstView phi = phase.fraction[0];
   const int f = position<Dim>(a, b);
-  const int other = a == b ? (a + 1) % Dim : b;                        // second direction
-  const int third = Dim == 3 ? 3 - a - other : other;                  // and the remaining one
-  const kernels::Directions d{phi.stride(a), phi.stride(other),  phi.stride(third),
-                              t.inverse[a],  t.inverse[other], t.inverse[third]};
+  const int other = a == b ? (a + 1) % Dim : b;        // second direction
+  const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
+  const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
+                              t.inverse[a],  t.inverse[other],  t.inverse[third]};
   for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
   kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
   if (a == b)
@@ -77,20 +77,26 @@ EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase,
     kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)], v[a],
                                     v[b], d, rate);
   const double exterior = a == b ? 1.0 : 0.0, threshold = a == b ? t.rule.centre : t.rule.edge;
-  const double least = a == b ? 0 : -std::numeric_limits<double>::max();  // positive_definite.hpp
+  // positive_definite.hpp; minus infinity stays, so that it is noticed.
+  constexpr double lowest = -std::numeric_limits<double>::max();
+  const double least = a == b ? 0 : lowest;
   const double *now = B[f].row(s.j, s.k), *solid = phi.row(s.j, s.k);
   double *next = out[f].row(s.j, s.k);
   if (t.second_of_heun) {
 #pragma omp simd
     for (int i = s.i_begin; i < s.i_end; ++i) {
       const double moved = 0.5 * (next[i] + kernels::fma(t.dt, rate[i], now[i]));
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved < least ? least : moved;
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior
+                : moved < least && moved >= lowest                   ? least
+                                                                     : moved;
     }
   } else {
 #pragma omp simd
     for (int i = s.i_begin; i < s.i_end; ++i) {
       const double moved = kernels::fma(t.dt, rate[i], now[i]);
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior : moved < least ? least : moved;
+      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior
+                : moved < least && moved >= lowest                   ? least
+                                                                     : moved;
     }
   }
 }

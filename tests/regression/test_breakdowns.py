@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Signals, limits, full disks and kills: what a run does when something breaks.
+"""Signals, limits and full disks: what a run does when something breaks.
 
 Needs EULASTIC=path of the binary and EULASTIC_MPIEXEC.
 """
@@ -16,7 +16,7 @@ import unittest
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from restart_case import BINARY, ROOT, FLAT, OFTEN, ENDLESS, Restart  # noqa: E402
+from restart_case import BINARY, FLAT, OFTEN, ENDLESS, Restart  # noqa: E402
 
 
 class Ends(Restart):
@@ -119,23 +119,6 @@ class BrokenPlaces(Restart):
         shutil.rmtree(self.room / "run")
         self.assertEqual(process.wait(60), 1)
         self.assertRegex(process.stderr.read(), r"\Aeulastic: error: [^\n]*run/[^\n]*No such file[^\n]*\n\Z")
-
-
-class Kills(Restart):
-    def test_semaphore_of_a_killed_run(self):
-        # As Open MPI leaves it in shared memory: 32 bytes, locked.
-        left = pathlib.Path("/dev/shm/sem.OMPIO_checkpoint_00000003.h5.tmp")
-        if not left.parent.is_dir():
-            self.skipTest("no /dev/shm")
-        left.write_bytes(bytes(32))
-        self.addCleanup(left.unlink)
-        self.run_case("run", *FLAT, "-time_steps_max", 4, *OFTEN, ranks=2)
-
-    def test_kills(self):
-        result = subprocess.run([sys.executable, ROOT / "scripts/kill_test", "20", "--seed", "5"], env=self.environment,
-                                capture_output=True, text=True)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertRegex(result.stdout, r"\A20 kills ")
 
 
 if __name__ == "__main__":

@@ -54,6 +54,11 @@ class Faults(Restart):
         self.fails("exit", "EulACM", 1)  # Open MPI has the word
         self.fails("memory", "EulACM", 2, ranks=3)
 
+    def test_flush_of_one_rank(self):
+        for rank in (0, 1):  # the other waits inside HDF5
+            with self.subTest(rank):
+                self.assertEqual(len(self.fails("flush", "EulWrite", rank)), 1)
+
     def test_disk_of_one_rank(self):
         for which in (0, 1):
             with self.subTest(which):

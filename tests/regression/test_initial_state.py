@@ -112,6 +112,24 @@ class InitialState(WithRoom):
         (self.room / "text.h5").write_text("text")
         self.refused(*GRID, *end, "-initial_state", "text.h5", says=["text.h5", "not an HDF5 file"])
 
+    def test_a_strain_out_of_balance_relaxes_without_delay(self):
+        # A box of solid sheared at rest, B_xy = k X cos ky: X'' + nu k^2 X' + (G/rho) k^2 X = 0 at any amplitude. Flow
+        # and stress balance after a hundredth of mu/G; from then on X falls like exp(-G t/mu). A delay by 1.4 steps of
+        # the usual size would leave .66 instead of .608.
+        G, nu, n, k = 0.2, 1.0, 32, 2 * numpy.pi
+        shear = 0.3 * numpy.cos(k * numpy.arange(n) / n)[:, None] * numpy.ones(4)  # edges are at y = j h
+        centre = 1 + (0.3 * numpy.cos(k * (numpy.arange(n) + 0.5) / n)[:, None] * numpy.ones(4)) ** 2
+        state = self.file(solid_fraction=numpy.ones((1, n, 4)), left_cauchy_green_xy=shear[None],
+                          left_cauchy_green_xx=centre[None])
+        run = self.run_case("-grid_cells", f"4,{n},1", "-grid_length", ".125,1,1", "-fluid_viscosity", str(nu), *state,
+                            "-species", "gel", "-gel_shear_modulus", str(G), "-time_end", str(0.5 * nu / G),
+                            "-snapshot_interval", str(0.5 * nu / G), "-snapshot_precision", "double",
+                            "-snapshot_fields", "left_cauchy_green")
+        fast, slow = numpy.roots([1, nu * k * k, G * k * k])
+        t = run.snapshots[-1].time
+        exact = (slow * numpy.exp(fast * t) - fast * numpy.exp(slow * t)) / (slow - fast)
+        last = run.snapshots[-1]["left_cauchy_green_xy"][0, 0, 0] / 0.3
+        self.assertAlmostEqual(last, exact, delta=0.006)
 
     def test_strained_slabs_pull_at_their_walls(self):
         for interval, wall, sign, rows in (("0,.5", "ymin", 1, 20), (".5,1", "ymax", -1, 20), (".5,1", "ymax", -1, 21)):

@@ -2,8 +2,11 @@
 // COUNT-th time RANK begins VERB (a name of base/events.cpp)
 //   memory   an allocation fails
 //   error    its next MPI call returns an error
+//   flush    its next H5Fflush fails, and it alone does not take part
 //   crash    it meets SIGSEGV
 //   exit     it leaves without a word
+#include <dlfcn.h>
+#include <hdf5.h>
 #include <petscsys.h>
 #include <unistd.h>
 
@@ -15,6 +18,7 @@
 
 // PETSc counts calls by macros of these names.
 #undef MPI_Allreduce
+#undef MPI_Iallreduce
 #undef MPI_Startall
 #undef MPI_Bcast
 
@@ -22,7 +26,7 @@ namespace {
 
 char kind[16], verb[32];
 int wanted_rank = -1, left = 0;
-bool next_call_fails = false;
+bool next_call_fails = false, next_flush_fails = false;
 
 PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscObject, PetscObject) {
   if (left <= 0 || std::strcmp(petsc_stageLog->eventLog->eventInfo[event].name, verb) != 0) return 0;
@@ -33,7 +37,7 @@ PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscOb
   if (!std::strcmp(kind, "memory")) throw std::bad_alloc();
   if (!std::strcmp(kind, "crash")) std::raise(SIGSEGV);
   if (!std::strcmp(kind, "exit")) _exit(0);
-  next_call_fails = true;
+  (std::strcmp(kind, "flush") ? next_call_fails : next_flush_fails) = true;
   return 0;
 }
 
@@ -57,6 +61,12 @@ int MPI_Allreduce(const void *in, void *out, int count, MPI_Datatype type, MPI_O
   return failed ? failed : PMPI_Allreduce(in, out, count, type, op, comm);
 }
 
+int MPI_Iallreduce(const void *in, void *out, int count, MPI_Datatype type, MPI_Op op, MPI_Comm comm,
+                   MPI_Request *request) {
+  const int failed = fails();
+  return failed ? failed : PMPI_Iallreduce(in, out, count, type, op, comm, request);
+}
+
 int MPI_Startall(int count, MPI_Request requests[]) {
   const int failed = fails();
   return failed ? failed : PMPI_Startall(count, requests);
@@ -65,6 +75,12 @@ int MPI_Startall(int count, MPI_Request requests[]) {
 int MPI_Bcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm comm) {
   const int failed = fails();
   return failed ? failed : PMPI_Bcast(buffer, count, type, root, comm);
+}
+
+herr_t H5Fflush(hid_t file, H5F_scope_t scope) {
+  if (next_flush_fails) return -1;
+  static const auto flush = reinterpret_cast<herr_t (*)(hid_t, H5F_scope_t)>(dlsym(RTLD_NEXT, "H5Fflush"));
+  return flush(file, scope);
 }
 
 }  // extern "C"

@@ -78,3 +78,18 @@ TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
   ASSERT_EQ(transport_tensor(body.grid, {everywhere, 2, false}, velocity, body.phase, body.phase.tensor, next), 0);
   EXPECT_EQ(next[0](2, 1, 0), 0);  // -3 without the limit
 }
+
+TEST(PositiveDefinite, WhatIsNotFiniteStaysSo) {
+  Body body(true);
+  FieldBlock velocity(body.grid, 2), next(body.grid, 3);
+  for (int j = -3; j <= body.grid.owned()[1] + 1; ++j)
+    for (int i = -3; i <= body.grid.owned()[0] + 1; ++i) velocity[0](i, j, 0) = -(i + 8 * j) * 1e200;
+  ASSERT_EQ(transport_tensor(body.grid, {everywhere, 1e200, false}, velocity, body.phase, body.phase.tensor, next), 0);
+  EXPECT_EQ(next[0](2, 1, 0), -INFINITY);
+  EXPECT_FALSE(std::isfinite(next[2](2, 1, 0)));
+  body.phase.tensor[2](1, 1, 0) = INFINITY;
+  body.phase.tensor[2](2, 1, 0) = -INFINITY;
+  ASSERT_EQ(limit_shear(body.grid, everywhere, body.phase, body.phase.tensor), 0);
+  EXPECT_EQ(body.phase.tensor[2](1, 1, 0), INFINITY);
+  EXPECT_EQ(body.phase.tensor[2](2, 1, 0), -INFINITY);
+}
