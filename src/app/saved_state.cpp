@@ -5,17 +5,15 @@
 namespace eulastic {
 namespace {
 
-constexpr const char *axes[3] = {"_x", "_y", "_z"};
-
 // Every field that is carried on; of 2-D tensors the components that are there.
 std::vector<CheckpointField> fields_of(Solver &solver) {
   State &state = solver.state();
   std::vector<CheckpointField> fields;
   for (int d = 0; d < state.velocity.count(); ++d)
-    fields.push_back({std::string("velocity") + axes[d], at_face[d], state.velocity[d]});
+    fields.push_back({std::string("velocity_") + "xyz"[d], at_face[d], state.velocity[d]});
   fields.push_back({"pressure", at_centre, state.pressure[0]});
   for (int d = 0; d < state.advection.count(); ++d)
-    fields.push_back({std::string("advection") + axes[d], at_face[d], state.advection[d]});
+    fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   const auto &components = tensor_components(solver.grid().dimension());
   for (Phase &phase : state.phases) {
     const std::string species = "_" + phase.species;

@@ -7,6 +7,8 @@
 
 namespace eulastic::fuzz {
 
+inline unsigned long seed_of_case(unsigned long seed, long n) { return seed * 1000003 + static_cast<unsigned long>(n); }
+
 class Dice {
 public:
   explicit Dice(unsigned long seed) : engine_(seed) {}

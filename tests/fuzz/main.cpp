@@ -1,4 +1,4 @@
-// usage: fuzz [CASES [SEED]]
+// usage: fuzz [CASES [SEED]], or fuzz --lines CASES SEED: prints command lines for run_lines.py.
 // Wrong and nearly right input, CASES of it (default 10000), in one process: command lines, options files, position
 // lists, initial states, voxels, checkpoints. Prints how many of each kind were refused and accepted, and what was
 // found: a refusal of no line or of several, something written by a run that was refused, options that do not survive
@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -74,14 +75,6 @@ private:
 
 bool one_line(const std::string &message) {
   return !message.empty() && message.find_first_of("\n\r") == std::string::npos && message.size() < 1500;
-}
-
-bool small(const Config &config) {
-  double cells = 1, bodies = 0;
-  for (int n : config.grid.cells) cells *= n;
-  for (const auto &places : config.places) bodies += double(places.size());
-  const double rows = config.time.end / config.output.series_interval;
-  return cells <= 4096 && bodies <= 100 && config.time.steps_max >= 1 && config.time.steps_max <= 3 && rows < 1e6;
 }
 
 // Runs what was accepted; what PETSc calls an error without a line for the user is found.
@@ -277,7 +270,7 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
                           {"checkpoint", &Fuzzer::checkpoint, 2}};
   for (Kind &kind : kinds)
     for (long n = 0; n < cases * kind.share / 20; ++n) {
-      Dice dice(seed * 1000003 + static_cast<unsigned long>(n));
+      Dice dice(seed_of_case(seed, n));
       present =
           std::string("\nfuzz: ") + kind.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(n) + ":";
       alarm(60);
@@ -308,6 +301,7 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
 extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
 
 int main(int argc, char **argv) {
+  if (argc == 4 && !std::strcmp(argv[1], "--lines")) return print_lines(std::atol(argv[2]), std::atol(argv[3])), 0;
   const long cases = argc > 1 ? std::atol(argv[1]) : 10000;
   const unsigned long seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
   std::FILE *out = fdopen(dup(1), "w");  // the runs themselves print to nowhere

@@ -5,6 +5,7 @@ Needs EULASTIC=path of the binary; EULASTIC_MPIEXEC for the runs on several rank
 """
 import os
 import pathlib
+import pty
 import subprocess
 import tempfile
 import unittest
@@ -22,13 +23,13 @@ class CommandLine(unittest.TestCase):
         self.addCleanup(room.cleanup)
         self.room = pathlib.Path(room.name)
 
-    def run_program(self, *arguments, ranks=0, environment=None):
+    def run_program(self, *arguments, ranks=0, environment=None, stdout=subprocess.PIPE):
         command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks else []
         variables = {k: v for k, v in os.environ.items() if k != "PETSC_OPTIONS"}
         variables.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
         variables.update(environment or {})
-        return subprocess.run([*command, BINARY, *arguments], cwd=self.room, env=variables, capture_output=True,
-                              text=True, timeout=120)
+        return subprocess.run([*command, BINARY, *arguments], cwd=self.room, env=variables, stdout=stdout,
+                              stderr=subprocess.PIPE, text=True, timeout=120)
 
     def refused(self, *arguments, says=(), environment=None):
         before = sorted(self.room.rglob("*"))
@@ -96,6 +97,21 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.run_program("-version").stdout.count("\n"), 1)
         self.assertEqual(self.run_program("-help", ranks=2).stdout, self.run_program("-help").stdout)
         self.assertEqual(list(self.room.iterdir()), [])
+
+    def test_one_progress_line_in_a_terminal_lines_in_a_log(self):
+        case = [*SCENE, "-output_overwrite", "-time_steps_max", "2"]
+        for ranks in (0, 2):
+            with self.subTest(ranks=ranks):
+                log = self.run_program(*case, ranks=ranks)
+                self.assertEqual(log.returncode, 0, log.stderr)
+                self.assertNotIn("\x1b", log.stdout)
+                self.assertIn("100.0 %", log.stdout)
+                ours, theirs = pty.openpty()
+                self.addCleanup(os.close, ours)
+                done = self.run_program(*case, ranks=ranks, stdout=theirs)
+                os.close(theirs)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex(os.read(ours, 10000), rb"\r100.0 %[^\r\n]*\x1b\[K")
 
     def test_options_manual_is_up_to_date(self):
         self.assertEqual(self.run_program("-help", "markdown").stdout, (ROOT / "docs/options.md").read_text(),

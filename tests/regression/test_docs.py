@@ -18,7 +18,7 @@ PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake"
 NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
-    "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
+    "scripts/tidy": "all sources", "scripts/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
     "scripts/paper_figure2": "test_scripts.py runs it", "scripts/work_precision": "many long runs",
     "scripts/paper_section5": "an hour; it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
     "scripts/accuracy_tables": "needs the runs of scripts/validate",
