@@ -61,20 +61,25 @@ public:
 
   void bodies(Report &report) const {
     double box = 1, walls = 0, cells = 0;
+    bool random = false;  // then bodies from files are what the others are put around
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
+    for (const SpeciesSpec &spec : config_.species) random = random || spec.placement == Placement::random;
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const SpeciesSpec &spec = config_.species[s];
-      if (spec.shape == Shape::voxels || spec.shape == Shape::state) {
-        const std::string &file = spec.shape == Shape::state ? config_.initial_state : spec.voxels.path;
-        report.line("species " + spec.name, "from %s", file.c_str());
+      if (spec.shape == Shape::state) {
+        report.line("species " + spec.name, "from %s", config_.initial_state.c_str());
         continue;
       }
-      const double count = double(config_.places[s].size()), volume = volume_in_box(spec, config_.grid);
-      (is_attached(spec.shape) ? walls : cells) += count * volume;
-      report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g", count,
-                  dimension_ == 2 ? "area" : "volume", volume, count * volume / box);
+      const bool file = spec.shape == Shape::voxels;
+      const double count = file ? 1 : double(config_.places[s].size());
+      const double volume = file ? config_.solid_volumes[s] : volume_in_box(spec, config_.grid);
+      ((file && random) || spec.material().attached ? walls : cells) += count * volume;
+      report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
+                  dimension_ == 2 ? "area" : "volume", volume, count * volume / box, file ? ", from " : "",
+                  file ? spec.voxels.path.c_str() : "");
     }
-    report.line("hematocrit", "%.6g%s", cells / (box - walls), walls > 0 ? " (of the box less slabs and tubes)" : "");
+    report.line("hematocrit", "%.6g%s", cells / (box - walls),
+                walls > 0 ? " (of the box less slabs, tubes, vessels)" : "");
   }
 
   void flow(Report &report) const {

@@ -55,7 +55,7 @@ struct CheckpointControl {
 struct GuardControl {
   double cfl = 1;              ///< sum of max |v_i| dt/h_i
   double divergence = 0.2;     ///< rms(div v) h/U
-  double mach = 1;           ///< U/beta of artificial compressibility
+  double mach = 1;             ///< U/beta of artificial compressibility
   double volume_drift = 0.2;   ///< relative, of any body
   double energy_growth = 0.3;  ///< of kinetic + elastic energy without forcing, per energy at the start
   double memory = 1;           ///< needed by the ranks of a node, per memory it has
@@ -68,8 +68,9 @@ struct Config {
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none
   std::vector<SpeciesSpec> species;
-  bool body_series = true;  ///< bodies are named, followed and measured
+  bool body_series = true;                     ///< bodies are named, followed and measured
   std::vector<std::vector<BodyPlace>> places;  ///< of the bodies of every species; by validate()
+  std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate() for -check_only
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;

@@ -2,7 +2,6 @@
 #include "app/check_only.hpp"
 #include "app/run.hpp"
 #include "app/signals.hpp"
-#include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "io/hdf5_file.hpp"
 
@@ -32,7 +31,6 @@ int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
-  if (parsed.error.empty() && parsed.config.check_only) parsed.error = why_not_voxels(parsed.config);
   if (!parsed.error.empty()) {
     print_error(parsed.error);
     return exit_usage;

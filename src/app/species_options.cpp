@@ -115,14 +115,16 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   rows.real("jitter", spec.jitter, {0, false, 1}, "",
             "random displacement, in parts of what is free between bodies of the lattice");
   for_placement(1, {Placement::lattice});
-  Option &hematocrit =
-      rows.real("hematocrit", spec.hematocrit, {0, false, 1}, "",
-                "volume of the bodies in that of the tube, or of the box less slabs; instead of count");
+  Option &hematocrit = rows.real("hematocrit", spec.hematocrit, {0, false, 1}, "",
+                                 "volume of the bodies in that of the tube or the box, less slabs and bodies from "
+                                 "files; instead of count");
   hematocrit.default_note = "none";
   hematocrit.text = [&spec] { return spec.hematocrit < 0 ? std::string() : to_text(spec.hematocrit); };
-  Option &inside = rows.path("inside", spec.inside, "species of tubes that the bodies are in");
-  inside.accepted = "the name of a species of tubes";
-  inside.default_note = "the only one, or none";
+  Option &inside =
+      rows.path("inside", spec.inside,
+                "species of tubes or voxels that the bodies are in; out of the solid of voxels they keep anyway");
+  inside.accepted = "the name of a species of tubes or voxels";
+  inside.default_note = "the only tube, or none";
   rows.real("gap", spec.gap, not_negative, "length", "least distance between bodies; half of it to walls");
   for_placement(3, {Placement::random});
   add_orientation(rows, spec);

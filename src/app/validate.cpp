@@ -1,6 +1,7 @@
 #include "app/validate.hpp"
 
 #include "app/option_values.hpp"
+#include "app/voxels.hpp"
 #include "bodies/seeding.hpp"
 #include "pressure/smac.hpp"
 
@@ -120,11 +121,17 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
-std::string place_species(std::size_t which, Config *config) {
+bool any_random(const Config &config) {
+  return std::any_of(config.species.begin(), config.species.end(),
+                     [](const SpeciesSpec &spec) { return spec.placement == Placement::random; });
+}
+
+std::string place_species(std::size_t which, const SolidBodies &solids, Config *config) {
   const SpeciesSpec &spec = config->species[which];
   std::vector<BodyPlace> places;
   if (spec.placement == Placement::random) {
-    if (std::string wrong = seed_bodies(config->species, which, config->grid, config->places, &places); !wrong.empty())
+    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &places);
+        !wrong.empty())
       return wrong;
   } else if (const std::string wrong = place_bodies(spec, config->grid, &places); !wrong.empty()) {
     return "-species " + spec.name + (spec.placement == Placement::list ? " (-" + spec.name + "_positions): " : ": ") +
@@ -185,9 +192,14 @@ std::string validate(Config *whole) {
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;
+  SolidBodies solids;
+  if (const bool random = any_random(config); random || config.check_only)
+    if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
+        !wrong.empty())
+      return wrong;
   whole->places.clear();
   for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (const std::string wrong = place_species(s, whole); !wrong.empty()) return wrong;
+    if (const std::string wrong = place_species(s, solids, whole); !wrong.empty()) return wrong;
   return {};
 }
 

@@ -8,7 +8,9 @@
 #include "io/stl_file.hpp"
 #include "io/volume_file.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -26,12 +28,12 @@ public:
     return place_volume(voxels, file, grid);
   }
 
-  std::string fill(const Grid &grid, View fraction) {
-    if (!volume_) return fill_surface(grid, triangles_, fraction);
+  std::string fill(const CellWindow &window, View fraction) {
+    if (!volume_) return fill_surface(window, triangles_, fraction);
     const auto read = [this](const Int3 &begin, const Int3 &end, double *values) {
       return volume_->read(begin, end, values);
     };
-    return resample(grid, box_, read, fraction);
+    return resample(window, box_, read, fraction);
   }
 
 private:
@@ -90,12 +92,47 @@ std::string about(const SpeciesSpec &spec, const std::string &wrong) {
   return wrong.empty() ? wrong : "-" + spec.name + "_voxels: " + wrong;
 }
 
+constexpr int most_cells = 1 << 24;  // of the box, in memory at a time
+
+// In slabs. The volume does not depend on the cells, so that few will do.
+std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, double *volume) {
+  if (!mask)
+    for (int &n : grid.cells) n = std::min(n, 64);
+  const Int3 &n = grid.cells;
+  const int step = static_cast<int>(std::clamp(most_cells / (double(n[0]) * n[1]), 1.0, double(n[2])));
+  std::vector<double> phi;
+  double sum = 0;
+  for (int k = 0; k < n[2]; k += step) {
+    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::min(step, n[2] - k)});
+    phi.resize(std::size_t(n[0]) * n[1] * window.size[2]);
+    const View fraction{phi.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
+    VoxelBody body;  // anew: files may have to be read from the front
+    std::string wrong = body.open(spec, grid);
+    if (wrong.empty()) wrong = body.fill(window, fraction);
+    if (!wrong.empty()) return wrong;
+    if (spec.voxels.invert)
+      for (double &q : phi) q = 1 - q;
+    for (std::size_t row = 0; row < phi.size(); row += n[0])
+      sum += std::accumulate(phi.begin() + row, phi.begin() + row + n[0], 0.0);
+    if (mask) mask->add(window, fraction);
+  }
+  for (int d = 0; d < (n[2] == 1 ? 2 : 3); ++d) sum *= grid.length[d] / n[d];
+  *volume = sum;
+  return {};
+}
+
 }  // namespace
 
-std::string why_not_voxels(const Config &config) {
-  for (const SpeciesSpec &spec : config.species)
-    if (spec.shape == Shape::voxels)
-      if (std::string wrong = about(spec, VoxelBody().open(spec, config.grid)); !wrong.empty()) return wrong;
+std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSpec &grid, bool masks,
+                           SolidBodies *solids, std::vector<double> *volumes) {
+  volumes->assign(species.size(), 0);
+  for (std::size_t s = 0; s < species.size(); ++s) {
+    if (species[s].shape != Shape::voxels) continue;
+    if (masks) solids->masks.emplace_back(grid);
+    const std::string wrong = measure(species[s], grid, masks ? &solids->masks.back() : nullptr, &(*volumes)[s]);
+    if (!wrong.empty()) return about(species[s], wrong);
+    solids->volume += (*volumes)[s];
+  }
   return {};
 }
 

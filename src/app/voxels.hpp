@@ -3,13 +3,16 @@
 
 #include "app/config.hpp"
 #include "bodies/placement.hpp"
+#include "bodies/solid_mask.hpp"
 #include "field/phase.hpp"
 
 namespace eulastic {
 
-/// One line on the first species whose file cannot be used, or nothing. Reads headers of volumes and all of a surface,
-/// on every rank alike; single voxels are looked at by fill_voxels().
-std::string why_not_voxels(const Config &config);
+/// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
+/// `solids`, and with `masks` their cells. Every rank reads the files, all of them. Returns one line on the first that
+/// cannot be used, or nothing.
+std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSpec &grid, bool masks,
+                           SolidBodies *solids, std::vector<double> *volumes);
 
 /// Collective. One body: sets the fraction, B and the label of a phase that fill_phase() made, and its place.
 PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase,

@@ -81,11 +81,11 @@ Projection project(const Polygon &polygon, double x) noexcept {
 
 std::uint64_t fixed(double volume) { return static_cast<std::uint64_t>(std::llround(std::ldexp(volume, 50))); }
 
-// Differences in x of the volumes, one cell more than owned; unsigned, so that a mess of triangles may wrap around.
+// Differences in x of the volumes, one cell more than there are; unsigned, so that a mess of triangles may wrap around.
 class Volumes {
 public:
-  explicit Volumes(const Grid &grid)
-      : grid_(grid), begin_(grid.layout().begin), n_(grid.owned()), sums_((n_[0] + 1) * std::size_t(n_[1]) * n_[2]) {}
+  explicit Volumes(const CellWindow &window)
+      : begin_(window.begin), n_(window.size), sums_((n_[0] + 1) * std::size_t(n_[1]) * n_[2]) {}
 
   void add(const Polygon &triangle, int sign) {
     for_strips(triangle, 2, begin_[2], begin_[2] + n_[2], [&](int k, const Polygon &in_z) {
@@ -111,13 +111,12 @@ public:
   }
 
 private:
-  // Cells on the low side of the owned ones are only summed up.
+  // Cells on the low side of the window are only summed up.
   std::uint64_t &at(int i, int j, int k) {
     const std::size_t row = std::size_t(k - begin_[2]) * n_[1] + (j - begin_[1]);
     return sums_[row * (n_[0] + 1) + std::max(i - begin_[0], 0)];
   }
 
-  const Grid &grid_;
   Int3 begin_, n_;
   std::vector<std::uint64_t> sums_;
 };
@@ -162,30 +161,29 @@ double enclosed_volume(const std::vector<Triangle> &triangles) {
   return sum / 6;
 }
 
-std::string fill_surface(const Grid &grid, const std::vector<Triangle> &triangles, View fraction) {
-  Real3 h;
-  for (int d = 0; d < 3; ++d) h[d] = grid.spec().length[d] / grid.cells()[d];
+std::string fill_surface(const CellWindow &window, const std::vector<Triangle> &triangles, View fraction) {
   const int sign = enclosed_volume(triangles) < 0 ? -1 : 1;
-  Volumes volumes(grid);
+  Volumes volumes(window);
   for (const Triangle &triangle : triangles) {
     Polygon polygon;
     polygon.n = 3;
     for (int a = 0; a < 3; ++a)
       for (int d = 0; d < 3; ++d) {
-        polygon.corner[a][d] = triangle[a][d] / h[d];
+        polygon.corner[a][d] = triangle[a][d] / window.spacing(d);
         if (!(std::abs(polygon.corner[a][d]) < 1e9)) return "a corner is more than 1e9 cells away from the box";
       }
     volumes.add(polygon, sign);
   }
-  for (const Segment &row : grid.rows()) {
-    std::uint64_t sum = 0;
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      const double phi = volumes.next(i, row.j, row.k, &sum);
-      if (!(phi > -1e-9 && phi < 1 + 1e-9))
-        return "the surface crosses itself or has parts with opposite normals; accepted: no point inside it twice";
-      fraction(i, row.j, row.k) = clean_fraction(phi);
+  for (int k = 0; k < window.size[2]; ++k)
+    for (int j = 0; j < window.size[1]; ++j) {
+      std::uint64_t sum = 0;
+      for (int i = 0; i < window.size[0]; ++i) {
+        const double phi = volumes.next(i, j, k, &sum);
+        if (!(phi > -1e-9 && phi < 1 + 1e-9))
+          return "the surface crosses itself or has parts with opposite normals; accepted: no point inside it twice";
+        fraction(i, j, k) = clean_fraction(phi);
+      }
     }
-  }
   return {};
 }
 

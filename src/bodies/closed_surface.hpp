@@ -18,9 +18,9 @@ std::string why_not_closed(const std::vector<Triangle> &triangles);
 /// Volume enclosed; negative if the corners are in clockwise order.
 double enclosed_volume(const std::vector<Triangle> &triangles);
 
-/// Sets `fraction` of the owned cells to the part inside a closed surface in box coordinates, either way round. What
-/// is outside the box is cut off; in 2-D the mean over z. Returns what is wrong, or nothing: a surface that crosses
-/// itself.
-std::string fill_surface(const Grid &grid, const std::vector<Triangle> &triangles, View fraction);
+/// Sets `fraction` of the cells of `window`, whose first one is (0,0,0) in it, to the part inside a closed surface in
+/// box coordinates, either way round. What is outside the box is cut off; in 2-D the mean over z. Returns what is
+/// wrong, or nothing: a surface that crosses itself.
+std::string fill_surface(const CellWindow &window, const std::vector<Triangle> &triangles, View fraction);
 
 }  // namespace eulastic

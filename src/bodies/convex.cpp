@@ -60,6 +60,12 @@ ConvexBody::ConvexBody(const SpeciesSpec &spec, int dimension, double margin, do
   inner_ += margin;
 }
 
+ConvexBody::ConvexBody(const Real3 &half_sides)
+    : kind_(Kind::box), size_(half_sides), rounding_(0), outer_(std::sqrt(dot(half_sides, half_sides))) {
+  inner_ = half_sides[2] > 0 ? std::min({half_sides[0], half_sides[1], half_sides[2]})
+                             : std::min(half_sides[0], half_sides[1]);
+}
+
 Real3 ConvexBody::core(const Real3 &n) const noexcept {
   if (kind_ == Kind::ellipsoid) {
     const Real3 a{size_[0] * n[0], size_[1] * n[1], size_[2] * n[2]};
@@ -68,6 +74,10 @@ Real3 ConvexBody::core(const Real3 &n) const noexcept {
     return {size_[0] * a[0] / norm, size_[1] * a[1] / norm, size_[2] * a[2] / norm};
   }
   Real3 y{};
+  if (kind_ == Kind::box) {
+    for (int d = 0; d < 3; ++d) y[d] = std::copysign(size_[d], n[d]);
+    return y;
+  }
   if (kind_ == Kind::segment) {
     y[axis_] = std::copysign(size_[0], n[axis_]);
     return y;

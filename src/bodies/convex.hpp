@@ -1,7 +1,7 @@
 // Convex bodies around shapes, for placement without overlap.
 //
-// A core (point, disc, ellipsoid or segment) and all within `rounding` of it: a sphere is its own; the red cell is in
-// a rounded disc, 14 % larger; the ellipsoid a in the ellipsoid a - r rounded by r, half a per cent wider for a
+// A core (point, disc, ellipsoid, segment or box) and all within `rounding` of it: a sphere is its own; the red cell is
+// in a rounded disc, 14 % larger; the ellipsoid a in the ellipsoid a - r rounded by r, half a per cent wider for a
 // platelet.
 #pragma once
 
@@ -13,6 +13,8 @@ class ConvexBody {
 public:
   /// `margin` is added all around. A cylinder is cut at `length` from its centre.
   ConvexBody(const SpeciesSpec &spec, int dimension, double margin, double length = 0);
+  /// A cell of the grid, sharp; half its sides, in 2-D 0 along z.
+  explicit ConvexBody(const Real3 &half_sides);
 
   /// Farthest point of the core in direction n, in body coordinates.
   Real3 core(const Real3 &n) const noexcept;
@@ -23,9 +25,9 @@ public:
   bool has_round_shadow(int d) const { return kind_ != Kind::disc || d == axis_; }
 
 private:
-  enum class Kind { ellipsoid, disc, segment } kind_;
-  int axis_;
-  Real3 size_{};  ///< semi-axes of the core; radius of the disc and half the segment in [0]
+  enum class Kind { ellipsoid, disc, segment, box } kind_;
+  int axis_ = 0;
+  Real3 size_{};  ///< semi-axes of the core; half the sides; radius of the disc and half the segment in [0]
   double rounding_, outer_, inner_;
 };
 

@@ -6,10 +6,11 @@
 namespace eulastic {
 
 Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-               const SpeciesSpec *vessel, const GridSpec &grid)
-    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), vessel_(vessel), high_(grid.length) {
+               const SpeciesSpec *vessel, const SolidBodies &solids, const GridSpec &grid)
+    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), vessel_(vessel), solids_(solids), high_(grid.length) {
   cylinder_shapes_.reserve(species.size());  // bodies point into it
   for (int d = 0; d < dimension_; ++d) volume_ *= grid.length[d];
+  volume_ -= solids.volume;
   for (std::size_t s = 0; s < species.size(); ++s) {
     const SpeciesSpec &other = species[s];
     if (other.shape == Shape::slab) {
@@ -26,7 +27,7 @@ Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<std::v
     }
   }
   if (!vessel) return;
-  volume_ = lumen_volume(*vessel, grid);
+  volume_ = lumen_volume(*vessel, grid) - solids.volume;
   for (int d = 0; d < dimension_; ++d) {
     if (d == vessel->axis) continue;
     low_[d] = std::max(low_[d], vessel->centre[d] - vessel->radius);
@@ -43,6 +44,8 @@ bool Region::holds(const PlacedConvex &body) const {
     const double half = body.half_width(d);
     if (wall ? x < half || x + half > length : 2 * half > length) return false;
   }
+  for (const SolidMask &mask : solids_.masks)
+    if (mask.touches(body)) return false;
   return (!vessel_ || in_lumen(body)) && clear_of_slabs(body) && clear_of_cylinders(body);
 }
 

@@ -1,8 +1,9 @@
-// Where bodies may be: the box less slabs, or the lumen of a tube.
+// Where bodies may be: the box less slabs, or the lumen of a tube; both without the cells of bodies from files.
 #pragma once
 
 #include "bodies/convex.hpp"
 #include "bodies/placement.hpp"
+#include "bodies/solid_mask.hpp"
 
 #include <vector>
 
@@ -13,9 +14,9 @@ public:
   /// All slabs of `species` and the cylinders among those with `places`. `vessel`: one of the tubes, or null. All must
   /// stay.
   Region(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-         const SpeciesSpec *vessel, const GridSpec &grid);
+         const SpeciesSpec *vessel, const SolidBodies &solids, const GridSpec &grid);
 
-  /// Volume (area in 2-D) of the lumen, or of the box less slabs.
+  /// Volume (area in 2-D) of the lumen, or of the box less slabs; less bodies from files.
   double volume() const { return volume_; }
   /// The box around it, and whether it ends at the sides of the box of the grid rather than at a round wall.
   double low(int d) const { return low_[d]; }
@@ -32,6 +33,7 @@ private:
   GridSpec grid_;
   int dimension_;
   const SpeciesSpec *vessel_;
+  const SolidBodies &solids_;
   Real3 low_{}, high_{};
   double volume_ = 1;
   std::vector<const SpeciesSpec *> slabs_;

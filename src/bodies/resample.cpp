@@ -10,11 +10,11 @@ namespace {
 constexpr int most_voxels = 1 << 18;  // in one piece
 
 struct Overlap {
-  int cell;       // owned
+  int cell;       // of the window
   double weight;  // part of the cell
 };
 
-// What the voxels of one direction share with the owned cells.
+// What the voxels of one direction share with the cells of the window.
 struct Overlaps {
   int begin = 0, end = 0;             // voxels
   std::vector<std::size_t> start{0};  // of voxel begin + n in `list`
@@ -28,9 +28,9 @@ double edge(const VoxelBox &box, double h, int d, int i) {
   return std::abs(e - face) <= 8 * std::numeric_limits<double>::epsilon() * size ? face : e;
 }
 
-Overlaps find_overlaps(const Grid &grid, const VoxelBox &box, int d) {
-  const double h = grid.spec().length[d] / grid.cells()[d];
-  const int first = grid.layout().begin[d], last = first + grid.owned()[d];
+Overlaps find_overlaps(const CellWindow &window, const VoxelBox &box, int d) {
+  const double h = window.spacing(d);
+  const int first = window.begin[d], last = first + window.size[d];
   // The voxel around a place, a little too low, within the volume.
   const auto voxel_at = [&](int cell) {
     const double i = std::floor((cell * h - box.corner[d]) / box.spacing[d]) - 1;
@@ -63,14 +63,17 @@ void for_overlaps(const Overlaps &overlaps, int voxel, Visit visit) {
 
 double clean_fraction(double phi) noexcept { return phi < 1e-12 ? 0 : phi > 1 - 1e-12 ? 1 : phi; }
 
-std::string resample(const Grid &grid, const VoxelBox &box, const ReadVoxels &read, View fraction) {
-  for (const Segment &row : grid.rows()) std::fill_n(&fraction(0, row.j, row.k), grid.owned()[0], 0.0);
-  const Overlaps x = find_overlaps(grid, box, 0), y = find_overlaps(grid, box, 1), z = find_overlaps(grid, box, 2);
+std::string resample(const CellWindow &window, const VoxelBox &box, const ReadVoxels &read, View fraction) {
+  const Int3 &size = window.size;
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j) std::fill_n(fraction.row(j, k), size[0], 0.0);
+  const Overlaps x = find_overlaps(window, box, 0), y = find_overlaps(window, box, 1),
+                 z = find_overlaps(window, box, 2);
   const int nx = x.end - x.begin, ny = y.end - y.begin;
   if (nx < 1 || ny < 1 || z.end == z.begin) return {};
   const int step_x = std::min(nx, most_voxels), step_y = std::min(ny, most_voxels / step_x);
   const int step_z = std::min(z.end - z.begin, most_voxels / step_x / step_y);
-  std::vector<double> voxels(std::size_t(step_x) * step_y * step_z), row(grid.owned()[0]);
+  std::vector<double> voxels(std::size_t(step_x) * step_y * step_z), row(size[0]);
   for (int k0 = z.begin; k0 < z.end; k0 += step_z)
     for (int j0 = y.begin; j0 < y.end; j0 += step_y)
       for (int i0 = x.begin; i0 < x.end; i0 += step_x) {
@@ -91,9 +94,9 @@ std::string resample(const Grid &grid, const VoxelBox &box, const ReadVoxels &re
             });
           }
       }
-  for (const Segment &cells : grid.rows())
-    for (int i = cells.i_begin; i < cells.i_end; ++i)
-      fraction(i, cells.j, cells.k) = clean_fraction(fraction(i, cells.j, cells.k));
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i) fraction(i, j, k) = clean_fraction(fraction(i, j, k));
   return {};
 }
 

@@ -5,10 +5,10 @@
 
 namespace eulastic {
 
-/// Sets `fraction` of the owned cells; 0 where there are no voxels. The volume is kept to round-off, except for what
-/// lies outside the box. Only voxels that overlap the owned cells are read, at most 2^18 at a time. The same bits on
-/// any ranks. Returns what is wrong with the voxels, or nothing.
-std::string resample(const Grid &grid, const VoxelBox &box, const ReadVoxels &read, View fraction);
+/// Sets `fraction` of the cells of `window`, whose first one is (0,0,0) in it; 0 where there are no voxels. The volume
+/// is kept to round-off, except for what lies outside the box. Only voxels that overlap these cells are read, at most
+/// 2^18 at a time. The same bits on any ranks. Returns what is wrong with the voxels, or nothing.
+std::string resample(const CellWindow &window, const VoxelBox &box, const ReadVoxels &read, View fraction);
 
 /// Round-off next to 0 and 1 removed: a cell that is full is exactly full.
 double clean_fraction(double phi) noexcept;

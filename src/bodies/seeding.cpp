@@ -137,20 +137,22 @@ std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t mos
 }  // namespace
 
 std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
-                        const std::vector<std::vector<BodyPlace>> &earlier, std::vector<BodyPlace> *places) {
+                        const SolidBodies &solids, const std::vector<std::vector<BodyPlace>> &earlier,
+                        std::vector<BodyPlace> *places) {
   const SpeciesSpec &spec = species[which];
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (const std::string wrong = why_no_shape(spec, dimension); !wrong.empty())
     return "-" + spec.name + "_shape: " + wrong;
   const SpeciesSpec *vessel = nullptr;
-  for (const SpeciesSpec &other : species)
-    if (is_tube(other.shape) && (spec.inside.empty() || spec.inside == other.name)) {
-      if (vessel) return "-" + spec.name + "_inside: must name one of the tubes";
-      vessel = &other;
-    }
-  if (!vessel && !spec.inside.empty())
-    return "-" + spec.name + "_inside: " + spec.inside + " is not a species of tubes";
-  const Region region(species, earlier, vessel, grid);
+  bool found = spec.inside.empty();
+  for (const SpeciesSpec &other : species) {
+    found = found || (other.shape == Shape::voxels && spec.inside == other.name);  // everybody keeps out of its wall
+    if (!is_tube(other.shape) || !(spec.inside.empty() || spec.inside == other.name)) continue;
+    if (vessel) return "-" + spec.name + "_inside: must name one of the tubes";
+    vessel = &other;
+  }
+  if (!vessel && !found) return "-" + spec.name + "_inside: " + spec.inside + " is not a species of tubes or voxels";
+  const Region region(species, earlier, vessel, solids, grid);
   const double body = shape_volume(spec, dimension);
   const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
   if (!(wanted <= most_bodies)) return too_many(spec, most_bodies, most_bodies, body, region.volume());

@@ -5,13 +5,15 @@
 #pragma once
 
 #include "bodies/placement.hpp"
+#include "bodies/solid_mask.hpp"
 
 namespace eulastic {
 
-/// Places species[which], clear of walls, slabs, tubes, cylinders and of the bodies of `places` (those of the species
-/// before). Depends on nothing but the arguments: every rank finds the same. Returns an empty string, or one sentence
-/// on what is wrong; where they do not fit, with the largest number that does.
+/// Places species[which], clear of walls, slabs, tubes, cylinders, `solids` and of the bodies of `earlier` (those of
+/// the species before). Depends on nothing but the arguments: every rank finds the same. Returns an empty string, or
+/// one sentence on what is wrong; where they do not fit, with the largest number that does.
 std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
-                        const std::vector<std::vector<BodyPlace>> &earlier, std::vector<BodyPlace> *places);
+                        const SolidBodies &solids, const std::vector<std::vector<BodyPlace>> &earlier,
+                        std::vector<BodyPlace> *places);
 
 }  // namespace eulastic

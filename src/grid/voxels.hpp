@@ -17,6 +17,18 @@ struct VoxelBox {
 /// read from the front need calls that begin ever further on.
 using ReadVoxels = std::function<std::string(const Int3 &begin, const Int3 &end, double *fractions)>;
 
+/// Cells begin <= (i,j,k) < begin + size of a box: those of a rank, or any others.
+struct CellWindow {
+  Real3 length{};  ///< of the box
+  Int3 cells{};    ///< of the box
+  Int3 begin{}, size{};
+
+  CellWindow(const GridSpec &grid, const Int3 &first, const Int3 &count)
+      : length(grid.length), cells(grid.cells), begin(first), size(count) {}
+  CellWindow(const Grid &grid) : CellWindow(grid.spec(), grid.layout().begin, grid.owned()) {}
+  double spacing(int d) const { return length[d] / cells[d]; }
+};
+
 /// Corners in counter-clockwise order seen from outside.
 using Triangle = std::array<Real3, 3>;
 

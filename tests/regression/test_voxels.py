@@ -144,6 +144,37 @@ class Voxels(WithRoom):
             name = self.hdf5(file["solid_fraction"][...])
         numpy.testing.assert_array_equal(self.phi(name, ranks=2), self.phi(name))
 
+    def seeded(self, name, *options, ranks=1):
+        """phi of a vessel from a file and of cells at random in it, at the start, and what -check_only says."""
+        line = ["-grid_cells", "48,32,16", "-grid_length", "48,32,16", "-boundary_y", "wall", "-time_end", "1e-3",
+                "-time_steps_max", "1", "-species", "part,cell", *BODY[2:], name, "-cell_shape", "ellipsoid",
+                "-cell_semi_axes", "1.5,1.5,1", "-cell_shear_modulus", "1", "-cell_placement", "random",
+                "-cell_orientation", "random", *options]
+        run = self.run_case(*line, "-snapshot_interval", "1", "-snapshot_fields", "solid_fraction,body",
+                            "-snapshot_precision", "double", ranks=ranks)
+        says = self.start(*line, "-check_only").stdout
+        return (*(run.snapshots[0][f"solid_fraction_{n}"][...] for n in ("part", "cell")), says)
+
+    def test_bodies_at_random_keep_out_of_a_vessel_from_a_file(self):
+        """No cell holds a part of both; the hematocrit is that of what the vessel leaves; any ranks, the same places."""
+        subprocess.run([ROOT / "scripts/make_vessel", self.room / "v.stl"], check=True, timeout=120)
+        for name, options in ((ROOT / "options/branched_vessel.h5", ()), ("v.stl", ("-part_voxels_invert",))):
+            with self.subTest(name):
+                vessel, cells, says = self.seeded(name, "-cell_hematocrit", ".1", *options)
+                count = round(.1 * (1 - vessel).sum() / (3 * numpy.pi))
+                self.assertGreater(count, 10)
+                self.assertAlmostEqual(cells.sum(), count * 3 * numpy.pi, delta=.02 * cells.sum())
+                self.assertEqual(((vessel > 0) & (cells > 0)).sum(), 0)
+                self.assertIn(f"species cell: {count} bodies", says)
+                self.assertIn(f"species part: 1 bodies of volume {vessel.sum():.6g}", says)
+                on_three = self.seeded(name, "-cell_hematocrit", ".1", "-cell_inside", "part", *options, ranks=3)
+                numpy.testing.assert_array_equal(on_three[1], cells)
+        self.hdf5(numpy.ones(SHAPE))
+        for inside, says in (("other", "other is not a species of tubes or voxels"), ("part", "at most 0 fit")):
+            self.refused(*RUN, "-species", "part,cell", *BODY[2:], "v.h5", "-cell_shape", "sphere", "-cell_radius", ".1",
+                         "-cell_shear_modulus", "1", "-cell_placement", "random", "-cell_count", "2", "-cell_inside",
+                         inside, says=["-cell_", says])
+
     def test_the_example_is_what_its_script_makes(self):
         for suffix in ("h5", "nrrd", "stl"):
             subprocess.run([ROOT / "scripts/make_vessel", self.room / f"made.{suffix}"], check=True, timeout=120)

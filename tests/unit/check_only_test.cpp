@@ -48,6 +48,6 @@ TEST(CheckOnly, NumbersOfAChannel) {
   ASSERT_EQ(tube.error, "");
   const std::string inside = check_report(tube.config, 1);
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 1\n", "(length 4)\n",
-                           "hematocrit: 0.166667 (of the box less slabs and tubes)\n"})
+                           "hematocrit: 0.166667 (of the box less slabs, tubes, vessels)\n"})
     EXPECT_NE(inside.find(line), std::string::npos) << line << inside;
 }

@@ -1,0 +1,41 @@
+// The cells that a body from a file takes, all of the box at once: bodies at random keep out of them.
+#pragma once
+
+#include "bodies/convex.hpp"
+#include "grid/voxels.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace eulastic {
+
+class SolidMask {
+public:
+  /// One bit per cell, none set.
+  explicit SolidMask(const GridSpec &grid);
+
+  /// Sets those of `window` where `fraction` is not 0.
+  void add(const CellWindow &window, ConstView fraction);
+  /// Whether any of the cells that are set touches `body`, whose centre is in the box. If not, no cell holds a part of
+  /// both.
+  bool touches(const PlacedConvex &body) const;
+
+private:
+  std::size_t word(int i, int j, int k) const { return (std::size_t(k) * grid_.cells[1] + j) * words_ + i / 64; }
+  bool row_touches(const PlacedConvex &body, int j, int k, const Real3 &centre, int begin, int end) const;
+
+  GridSpec grid_;
+  int dimension_;
+  std::size_t words_;  // of a row
+  Real3 spacing_{};
+  std::vector<std::uint64_t> bits_;
+  ConvexBody cell_;
+};
+
+/// All bodies from files.
+struct SolidBodies {
+  double volume = 0;  ///< in the box; area in 2-D
+  std::vector<SolidMask> masks;
+};
+
+}  // namespace eulastic
