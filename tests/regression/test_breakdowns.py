@@ -46,6 +46,17 @@ class Ends(Restart):
         os.kill(rank, signal.SIGTERM)
         self.check_stopped(process)
 
+    def test_term_to_mpiexec(self):
+        # Open MPI kills after about a second, whatever the ranks are at: what is complete must suffice.
+        process = self.start_endless(ranks=2, options=OFTEN)
+        self.wait_until(lambda: len(self.checkpoints()) == 2)
+        process.terminate()
+        process.wait(60)
+        step = int(self.checkpoints()[-1].stem.split("_")[1])
+        self.run_case("run", *FLAT, *ENDLESS[:2], "-time_steps_max", step + 5, "-restart", "run", ranks=2)
+        self.run_case("whole", *FLAT, *ENDLESS[:2], "-time_steps_max", step + 5)
+        self.assert_same("whole", "run")
+
     def test_interrupt_without_mpiexec(self):
         process = self.start_endless()
         process.send_signal(signal.SIGINT)
