@@ -78,6 +78,12 @@ struct Config {
   CheckpointControl checkpoint;
   GuardControl guard;
   bool check_only = false;
+
+  /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.
+  bool separates(const SpeciesSpec &spec) const {
+    return spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
+           method.interface == InterfaceScheme::thinc;
+  }
 };
 
 }  // namespace eulastic

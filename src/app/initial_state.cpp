@@ -101,6 +101,13 @@ std::string InitialState::name_for(const std::string &base, const SpeciesSpec &s
   return config_->species.size() == 1 && file_.has(base) ? base : std::string();
 }
 
+bool InitialState::holds(const SpeciesSpec &species) const {
+  if (!open_) return false;
+  bool any = !name_for("solid_fraction", species).empty();
+  for (const TensorComponent &c : all_components) any = any || !name_for(tensor_name(c), species).empty();
+  return any;
+}
+
 PetscErrorCode InitialState::read(const std::string &name, const Staggering &staggering, Wanted wanted, View field) {
   PetscFunctionBeginUser;
   PetscCall(file_.read_field(*grid_, name, staggering, field));

@@ -20,6 +20,8 @@ public:
   /// Opens the file and refuses datasets that nobody reads. Without -initial_state nothing is read at all.
   PetscErrorCode open();
   PetscErrorCode read_flow(State *state);
+  /// Whether the file has the solid fraction or B of a species.
+  bool holds(const SpeciesSpec &species) const;
   /// Fraction, B and labels of one species; `places`: the bodies as placed, replaced by those of the file, labels
   /// `first_label` and following.
   PetscErrorCode read_phase(const SpeciesSpec &species, int first_label, Phase *phase, std::vector<BodyPlace> *places);

@@ -1,5 +1,6 @@
 #include "app/saved_state.hpp"
 
+#include "bodies/colours.hpp"
 #include "io/fail_together.hpp"
 
 namespace eulastic {
@@ -16,7 +17,8 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   const auto &components = tensor_components(solver.grid().dimension());
   for (Phase &phase : state.phases) {
-    const std::string species = "_" + phase.species;
+    // No species has a dot in its name.
+    const std::string species = "_" + phase.species + (phase.colour > 0 ? "." + std::to_string(phase.colour) : "");
     fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
     for (int c = 0; c < phase.tensor.count(); ++c) {
       const std::string name{"xyz"[components[c].a], "xyz"[components[c].b]};
@@ -48,6 +50,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
   integers["state_hash"] = {static_cast<long>(hash)};
+  if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   if (solver.bodies().bodies() == 0) return numbers;
   reals["body_first_volumes"] = o.first_volume;
   for (const Int3 &cell : solver.bodies().references())
@@ -107,10 +110,14 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Grid &grid = solver->grid();
   position->outputs.first_volume.assign(solver->bodies().references().size(), 0);
-  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
-  CheckpointNumbers numbers = expected;
+  std::vector<long> colours;
   std::uint64_t hash = 0;
   PetscFunctionBeginUser;
+  PetscCall(file->read_if_there("colours", &colours));
+  const bool fits = set_colours(grid, colours, &solver->state().phases);
+  PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
+  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
+  CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));

@@ -3,6 +3,7 @@
 #include "app/initial_state.hpp"
 #include "app/voxels.hpp"
 #include "base/events.hpp"
+#include "bodies/contact.hpp"
 #include "bodies/fill_phase.hpp"
 #include "io/fail_together.hpp"
 
@@ -20,6 +21,23 @@ PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *
   PetscFunctionReturn(0);
 }
 
+// Bodies that are near at the start get phases of their own; bodies of simple shapes are then whole, also where the
+// larger fraction had a cell for itself. `colours`: the first phase of the species, others are added.
+PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const SpeciesSpec &species,
+                               const std::vector<BodyPlace> &places, int first_label, bool refill,
+                               std::vector<Phase> *colours) {
+  PetscFunctionBeginUser;
+  std::vector<int> colour(places.size(), 0);
+  std::vector<BodyMove> moves;
+  for (int round = 0; round < most_colours; ++round) {
+    PetscCall(separate_bodies(grid, exchange, colours, &moves));
+    if (moves.empty() || !refill) PetscFunctionReturn(0);
+    for (const BodyMove &move : moves) colour[move.label - first_label] = move.to;
+    refill_phases(grid, species, places, first_label, colour, colours);  // whole bodies may be near others
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver) {
   PetscFunctionBeginUser;
   State &state = solver->state();
@@ -28,18 +46,24 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
   PetscCall(file.open());
   PetscCall(file.read_flow(&state));
   int next_label = 1;
+  std::vector<Phase> more;  // colours come after the first phases of all species
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
     std::vector<BodyPlace> places = config.places[s];
-    Phase phase;
+    std::vector<Phase> colours(1);
+    Phase &phase = colours[0];
     PetscCall(fill_phase(grid, species, places, next_label, &phase));
     if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &places));
     PetscCall(file.read_phase(species, next_label, &phase, &places));
+    phase.separate = config.separates(species) && places.size() > 1;
+    PetscCall(separate_places(grid, solver->exchange(), species, places, next_label, !file.holds(species), &colours));
     next_label += static_cast<int>(places.size());
-    state.phases.push_back(std::move(phase));
+    state.phases.push_back(std::move(colours[0]));
+    for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
     solver->bodies().add_phase(grid, config.body_series ? places : std::vector<BodyPlace>());
     if (!config.body_series) state.phases.back().label = FieldBlock();
   }
+  for (Phase &phase : more) state.phases.push_back(std::move(phase));
   if (file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
   PetscFunctionReturn(0);
 }

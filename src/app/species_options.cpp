@@ -9,6 +9,7 @@ const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "
                         "tube",   "constricted_tube", "voxels",    "state"};
 const Names law_names{"neo_hookean", "mooney_rivlin"};
 const Names placement_names{"one", "list", "lattice", "random"};
+const Names contact_names{"separate", "merge"};
 
 void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
   const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
@@ -60,6 +61,21 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
   rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
   for_law(3, Law::mooney_rivlin);
+}
+
+void add_contact(Rows &rows, SpeciesSpec &spec) {
+  Option &row = rows.add("contact", "",
+                         "bodies of this species that touch stay separate, each in memory of its own "
+                         "where there are neighbours, or merge as drops do");
+  row.accepted = "one of separate, merge";
+  row.default_note = "separate; merge with -interface_scheme weno5 or -body_series false";
+  row.read = [&spec](const std::string &value) {
+    int index = 0;
+    std::string wrong = read_choice(value, contact_names, &index);
+    if (wrong.empty()) spec.contact = static_cast<Contact>(index);
+    return wrong;
+  };
+  row.text = [&spec] { return spec.contact ? contact_names[static_cast<int>(*spec.contact)] : std::string(); };
 }
 
 // 3 integers for a lattice, 1 for bodies at random: read before it is known which.
@@ -143,6 +159,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
   add_attached_row(rows, spec);
+  add_contact(rows, spec);
   add_placement(rows, spec);
   rows.prefix.clear();
 }

@@ -121,6 +121,12 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
+std::string check_contact(const Config &config, const SpeciesSpec &spec) {
+  if (spec.contact != Contact::separate || config.separates(spec)) return {};
+  return "-" + spec.name + "_contact: separate needs " +
+         (config.body_series ? "-interface_scheme thinc" : "-body_series true") + "; accepted here: merge";
+}
+
 bool any_random(const Config &config) {
   return std::any_of(config.species.begin(), config.species.end(),
                      [](const SpeciesSpec &spec) { return spec.placement == Placement::random; });
@@ -191,7 +197,8 @@ std::string validate(Config *whole) {
        {check_grid, check_spacings, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
-    if (const std::string wrong = check_species(config, spec); !wrong.empty()) return wrong;
+    for (const auto check : {check_species, check_contact})
+      if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   SolidBodies solids;
   if (const bool random = any_random(config); random || config.check_only)
     if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);

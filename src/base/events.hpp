@@ -18,6 +18,7 @@ enum class Verb {
   left_cauchy_green,
   exterior,
   bodies,
+  contact,
   sums,
   write,
   count

@@ -52,6 +52,19 @@ void add_body(const Grid &grid, const PlacedBody &body, double name, View fracti
             }
 }
 
+// Body b goes to *phase_of(b).
+template <class PhaseOf>
+void add_bodies(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
+                PhaseOf phase_of) {
+  const Surface surface(spec, grid.dimension());
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    if (is_far(grid, places[b], surface.bounding_radius())) continue;
+    Phase *phase = phase_of(b);
+    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), phase->fraction[0],
+             phase->label[0]);
+  }
+}
+
 }  // namespace
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
@@ -78,14 +91,19 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
   phase->fraction = FieldBlock(grid, 1);
   phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
   phase->label = FieldBlock(grid, 1);
-  const View fraction = phase->fraction[0], label = phase->label[0];
-  const Surface surface(spec, grid.dimension());
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    if (is_far(grid, places[b], surface.bounding_radius())) continue;
-    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), fraction, label);
-  }
+  add_bodies(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
   stretch_phase(grid, spec, phase);
   PetscFunctionReturn(0);
+}
+
+void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
+                   const std::vector<int> &colour, std::vector<Phase> *phases) {
+  for (Phase &phase : *phases) {
+    phase.fraction.clear();
+    phase.label.clear();
+  }
+  add_bodies(grid, spec, places, first_label, [&](std::size_t b) { return &(*phases)[colour[b]]; });
+  for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
 }
 
 }  // namespace eulastic

@@ -12,6 +12,10 @@ namespace eulastic {
 PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
                           int first_label, Phase *phase);
 
+/// Fills phi, B and label of phases that fill_phase() has made anew: body b of `places` goes to phases[colour[b]].
+void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
+                   const std::vector<int> &colour, std::vector<Phase> *phases);
+
 /// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere.
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase);
 

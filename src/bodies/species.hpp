@@ -19,6 +19,8 @@ constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Sh
 /// Unless it is said.
 constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
 enum class Placement { one, list, lattice, random };
+/// Of bodies of one species; see bodies/contact.hpp.
+enum class Contact { separate, merge };
 
 /// One body from a file: a volume of voxels, or a closed surface.
 struct VoxelSpec {
@@ -43,6 +45,7 @@ struct SpeciesSpec {
   double shear_modulus = 0;        ///< neo-Hookean; pressure units
   double c1 = 0, c2 = 0, c3 = 0;   ///< Mooney-Rivlin; pressure units
   std::optional<bool> attached;    ///< default by shape: is_attached()
+  std::optional<Contact> contact;  ///< default by method: Config::separates()
   Real3 initial_stretch{1, 1, 1};  ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
   Placement placement = Placement::one;
   Real3 centre{};

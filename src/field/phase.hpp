@@ -1,4 +1,5 @@
-// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor.
+// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one,
+// and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp).
 #pragma once
 
 #include "field/field_block.hpp"
@@ -12,6 +13,8 @@ namespace eulastic {
 struct Phase {
   std::string species;  ///< name of the species it belongs to
   Material material;
+  int colour = 0;           ///< 0: the first phase of the species; the others come after the first ones of all species
+  bool separate = false;    ///< bodies that come near get phases of their own; needs labels
   FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
   FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
   FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact

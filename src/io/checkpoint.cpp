@@ -113,6 +113,13 @@ PetscErrorCode CheckpointFile::read_numbers(CheckpointNumbers *numbers) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CheckpointFile::read_if_there(const std::string &name, std::vector<long> *integers) {
+  PetscFunctionBeginUser;
+  integers->clear();
+  if (file_.has(name)) PetscCall(read(name, integers));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CheckpointFile::read_fields(const Grid &grid, const std::vector<CheckpointField> &fields) {
   PetscFunctionBeginUser;
   for (const CheckpointField &field : fields) {

@@ -43,6 +43,8 @@ public:
   PetscErrorCode read_options(std::string *options);
   /// The names in `numbers` say what to read.
   PetscErrorCode read_numbers(CheckpointNumbers *numbers);
+  /// Integers that not every checkpoint has: empty if this one has not.
+  PetscErrorCode read_if_there(const std::string &name, std::vector<long> *integers);
   /// Owned points, the high wall included.
   PetscErrorCode read_fields(const Grid &grid, const std::vector<CheckpointField> &fields);
 

@@ -4,6 +4,8 @@
 #include "field/phase.hpp"
 #include "io/snapshot.hpp"
 
+#include <map>
+
 namespace eulastic {
 
 /// Groups of datasets (docs/outputs.md).
@@ -12,8 +14,8 @@ struct SnapshotSelection {
   Stored precision = Stored::float32;
 };
 
-/// Views of the state, and the fields that are made for the file: the velocity at centres and, with several phases,
-/// what they have in common.
+/// Views of the state, and the fields that are made for the file: the velocity at centres, a species of several phases
+/// as one and, with several species, what they have in common.
 class SnapshotFields {
 public:
   explicit SnapshotFields(const Grid &grid) : grid_(&grid) {}
@@ -25,12 +27,16 @@ public:
 
 private:
   void centre_velocity(const FieldBlock &velocity);
-  void mix_fractions(const std::vector<Phase> &phases);
-  void mix_labels(const std::vector<Phase> &phases);
-  void mix_tensors(const std::vector<Phase> &phases);
+  using Phases = std::vector<const Phase *>;
+  Phases by_species(const SnapshotSelection &selection, const std::vector<Phase> &phases);
+  void merge(const SnapshotSelection &selection, const Phases &colours, Phase *merged);
+  void mix_fractions(const Phases &phases);
+  void mix_labels(const Phases &phases);
+  void mix_tensors(const Phases &phases);
 
   const Grid *grid_;
   FieldBlock velocity_, fraction_, label_, tensor_;
+  std::map<std::string, Phase> merged_;
 };
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 #include "solver/solver.hpp"
 
+#include "bodies/contact.hpp"
 #include "bodies/labels.hpp"
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace eulastic {
 
@@ -62,12 +64,19 @@ PetscErrorCode Solver::prepare() {
     next_fraction_ = FieldBlock(*grid_, 1);
   for (Phase &phase : now_.phases) {
     phase.material.linear = phase.material.attached && damps_short_waves(*grid_, spec_.fluid, phase.material);
-    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
-    PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
-    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-    PetscCall(complete_exterior(phase, phase.tensor));
+    PetscCall(settle(phase));
   }
+  PetscFunctionReturn(0);
+}
+
+// Ghosts, B outside the bodies and active segments of a phase whose owned cells are set.
+PetscErrorCode Solver::settle(Phase &phase) {
+  PetscFunctionBeginUser;
+  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
+  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+  PetscCall(complete_exterior(phase, phase.tensor));
   PetscFunctionReturn(0);
 }
 
@@ -259,6 +268,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     const Phase &phase = now_.phases[p];
     copy.species = phase.species;
     copy.material = phase.material;
+    copy.colour = phase.colour;
     copy.fraction.copy_from(phase.fraction);
     copy.tensor.copy_from(phase.tensor);
     if (phase.label) copy.label.copy_from(phase.label);
@@ -278,7 +288,18 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
   for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
   PetscCall(bodies_.follow(*grid_, now_.phases));
+  PetscCall(separate_bodies());
   now_.travel = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::separate_bodies() {
+  PetscFunctionBeginUser;
+  std::vector<BodyMove> moves;
+  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves));
+  std::set<int> changed;
+  for (const BodyMove &move : moves) changed.insert({move.from, move.to});
+  for (const int p : changed) PetscCall(settle(now_.phases[p]));
   PetscFunctionReturn(0);
 }
 

@@ -72,6 +72,8 @@ private:
   PetscErrorCode transport_left_cauchy_green(Phase &phase, double dt);
   PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor);
   PetscErrorCode follow_bodies(double dt);
+  PetscErrorCode separate_bodies();
+  PetscErrorCode settle(Phase &phase);
 
   const Grid *grid_ = nullptr;
   SolverSpec spec_;

@@ -51,7 +51,8 @@ TEST(Seeding, SameSceneOnAnyRanks) {
 TEST(BodySeries, OffTheFlowIsTheSame) {
   std::uint64_t hash[2] = {}, flow[2] = {};
   for (const bool on : {true, false}) {
-    const ParseResult result = parse_line(capillary + "-body_series " + (on ? "true" : "false"));
+    const ParseResult result =
+        parse_line(capillary + "-rbc_contact merge -plt_contact merge -body_series " + (on ? "true" : "false"));
     ASSERT_EQ(result.error, "");
     ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, hash, &flow[on]), 0);
     EXPECT_EQ(hash[1] == flow[on], !on) << "labels are part of the state, or are not there";

@@ -103,7 +103,7 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   const char *const faces[] = {"velocity_x", "velocity_y", "velocity_z"};
   for (int c = 0; c < dimension; ++c) EXPECT_EQ(first_value(faces[c], at_face[c]), here + 0.25 * c);
   EXPECT_EQ(first_value("pressure", at_centre), here);
-  EXPECT_EQ(first_value("solid_fraction", at_centre), phase_count == 1 ? 0.5 : 1.0);
+  EXPECT_EQ(first_value("solid_fraction", at_centre), phase_count == 1 ? 0.5 : 1.25);
   EXPECT_EQ(first_value("body", at_centre), phase_count == 1 ? 3 : 4);
   const auto &components = tensor_components(dimension);
   for (std::size_t c = 0; c < components.size(); ++c) {

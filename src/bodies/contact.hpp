@@ -1,0 +1,31 @@
+// Contact: bodies of one species that come near get phases ("colours") of their own. docs/method.md, section 15.
+//
+// Within one phase nothing tells two bodies apart once interface transport, B outside bodies or labels reach both.
+// Phases never mix: their stresses add up and all move with the one velocity. So as many phases as it takes to keep
+// near bodies apart keep them apart for ever.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+/// Two bodies are near if a labelled cell of one lies within so many cells of one of the other in every direction. The
+/// next look comes before either has reached more than one cell further: until then no stencil of the interface and no
+/// layer of labels sees both, nor WENO5 the other's B.
+inline constexpr int contact_reach = 3;
+inline constexpr int most_colours = 64;  ///< of a species
+
+/// A body that has got another phase; positions in the vector of phases.
+struct BodyMove {
+  int label, from, to;
+};
+
+/// Collective. Of every two near bodies in a phase with `separate` the one with the higher label moves to the first
+/// phase of its species without a body near it; if there is none, one is appended. Every rank gets the same `moves`,
+/// by label. phi, B and label of a body go as they are, edges of B with them; points of B around it and all ghosts are
+/// the caller's. Needs owned labels. An error of PETSC_ERR_USER_INPUT beyond most_colours.
+PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
+                               std::vector<BodyMove> *moves);
+
+}  // namespace eulastic

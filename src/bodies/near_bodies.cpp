@@ -1,0 +1,167 @@
+#include "bodies/near_bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+constexpr double nobody = std::numeric_limits<double>::infinity();
+
+// Local cells that exist: owned ones and `reach` layers around them, none behind walls.
+struct Box {
+  Int3 begin{}, end{};
+  Box(const Grid &grid, int reach) {
+    for (int d = 0; d < 3; ++d) {
+      const int ghosts = grid.layout().ghosts[d] > 0 ? reach : 0;
+      begin[d] = grid.touches_low(d) ? 0 : -ghosts;
+      end[d] = grid.owned()[d] + (grid.touches_high(d) ? 0 : ghosts);
+    }
+  }
+  Box around(const Int3 &cell, int reach) const {
+    Box box = *this;
+    for (int d = 0; d < 3; ++d) {
+      box.begin[d] = std::max(begin[d], cell[d] - reach);
+      box.end[d] = std::min(end[d], cell[d] + reach + 1);
+    }
+    return box;
+  }
+};
+
+// Smallest and largest label in blocks of `size` cells each way; the blocks begin with the box.
+struct Blocks {
+  int size;
+  Box box;
+  Int3 count{};
+  std::vector<double> low, high;
+
+  Blocks(const Box &cells, ConstView label, int block_size) : size(block_size), box(cells) {
+    for (int d = 0; d < 3; ++d) count[d] = (box.end[d] - box.begin[d] + size - 1) / size;
+    low.assign(std::size_t(count[0]) * count[1] * count[2], nobody);
+    high.assign(low.size(), 0);
+    const int width = box.end[0] - box.begin[0];
+    std::vector<double> row_low(width), row_high(width);
+    for (int bk = 0; bk < count[2]; ++bk)
+      for (int bj = 0; bj < count[1]; ++bj) {
+        std::fill(row_low.begin(), row_low.end(), nobody);
+        std::fill(row_high.begin(), row_high.end(), 0);
+        for (int k = first(2, bk); k < last(2, bk); ++k)
+          for (int j = first(1, bj); j < last(1, bj); ++j) {
+            const double *q = label.row(j, k) + box.begin[0];
+            double *const least = row_low.data(), *const most = row_high.data();
+#pragma omp simd
+            for (int i = 0; i < width; ++i) {
+              const double own = q[i] > 0 ? q[i] : nobody;
+              least[i] = own < least[i] ? own : least[i];
+              most[i] = q[i] > most[i] ? q[i] : most[i];
+            }
+          }
+        const std::size_t row = std::size_t(count[0]) * (bj + std::size_t(count[1]) * bk);
+        for (int i = 0; i < width; ++i) {
+          low[row + i / size] = std::min(low[row + i / size], row_low[i]);
+          high[row + i / size] = std::max(high[row + i / size], row_high[i]);
+        }
+      }
+  }
+  int first(int d, int block) const { return box.begin[d] + block * size; }
+  int last(int d, int block) const { return std::min(first(d, block) + size, box.end[d]); }
+  // Whether a block and those around it hold labels of more than one body.
+  bool is_mixed(int bi, int bj, int bk) const {
+    double least = nobody, most = 0;
+    for (int k = std::max(bk - 1, 0); k < std::min(bk + 2, count[2]); ++k)
+      for (int j = std::max(bj - 1, 0); j < std::min(bj + 2, count[1]); ++j)
+        for (int i = std::max(bi - 1, 0); i < std::min(bi + 2, count[0]); ++i) {
+          const std::size_t b = i + std::size_t(count[0]) * (j + std::size_t(count[1]) * k);
+          least = std::min(least, low[b]);
+          most = std::max(most, high[b]);
+        }
+    return least < most;
+  }
+};
+
+// On the skin of its body, where the cell of it that is nearest to anything is.
+bool is_skin(const Grid &grid, ConstView label, const Int3 &c) {
+  const double *q = &label.row(c[1], c[2])[c[0]];
+  for (int d = 0; d < grid.dimension(); ++d)
+    if (q[-label.stride(d)] != *q || q[label.stride(d)] != *q) return true;
+  return false;
+}
+
+// Adds the pairs of body `own` of a cell with the other labels in a box around it.
+void look_around(ConstView label, const Box &window, double own, int phase, std::vector<NearBodies> *found) {
+  const int n = window.end[0] - window.begin[0];
+  for (int k = window.begin[2]; k < window.end[2]; ++k)
+    for (int j = window.begin[1]; j < window.end[1]; ++j) {
+      const double *q = label.row(j, k) + window.begin[0];
+      int others = 0;
+      for (int i = 0; i < n; ++i) others += (q[i] > 0) & (q[i] != own);
+      for (int i = 0; others > 0 && i < n; ++i) {
+        if (q[i] <= 0 || q[i] == own) continue;
+        const NearBodies pair{static_cast<int>(own), static_cast<int>(q[i]), phase};
+        if (found->empty() || !(found->back() == pair)) found->push_back(pair);
+      }
+    }
+}
+
+void sort_out(std::vector<NearBodies> *found) {
+  std::sort(found->begin(), found->end());
+  found->erase(std::unique(found->begin(), found->end()), found->end());
+}
+
+}  // namespace
+
+void find_near_in_phase(const Grid &grid, ConstView label, int phase, int reach, std::vector<NearBodies> *found) {
+  const Box all(grid, reach), owned(grid, 0);
+  const Blocks blocks(all, label, reach);
+  std::vector<NearBodies> pairs;
+  for (int bk = 0; bk < blocks.count[2]; ++bk)
+    for (int bj = 0; bj < blocks.count[1]; ++bj)
+      for (int bi = 0; bi < blocks.count[0]; ++bi) {
+        if (!blocks.is_mixed(bi, bj, bk)) continue;
+        for (int k = std::max(blocks.first(2, bk), 0); k < std::min(blocks.last(2, bk), owned.end[2]); ++k)
+          for (int j = std::max(blocks.first(1, bj), 0); j < std::min(blocks.last(1, bj), owned.end[1]); ++j)
+            for (int i = std::max(blocks.first(0, bi), 0); i < std::min(blocks.last(0, bi), owned.end[0]); ++i)
+              if (label(i, j, k) > 0 && is_skin(grid, label, {i, j, k}))
+                look_around(label, all.around({i, j, k}, reach), label(i, j, k), phase, &pairs);
+        sort_out(&pairs);
+      }
+  for (NearBodies &pair : pairs)
+    if (pair.body < pair.other) std::swap(pair.body, pair.other);
+  sort_out(&pairs);
+  found->insert(found->end(), pairs.begin(), pairs.end());
+}
+
+void find_near_others(const Grid &grid, ConstView own, const std::vector<int> &labels, ConstView others, int phase,
+                      int reach, std::vector<NearBodies> *found) {
+  const Box all(grid, reach);
+  std::vector<NearBodies> pairs;
+  for (const Segment &row : grid.rows()) {
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const double label = own(i, row.j, row.k);
+      if (label <= 0 || !std::binary_search(labels.begin(), labels.end(), static_cast<int>(label))) continue;
+      if (is_skin(grid, own, {i, row.j, row.k}))
+        look_around(others, all.around({i, row.j, row.k}, reach), label, phase, &pairs);
+    }
+    sort_out(&pairs);
+  }
+  found->insert(found->end(), pairs.begin(), pairs.end());
+}
+
+PetscErrorCode gather_near(MPI_Comm comm, std::vector<NearBodies> *found) {
+  PetscFunctionBeginUser;
+  static_assert(sizeof(NearBodies) == 3 * sizeof(int), "sent as integers");
+  int ranks, mine = 3 * static_cast<int>(found->size()), any = 0;
+  PetscCallMPI(MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, comm));
+  if (any == 0) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  std::vector<int> counts(ranks), begins(ranks + 1);
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
+  for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
+  std::vector<NearBodies> all(begins[ranks] / 3);
+  PetscCallMPI(MPI_Allgatherv(found->data(), mine, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, comm));
+  found->swap(all);
+  sort_out(found);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,183 @@
+// Two beads that a shear flow drives together: separate, whole, the same bits on any ranks and after a restart.
+#include "app/saved_state.hpp"
+#include "app/scene.hpp"
+#include "bodies/colours.hpp"
+#include "support/command_line.hpp"
+#include "support/files.hpp"
+
+#include <cmath>
+#include <fstream>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// What some steps have made.
+struct Outcome {
+  std::uint64_t hash = 0;
+  std::size_t phases_before = 0, phases = 0;
+  std::vector<double> change;  // of the volume, per body
+};
+
+const std::string flat_beads =
+    "-time_end 9 -grid_cells 40,36,1 -grid_length 5,4.5,1 -boundary_y wall -wall_ymax_velocity 1,0,0 "
+    "-wall_ymin_velocity "
+    "-1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead -bead_shape sphere "
+    "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
+const std::string solid_beads =
+    "-time_end 9 -grid_cells 28,18,16 -grid_length 3.5,2.25,2 -boundary_y wall -wall_ymax_velocity 1,0,0 "
+    "-wall_ymin_velocity -1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead "
+    "-bead_shape sphere -bead_radius .35 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
+
+PetscErrorCode advance(Solver *solver, int steps, double dt) {
+  PetscFunctionBeginUser;
+  FlowExtremes extremes;
+  for (int n = 0; n < steps; ++n) {
+    if (solver->state().step % 10 == 0) PetscCall(solver->measure(&extremes));
+    PetscCall(solver->step(dt));
+  }
+  PetscFunctionReturn(0);
+}
+
+std::vector<double> volumes(Solver &solver) {
+  std::vector<BodyMeasure> bodies;
+  std::vector<double> all;
+  EXPECT_EQ(solver.bodies().measure(solver.grid(), solver.state().phases, solver.state().velocity, &bodies), 0);
+  for (const BodyMeasure &body : bodies) all.push_back(body.volume);
+  return all;
+}
+
+Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt, const std::string &checkpoint = {},
+                int stop = 0) {
+  Outcome outcome;
+  const ParseResult parsed = parse_line(options);
+  EXPECT_EQ(parsed.error, "");
+  Grid grid;
+  Solver solver;
+  std::string reason;
+  EXPECT_EQ(grid.create(comm, parsed.config.grid), 0);
+  EXPECT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+  EXPECT_EQ(reason, "");
+  outcome.phases_before = solver.state().phases.size();
+  const std::vector<double> before = volumes(solver);
+  RunPosition position;
+  if (!checkpoint.empty() && stop == 0) {
+    CheckpointFile file;
+    EXPECT_EQ(file.open(comm, checkpoint), 0);
+    EXPECT_EQ(load_state(&file, checkpoint, &solver, &position), 0);
+    steps -= static_cast<int>(solver.state().step);
+  }
+  EXPECT_EQ(advance(&solver, stop > 0 ? stop : steps, dt), 0);
+  position.outputs.first_volume = before;
+  if (stop > 0) {
+    EXPECT_EQ(save_state(&solver, position, "-x\n", checkpoint), 0);
+  }
+  EXPECT_EQ(state_hash(grid, solver.state(), &outcome.hash), 0);
+  outcome.phases = solver.state().phases.size();
+  const std::vector<double> after = volumes(solver);
+  for (std::size_t b = 0; b < after.size(); ++b) outcome.change.push_back(after[b] / before[b] - 1);
+  return outcome;
+}
+
+// The two beads of a line of positions.
+std::string with_beads(const SharedDirectory &directory, std::string options, const std::string &places) {
+  const std::string path = directory / "beads.csv";
+  if (world_rank() == 0) std::ofstream(path) << "x,y,z\n" << places;
+  MPI_Barrier(PETSC_COMM_WORLD);
+  return options.replace(options.find("beads.csv"), 9, path);
+}
+
+}  // namespace
+
+TEST(Collision, CollisionsHaveTheSameBitsOnAnyRanksAndAfterARestart) {
+  for (const bool flat : {true, false}) {
+    const SharedDirectory directory;
+    // Across the seam of x: one comes from the left, one from the right.
+    const std::string options = flat ? with_beads(directory, flat_beads, "4.1,2.7,.5\n1.5,1.8,.5\n")
+                                     : with_beads(directory, solid_beads, "2.8,1.4,.9\n1,.85,1.05\n");
+    const int steps = flat ? 90 : 50;
+    const double dt = flat ? .012 : .016;
+    const Outcome one = collide(PETSC_COMM_SELF, options, steps, dt);
+    EXPECT_EQ(one.phases_before, 1u);
+    EXPECT_EQ(one.phases, 2u) << "nothing has met";
+    EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt).hash, one.hash);
+    for (const int stop : {3, steps - 2}) {  // before and after they get two phases
+      const std::string path = directory / checkpoint_name(stop);
+      EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path, stop).phases, stop == 3 ? 1u : 2u);
+      EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path).hash, one.hash) << stop;
+    }
+  }
+}
+
+TEST(Collision, BodiesThatNeverMeetHaveTheirBits) {
+  const SharedDirectory directory;
+  const std::string options = with_beads(directory, flat_beads, "1.2,2.3,.5\n3.7,2.2,.5\n");
+  const Outcome separate = collide(PETSC_COMM_WORLD, options, 20, .012);
+  EXPECT_EQ(separate.phases, 1u);
+  EXPECT_EQ(collide(PETSC_COMM_WORLD, options + "-bead_contact merge", 20, .012).hash, separate.hash);
+}
+
+TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
+  // Far enough apart that one phase does for both: the move by hand is all that differs.
+  const SharedDirectory directory;
+  const std::string options = with_beads(directory, flat_beads, "1.4,2.3,.5\n3.7,2.2,.5\n");
+  double energy[2];
+  for (const bool merge : {false, true}) {
+    const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
+    Grid grid;
+    Solver solver;
+    std::string reason;
+    ASSERT_EQ(grid.create(PETSC_COMM_WORLD, parsed.config.grid), 0);
+    ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+    ASSERT_EQ(advance(&solver, 8, .012), 0);
+    if (!merge) {
+      // Moves bead 2 by hand, in the middle of the run.
+      std::vector<Phase> &phases = solver.state().phases;
+      GhostExchange exchange(grid);
+      ASSERT_EQ(exchange.update(phases[0].label, contact_reach), 0);
+      add_colour(grid, 0, &phases);
+      move_bodies(grid, {{2, 0, 1}}, &phases);
+      ASSERT_EQ(solver.prepare(), 0);
+    }
+    ASSERT_EQ(advance(&solver, 8, .012), 0);
+    energy[merge] = 0;
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i)
+        energy[merge] += std::pow(solver.state().velocity[0](i, row.j, row.k), 2);
+    EXPECT_EQ(solver.state().phases.size(), merge ? 1u : 2u);
+  }
+  EXPECT_NEAR(energy[0], energy[1], 1e-13 * energy[1]);
+}
+
+TEST(Collision, PressedBodiesKeepTheirVolumes) {
+  const SharedDirectory directory;
+  const std::string options = with_beads(directory, flat_beads, "1.2,2.6,.5\n3.1,2.1,.5\n2.35,3.1,.5\n");
+  const Outcome separate = collide(PETSC_COMM_WORLD, options, 120, .012);
+  const Outcome merged = collide(PETSC_COMM_WORLD, options + "-bead_contact merge", 120, .012);
+  for (int b = 0; b < 3; ++b) {
+    EXPECT_LT(std::fabs(separate.change[b]), 1e-9);
+    EXPECT_GT(std::fabs(merged.change[b]), 0.01);
+  }
+}
+
+TEST(Collision, BodiesThatOverlapAtTheStartAreBothWhole) {
+  const SharedDirectory directory;
+  const std::string options = with_beads(directory, flat_beads, "2,2.2,.5\n3.1,2.3,.5\n");
+  for (const bool merge : {false, true}) {
+    const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
+    ASSERT_EQ(parsed.error, "");
+    Grid grid;
+    Solver solver;
+    std::string reason;
+    ASSERT_EQ(grid.create(PETSC_COMM_WORLD, parsed.config.grid), 0);
+    ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+    for (const double volume : volumes(solver)) {
+      if (merge) {
+        EXPECT_LT(volume, 0.9999 * 3.14159265358979 * 0.36);
+      } else {
+        EXPECT_NEAR(volume, 3.14159265358979 * 0.36, 3e-6);
+      }
+    }
+  }
+}

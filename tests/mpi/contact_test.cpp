@@ -1,0 +1,205 @@
+// Bodies of one species that come near get phases of their own: whole, at the right moment, the same on any ranks.
+#include "bodies/contact.hpp"
+#include "bodies/fill_phase.hpp"
+#include "bodies/near_bodies.hpp"
+#include "field/walls.hpp"
+#include "support/files.hpp"
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// Marked blocks of cells; label b + 1 fills block b.
+struct Block {
+  Int3 begin, end;
+};
+
+struct Marks {
+  Grid grid;
+  std::vector<Phase> phases;
+
+  Marks(MPI_Comm comm, const Int3 &cells, bool walls) {
+    GridSpec spec;
+    spec.cells = cells;
+    if (walls) spec.boundary[1] = Boundary::wall;
+    EXPECT_EQ(grid.create(comm, spec), 0);
+  }
+  void add(const std::vector<Block> &blocks) {
+    Phase phase;
+    SpeciesSpec spec;
+    spec.name = "bead";
+    EXPECT_EQ(fill_phase(grid, spec, {}, 1, &phase), 0);
+    phase.separate = true;
+    const Int3 &begin = grid.layout().begin, &n = grid.cells();
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i)
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+          const int x[3] = {begin[0] + i, begin[1] + row.j, begin[2] + row.k};
+          bool inside = true;
+          for (int d = 0; d < 3; ++d) {
+            const int from_begin = (x[d] - blocks[b].begin[d] + 2 * n[d]) % n[d];  // blocks may cross a seam
+            inside = inside && from_begin < blocks[b].end[d] - blocks[b].begin[d];
+          }
+          if (!inside) continue;
+          phase.fraction[0](i, row.j, row.k) = 0.25 + 0.001 * (x[0] + 100 * (x[1] + 100 * x[2])) / 1e4;
+          phase.label[0](i, row.j, row.k) = double(b) + 1;
+        }
+    const auto &components = tensor_components(grid.dimension());
+    for (int c = 0; c < phase.tensor.count(); ++c) {
+      const Staggering at = components[c].staggering();
+      for (int k = 0; k < grid.points_end(2, at[2]); ++k)
+        for (int j = 0; j < grid.points_end(1, at[1]); ++j)
+          for (int i = 0; i < grid.points_end(0, at[0]); ++i)
+            phase.tensor[c](i, j, k) = 2 + c + 1e-3 * (begin[0] + i) + 1e-5 * (begin[1] + j) + 1e-7 * (begin[2] + k);
+    }
+    phases.push_back(std::move(phase));
+  }
+  std::vector<NearBodies> near() {
+    GhostExchange exchange(grid);
+    EXPECT_EQ(exchange.update(phases[0].label, contact_reach), 0);
+    std::vector<NearBodies> pairs;
+    find_near_in_phase(grid, phases[0].label[0], 0, contact_reach, &pairs);
+    EXPECT_EQ(gather_near(grid.comm(), &pairs), 0);
+    return pairs;
+  }
+  std::vector<BodyMove> separate() {
+    GhostExchange exchange(grid);
+    std::vector<BodyMove> moves;
+    EXPECT_EQ(separate_bodies(grid, exchange, &phases, &moves), 0);
+    return moves;
+  }
+};
+
+bool is_pair(const std::vector<NearBodies> &pairs) { return pairs.size() == 1 && pairs[0] == NearBodies{2, 1, 0}; }
+
+constexpr int r = contact_reach;
+
+// Two cubes `gap` cells from each other along each of the directions `apart`; 0 in the others.
+std::vector<NearBodies> near_cubes(MPI_Comm comm, bool flat, const Int3 &corner, const Int3 &apart, bool walls) {
+  Marks marks(comm, {27, 26, flat ? 1 : 25}, walls);
+  Block one{corner, {}}, two{};
+  for (int d = 0; d < 3; ++d) {
+    const int size = flat && d == 2 ? 1 : 4;
+    one.end[d] = corner[d] + size;
+    two.begin[d] = apart[d] > 0 ? one.end[d] - 1 + apart[d] : corner[d];
+    two.end[d] = two.begin[d] + size;
+  }
+  marks.add({one, two});
+  return marks.near();
+}
+
+}  // namespace
+
+TEST(NearBodies, AreFoundAtTheReachAndNotBeyond) {
+  for (const MPI_Comm comm : {PETSC_COMM_WORLD, PETSC_COMM_SELF})
+    for (const bool flat : {false, true})
+      for (const Int3 &corner : {Int3{3, 2, 0}, Int3{20, 3, flat ? 0 : 17}, Int3{11, 10, flat ? 0 : 9}})
+        for (const Int3 &way : {Int3{1, 0, 0}, Int3{0, 1, 0}, Int3{1, 1, 0}, Int3{0, 0, 1}, Int3{1, 1, 1}}) {
+          if (flat && way[2] > 0) continue;
+          const auto apart = [&](int gap) { return Int3{gap * way[0], gap * way[1], gap * way[2]}; };
+          EXPECT_TRUE(is_pair(near_cubes(comm, flat, corner, apart(r), false)));
+          EXPECT_TRUE(is_pair(near_cubes(comm, flat, corner, apart(1), false)));
+          EXPECT_TRUE(near_cubes(comm, flat, corner, apart(r + 1), false).empty());
+        }
+}
+
+TEST(NearBodies, AcrossSeamsAndNotAcrossWalls) {
+  for (const MPI_Comm comm : {PETSC_COMM_WORLD, PETSC_COMM_SELF})
+    for (const bool walls : {false, true}) {
+      Marks marks(comm, {40, 40, 1}, walls);
+      marks.add({{{10, 1, 0}, {14, 3, 1}}, {{10, 37, 0}, {14, 39, 1}}});
+      EXPECT_EQ(marks.near().size(), walls ? 0u : 1u);
+      Marks across(comm, {40, 12, 1}, walls);
+      across.add({{{1, 4, 0}, {3, 7, 1}}, {{37, 4, 0}, {39, 7, 1}}});
+      EXPECT_TRUE(is_pair(across.near()));
+    }
+}
+
+TEST(Contact, AMovedBodyKeepsEveryValue) {
+  for (const Int3 &cells : {Int3{24, 22, 1}, Int3{18, 20, 19}}) {
+    const int z = cells[2];
+    const std::vector<Block> blocks{{{4, 4, 0}, {8, 9, z / 2 + 1}}, {{10, 5, 0}, {13, 9, z / 2 + 1}}};
+    Marks marks(PETSC_COMM_WORLD, cells, true), before(PETSC_COMM_WORLD, cells, true);
+    marks.add(blocks);
+    before.add(blocks);
+    const std::vector<BodyMove> moves = marks.separate();
+    ASSERT_EQ(moves.size(), 1u);
+    EXPECT_EQ(moves[0].label, 2);
+    ASSERT_EQ(marks.phases.size(), 2u);
+    const Phase &from = marks.phases[0], &to = marks.phases[1], &old = before.phases[0];
+    EXPECT_EQ(to.species, "bead");
+    EXPECT_EQ(to.colour, 1);
+    const Grid &grid = marks.grid;
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        const double label = old.label[0](i, row.j, row.k), phi = old.fraction[0](i, row.j, row.k);
+        ASSERT_EQ(from.label[0](i, row.j, row.k), label == 2 ? 0 : label);
+        ASSERT_EQ(to.label[0](i, row.j, row.k), label == 2 ? 2 : 0);
+        ASSERT_EQ(from.fraction[0](i, row.j, row.k), label == 2 ? 0 : phi);
+        ASSERT_EQ(to.fraction[0](i, row.j, row.k), label == 2 ? phi : 0);
+      }
+    // B where a cell of the body touches the point; elsewhere it is of nobody.
+    const auto &components = tensor_components(grid.dimension());
+    const Int3 &begin = grid.layout().begin;
+    const Block &body = blocks[1];
+    for (int c = 0; c < to.tensor.count(); ++c) {
+      const Staggering at = components[c].staggering();
+      for (int k = 0; k < grid.points_end(2, at[2]); ++k)
+        for (int j = 0; j < grid.points_end(1, at[1]); ++j)
+          for (int i = 0; i < grid.points_end(0, at[0]); ++i) {
+            const int x[3] = {begin[0] + i, begin[1] + j, begin[2] + k};
+            bool touches = true;
+            for (int d = 0; d < 3; ++d) {
+              const bool next = x[d] >= body.begin[d] && x[d] < body.end[d] + at[d];
+              const bool seam = at[d] && !grid.is_wall(d) && x[d] == 0 && body.end[d] == cells[d];
+              touches = touches && (next || seam);
+            }
+            if (touches) {
+              ASSERT_EQ(to.tensor[c](i, j, k), old.tensor[c](i, j, k)) << c;
+            } else {
+              ASSERT_EQ(to.tensor[c](i, j, k), components[c].a == components[c].b ? 1 : 0) << c;
+            }
+            ASSERT_EQ(from.tensor[c](i, j, k), old.tensor[c](i, j, k));
+          }
+    }
+    EXPECT_TRUE(marks.separate().empty());
+    EXPECT_EQ(marks.phases.size(), 2u);
+  }
+}
+
+TEST(Contact, LowestFreeColourAndNoMoreThanNeeded) {
+  // A chain of five: two colours do. Then a sixth that touches two of either.
+  Marks chain(PETSC_COMM_WORLD, {60, 24, 1}, true);
+  std::vector<Block> blocks;
+  for (int b = 0; b < 5; ++b) blocks.push_back({{3 + (2 + r) * b, 3, 0}, {6 + (2 + r) * b, 6, 1}});
+  chain.add(blocks);
+  const std::vector<BodyMove> moves = chain.separate();
+  ASSERT_EQ(moves.size(), 2u);
+  EXPECT_EQ(moves[0].label, 2);
+  EXPECT_EQ(moves[1].label, 4);
+  EXPECT_EQ(chain.phases.size(), 2u);
+  Marks third(PETSC_COMM_WORLD, {60, 24, 1}, true);
+  blocks.push_back({{7, 8, 0}, {13, 11, 1}});
+  third.add(blocks);
+  EXPECT_EQ(third.separate().size(), 3u);
+  EXPECT_EQ(third.phases.size(), 3u);
+}
+
+TEST(Contact, MoreThanTheLimitIsAnError) {
+  Marks marks(PETSC_COMM_WORLD, {12, 12, 1}, true);
+  std::vector<Block> blocks;
+  for (int b = 0; b < 144; ++b) blocks.push_back({{b % 12, b / 12, 0}, {b % 12 + 1, b / 12 + 1, 1}});
+  marks.add(blocks);
+  EXPECT_FALSE(marks.separate().empty());
+  EXPECT_LE(marks.phases.size(), std::size_t(most_colours));
+  // A periodic box in which each is near all others.
+  Marks tight(PETSC_COMM_WORLD, {6, 6, 12}, false);
+  blocks.clear();
+  for (int b = 0; b < 144; ++b) blocks.push_back({{b % 6, b / 6 % 6, b / 36}, {b % 6 + 1, b / 6 % 6 + 1, b / 36 + 1}});
+  tight.add(blocks);
+  GhostExchange exchange(tight.grid);
+  std::vector<BodyMove> moves;
+  const std::string error = error_of([&] { return separate_bodies(tight.grid, exchange, &tight.phases, &moves); });
+  EXPECT_NE(error.find("-bead_contact: more than 64"), std::string::npos) << error;
+}
