@@ -2,6 +2,7 @@
 #include "app/saved_state.hpp"
 #include "app/scene.hpp"
 #include "bodies/colours.hpp"
+#include "diagnostics/energy_rates.hpp"
 #include "support/command_line.hpp"
 #include "support/files.hpp"
 
@@ -43,7 +44,9 @@ PetscErrorCode advance(Solver *solver, int steps, double dt) {
 std::vector<double> volumes(Solver &solver) {
   std::vector<BodyMeasure> bodies;
   std::vector<double> all;
-  EXPECT_EQ(solver.bodies().measure(solver.grid(), solver.state().phases, solver.state().velocity, &bodies), 0);
+  EXPECT_EQ(
+      solver.bodies().measure(solver.grid(), solver.state().phases, solver.state().velocity, strain_energy, &bodies),
+      0);
   for (const BodyMeasure &body : bodies) all.push_back(body.volume);
   return all;
 }
