@@ -53,22 +53,29 @@ def worst(scenes, name, of=max):
     return f"{of(values):.2g}" if values else ""
 
 
+def table_row(group, method, scenes):
+    own = [s for s in scenes if s.group is group and s.method == method and s.automatic]
+    alive = [s for s in own if not s.outcome["reason"]]
+    det = [d for s in alive for d in s.outcome["det"] or []]
+    return (f"| {group.title} | {method} | {len(alive)} | {sum(bool(s.outcome['notes']) for s in alive)} | "
+            f"{len(own) - len(alive)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
+            + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} |")
+
+
 def write_table(scenes, path):
-    """Between the two marks in the file: a row per group and method, of the scenes at the automatic time step."""
-    lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch |",
-             "|---|---|---|---|---|---|---|---|---|"]
-    for group in {s.group.name: s.group for s in scenes}.values():
-        for method in ("fast", "classic"):
-            own = [s for s in scenes if s.group is group and s.method == method and s.automatic]
-            alive = [s for s in own if not s.outcome["reason"]]
-            det = [d for s in alive for d in s.outcome["det"] or []]
-            lines.append(f"| {group.title} | {method} | {len(alive)} | {sum(bool(s.outcome['notes']) for s in alive)} | "
-                         f"{len(own) - len(alive)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
-                         + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} |")
-    died = [s for s in scenes if s.automatic and s.outcome["reason"]]
-    lines += ["", f"{sum(s.automatic for s in scenes)} scenes at the automatic time step (up to 1.2 of it), {len(died)} die"
-              + (":" if died else ".")]
-    lines += [""] * bool(died) + [f"- {s.name}: {s.outcome['reason']}" for s in died]
+    """Between the two marks in the file: a row per group and method, of the scenes at the automatic time step. Rows of
+    groups that are not among `scenes` stay as they are."""
     before, rest = path.read_text().split("<!-- table -->\n")
-    after = rest.split("<!-- end of table -->\n")[1]
+    old, after = rest.split("<!-- end of table -->\n")
+    groups = {s.group.name: s.group for s in scenes}
+    titles = {g.title for g in groups.values()}
+    rows = [line for line in old.splitlines()[2:] if line.startswith("| ") and line.split(" | ")[0][2:] not in titles]
+    rows += [table_row(group, method, scenes) for group in groups.values() for method in ("fast", "classic")]
+    died = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
+    died += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
+    count = sum(int(row.split(" | ")[column]) for row in rows for column in (2, 4))
+    lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch |",
+             "|---|---|---|---|---|---|---|---|---|", *rows, "",
+             f"{count} scenes at the automatic time step (up to 1.2 of it), {len(died)} die" + (":" if died else "."),
+             *[""] * bool(died), *died]
     path.write_text(before + "<!-- table -->\n" + "\n".join(lines) + "\n<!-- end of table -->\n" + after)

@@ -109,8 +109,9 @@ runs are kept in build/validation, a killed one goes on.
     scripts/validate --finished   # run nothing: the page of what is there
 
 "at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
-coarser grids stand in front of it, with the observed order. Errors in % are relative. Tolerances that depend on the
-grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
+coarser grids stand in front of it, with the observed order. Errors in % are relative. A tolerance follows from theory
+(the formula stands beside it, "twice" is a factor for what it leaves out), from the error of the reference, or it is
+"asked for": set without a theory. Those that depend on the grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
 of the fast one. "missing" marks runs that were not made. The cases, with their options, formulas and sources, are in
 scripts/validation.
 
