@@ -169,7 +169,7 @@ PetscErrorCode Hdf5File::read_field(const Grid &grid, const std::string &name, c
   bool fits = shape.size() == 3;
   for (int d = 0; d < 3 && fits; ++d) {
     extra[d] = static_cast<long long>(shape[2 - d]) - grid.cells()[d] == 1 && staggering[d] && grid.is_wall(d);
-    fits = shape[2 - d] == hsize_t(grid.cells()[d] + extra[d]);
+    fits = shape[2 - d] == hsize_t(grid.cells()[d]) + hsize_t(extra[d]);
   }
   const Int3 &n = grid.cells();
   PetscCall(check(fits, "dataset " + name + " is " + shape_text(shape) + ", the grid needs " +

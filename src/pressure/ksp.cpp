@@ -31,7 +31,7 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
   PetscCall(DMDAGetLocalInfo(dm, &info));
   const PetscInt cells[3] = {info.mx, info.my, info.mz};
   double volume = 1, coupling[3] = {};
-  for (int d = 0; d < info.dim; ++d) {
+  for (int d = 0; d < grid.dimension(); ++d) {
     volume *= double(grid.cells()[d]) / double(cells[d]);
     coupling[d] = std::pow(shortest(grid) / grid.spec().length[d] * double(cells[d]), 2);
   }
@@ -44,7 +44,7 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
         MatStencil column[7] = {row};
         double value[7] = {};
         PetscInt count = 1;
-        for (int d = 0; d < info.dim; ++d)
+        for (int d = 0; d < grid.dimension(); ++d)
           for (const PetscInt way : {-1, 1}) {
             const PetscInt other = cell[d] + way;
             if (grid.is_wall(d) && (other < 0 || other >= cells[d])) continue;
