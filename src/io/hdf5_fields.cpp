@@ -116,9 +116,9 @@ PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &for
         for (const ConstView &component : components) values.push_back(static_cast<T>(component(i, j, k)));
   PetscCall(write_values(format.name, box, file_type, values));
   PetscCall(write_attribute(format.name, "location",
-                            format.plane < 0 ? location_name(format.staggering)
-                                             : std::string("wall_") + "xyz"[format.plane] +
-                                                   (format.plane_high ? "max" : "min")));
+                            format.plane < 0
+                                ? location_name(format.staggering)
+                                : std::string("wall_") + "xyz"[format.plane] + (format.plane_high ? "max" : "min")));
   PetscFunctionReturn(0);
 }
 
