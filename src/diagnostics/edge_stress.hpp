@@ -4,6 +4,8 @@
 #include "field/phase.hpp"
 #include "kernels/elastic_energy.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 inline kernels::MooneyRivlin law_of(const Material &material) {
@@ -11,10 +13,10 @@ inline kernels::MooneyRivlin law_of(const Material &material) {
   return {k[0], k[1], k[2]};
 }
 
-/// Pointers to the components of B of one cell, in their order.
+/// Pointers to the components of B of one cell, in their order; 2-D has three.
 struct CellTensor {
   CellTensor(const FieldBlock &tensor, int i, int j, int k) {
-    for (int c = 0; c < tensor.count(); ++c) component[c] = &tensor[c](i, j, k);
+    for (int c = 0; c < 6; ++c) component[c] = &tensor[std::min(c, tensor.count() - 1)](i, j, k);
   }
   const double *component[6];
 };
