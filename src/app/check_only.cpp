@@ -57,6 +57,12 @@ public:
     const double bytes = bytes_per_rank(config_, parts);
     report.line("memory", "%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
                 1e-9 * bytes, 1e-9 * memory_limit());
+    bool crowded = false;
+    for (std::size_t s = 0; s < config_.species.size(); ++s)
+      crowded = crowded || (config_.separates(config_.species[s]) && config_.places[s].size() > 1);
+    if (crowded)
+      report.line("memory where bodies come near", "%.4g GB more per rank for each phase that keeps them separate",
+                  1e-9 * bytes_per_phase(config_, parts));
   }
 
   void bodies(Report &report) const {

@@ -17,8 +17,11 @@ namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
+/// Doubles per cell of a phase: fraction, label and B.
+double phase_fields(const Config &config) { return 1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6); }
+
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
-/// of the method add; per phase fraction, label and B.
+/// of the method add; a phase per species.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
@@ -37,7 +40,7 @@ double fields(const Config &config) {
   if (!method.staggered()) sum += tensor;
   if (!thinc) sum += 1;
   if (thinc && !work) sum += 3;
-  sum += phases * (1 + config.body_series + tensor);
+  sum += phases * phase_fields(config);
   return sum;
 }
 
@@ -72,6 +75,10 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 
 double bytes_per_rank(const Config &config, const Int3 &parts) {
   return sizeof(double) * fields(config) * ghosted_cells(config, parts);
+}
+
+double bytes_per_phase(const Config &config, const Int3 &parts) {
+  return sizeof(double) * phase_fields(config) * ghosted_cells(config, parts);
 }
 
 double memory_limit(const std::string &root) {

@@ -6,8 +6,10 @@
 
 namespace eulastic {
 
-/// Estimate of the bytes in fields of the largest of `parts` ranks.
+/// Estimate of the bytes in fields of the largest of `parts` ranks, with one phase per species.
 double bytes_per_rank(const Config &config, const Int3 &parts);
+/// Of one more phase: species whose bodies come near each other need a few.
+double bytes_per_phase(const Config &config, const Int3 &parts);
 
 /// Bytes this machine lets the program use: its memory, or less where a control group says so. `root` is put before
 /// the names of the files that tell; physical memory counts wherever that is.

@@ -59,6 +59,14 @@ TEST(OptionRefusals, MissingValues) {
   expect_refusals({{"-species", {"-species", "a value is missing"}}}, "-time_end 1");
 }
 
+TEST(OptionRefusals, Contact) {
+  expect_refusals({{"-cell_contact maybe", {"-cell_contact", "separate, merge"}},
+                   {"-cell_contact separate -body_series false", {"-cell_contact", "-body_series true", "merge"}},
+                   {"-cell_contact separate -method classic", {"-cell_contact", "-interface_scheme thinc", "merge"}}});
+  for (const char *fine : {"-cell_contact separate", "-cell_contact merge -body_series false", "-cell_contact merge"})
+    EXPECT_EQ(parse_line(scene + " " + fine).error, "") << fine;
+}
+
 TEST(OptionRefusals, Lists) {
   expect_refusals({{"-body_force 1,,2", {"-body_force", "empty item", "3 numbers"}},
                    {"-body_force ,1,2", {"empty item"}},
