@@ -45,6 +45,7 @@ private:
       if (!borrowed) std::free(p);
     }
   };
+  static double *allocate(std::size_t values);
   std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;

@@ -1,6 +1,7 @@
 #include "grid/active_segments.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace eulastic {
 namespace {
@@ -33,52 +34,53 @@ void ActiveSegments::build_all(const Grid &grid) {
     }
 }
 
-// Runs of points whose mask is `wanted`, as segments of row (j, k).
-void ActiveSegments::append_row(const unsigned char *mask, int wanted, int j, int k) {
+// Runs of vectors of row (j, k) of which a point is marked. Whole ones: the last points of a run that ends within a
+// vector would be done one by one.
+void ActiveSegments::append_row(const unsigned char *marked, int j, int k) {
 #ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
   segments_.push_back({begin_[0], begin_[0] + points_x_, j, k});
   first_.push_back(static_cast<int>(segments_.size()));
   return;
 #endif
   const std::size_t row_begin = segments_.size();
-  for (int i = 0; i < points_x_; ++i) {
-    if (mask[i] != wanted) continue;
-    int end = i + 1;
-    while (end < points_x_ && mask[end] == wanted) ++end;
-    const int begin = begin_[0] + i / vector_length * vector_length;
-    if (segments_.size() > row_begin && begin - segments_.back().i_end < vector_length)
-      segments_.back().i_end = begin_[0] + end;
+  for (int i = 0; i < points_x_; i += vector_length) {
+    const int count = std::min(vector_length, points_x_ - i);
+    if (std::memchr(marked + i, 1, count) == nullptr) continue;
+    const int begin = begin_[0] + i, end = begin + count;
+    if (segments_.size() > row_begin && segments_.back().i_end == begin)
+      segments_.back().i_end = end;
     else
-      segments_.push_back({begin, begin_[0] + end, j, k});
-    i = end;
+      segments_.push_back({begin, end, j, k});
   }
   first_.push_back(static_cast<int>(segments_.size()));
 }
 
-// Points where the flags of all centres within reach together give `wanted`.
+// Points where the flags of all centres within reach together give `wanted`. Reach by reach: along x, y and z.
 template <class Flag>
 void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, int wanted, int low, int high) {
-  const int low_z = grid.dimension() == 3 ? low : 0, high_z = grid.dimension() == 3 ? high : 0;
-  const int width = points_x_, rows = rows_y_ + low + high;
-  mask_.resize(static_cast<std::size_t>(width) * rows * (rows_z_ + low_z + high_z));
-  unsigned char *mask = mask_.data();  // flags of the centres within reach along x
-  for (int k = -low_z; k < rows_z_ + high_z; ++k)
-    for (int j = -low; j < rows_y_ + high; ++j, mask += width) {
-      const double *q = value.row(begin_[1] + j, begin_[2] + k) + begin_[0];
-      for (int i = 0; i < width; ++i) mask[i] = flag(q[i - low]);
-      for (int d = -low + 1; d <= high; ++d)
-        for (int i = 0; i < width; ++i) mask[i] |= flag(q[i + d]);
+  const bool flat = grid.dimension() == 2;
+  const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low;
+  const std::size_t width = points_x_, plane = width * rows_y_;
+  std::vector<unsigned char> flags(width + reach);
+  mask_.assign(plane * (rows_z_ + reach_z), 0);  // what is within reach along x and y
+  for (int k = 0; k < rows_z_ + reach_z; ++k)
+    for (int j = 0; j < rows_y_ + reach; ++j) {
+      const double *q = value.row(begin_[1] + j - low, begin_[2] + k - low_z) + begin_[0] - low;
+      for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = flag(q[i]);
+      for (int d = 1; d <= reach; ++d)
+        for (std::size_t i = 0; i < width + reach - d; ++i) flags[i] |= flags[i + 1];
+      for (int row = std::max(0, j - reach); row <= std::min(j, rows_y_ - 1); ++row) {
+        unsigned char *mask = mask_.data() + k * plane + row * width;
+        for (std::size_t i = 0; i < width; ++i) mask[i] |= flags[i];
+      }
     }
-  std::vector<unsigned char> any(width);
   for (int k = 0; k < rows_z_; ++k)
     for (int j = 0; j < rows_y_; ++j) {
-      std::fill(any.begin(), any.end(), 0);
-      for (int dk = 0; dk <= low_z + high_z; ++dk)
-        for (int dj = 0; dj <= low + high; ++dj) {
-          const unsigned char *row = mask_.data() + (static_cast<std::size_t>(k + dk) * rows + j + dj) * width;
-          for (int i = 0; i < width; ++i) any[i] |= row[i];
-        }
-      append_row(any.data(), wanted, begin_[1] + j, begin_[2] + k);
+      unsigned char *mask = mask_.data() + k * plane + j * width;
+      for (int d = 1; d <= reach_z; ++d)
+        for (std::size_t i = 0; i < width; ++i) mask[i] |= mask[i + d * plane];
+      for (std::size_t i = 0; i < width; ++i) mask[i] = mask[i] == wanted;
+      append_row(mask, begin_[1] + j, begin_[2] + k);
     }
 }
 
@@ -111,7 +113,9 @@ void ActiveSegments::build_faces(const ActiveSegments &cells) {
       paint(j, k);
       if (j > begin[1]) paint(j - 1, k);
       if (k > begin[2]) paint(j, k - 1);
-      append_row(mask_.data(), 1, j, k);
+      append_row(mask_.data(), j, k);
+      for (std::size_t s = first_[first_.size() - 2]; s < segments_.size(); ++s)  // one face more than cells, not eight
+        while (!mask_[segments_[s].i_end - 1 - begin[0]]) --segments_[s].i_end;
     }
 }
 

@@ -16,8 +16,8 @@ public:
   };
 
   /// Points (i,j,k) for which one of the centres (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has
-  /// value >= threshold. Starts are rounded down to a multiple of 8 and gaps shorter than 8 are closed, so a
-  /// superset; `value` needs that many ghosts.
+  /// value >= threshold. In whole vectors of 8 points, where the row has them, so a superset; `value` needs that
+  /// many ghosts.
   void build(const Grid &grid, ConstView value, double threshold, int low, int high);
   /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
   /// and some more. `value` needs margin + 1 ghosts.
@@ -41,7 +41,7 @@ private:
   void start(const Int3 &begin, const Int3 &end);
   template <class Flag>
   void build_rows(const Grid &grid, ConstView value, Flag flag, int wanted, int low, int high);
-  void append_row(const unsigned char *mask, int wanted, int j, int k);
+  void append_row(const unsigned char *marked, int j, int k);
 
   Int3 begin_{};  ///< first point
   int rows_y_ = 0, rows_z_ = 0, points_x_ = 0;

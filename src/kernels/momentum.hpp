@@ -7,11 +7,11 @@ namespace eulastic::kernels {
 
 inline constexpr double viscous_pressure_flops_per_direction = 6;
 
-/// rate += nu lap q - (p - p[-step]) pressure_factor + force. `second[d]` = 1/h_d^2.
-template <int Dim>
+/// total = rate + nu lap q - (p - p[-step]) pressure_factor + force; out = total, or q + dt total. `second[d]` = 1/h_d^2.
+template <int Dim, bool RateOnly>
 EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, double viscosity, const double *second,
                                                 ConstView p, std::ptrdiff_t step, double pressure_factor,
-                                                double force, double *rate) noexcept {
+                                                double force, const double *rate, double dt, double *out) noexcept {
   const double *u = q.row(s.j, s.k), *pressure = p.row(s.j, s.k);
   const std::ptrdiff_t sy = q.sy, sz = q.sz;
   const double ax = viscosity * second[0], ay = viscosity * second[1], az = viscosity * second[2];
@@ -22,7 +22,8 @@ EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, d
     sum = fma(ay, (u[i + sy] + u[i - sy]) - twice, sum);
     if constexpr (Dim == 3) sum = fma(az, (u[i + sz] + u[i - sz]) - twice, sum);
     sum = fma(-pressure_factor, pressure[i] - pressure[i - step], sum);
-    rate[i] += sum + force;
+    const double total = rate[i] + (sum + force);
+    out[i] = RateOnly ? total : fma(dt, total, u[i]);
   }
 }
 

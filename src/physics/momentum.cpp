@@ -59,7 +59,7 @@ EULASTIC_INLINE void combine_advection(int n, AdvectionWeights weights, double *
   }
 }
 
-template <int Dim>
+template <int Dim, bool RateOnly>
 EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratch &scratch) {
   const FieldBlock &v = *t.velocity;
   const ConstView p = (*t.pressure)[0];
@@ -70,29 +70,27 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
     for (int j = 0; j < n[1]; ++j) {
       const Segment row{0, n[0], j, k};
       for (int a = 0; a < Dim; ++a) {
-        for (int i = 0; i < n[0]; ++i) rate[i] = 0;
         if (t.inertia) {
           for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
-          kernels::subtract_advection<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
+          kernels::advection_rate<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
           if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
-        }
-        kernels::add_viscous_pressure_force<Dim>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(), p,
-                                                 p.stride(a), t.inverse[a] / t.density, t.force[a], rate);
-        elastic_force<Dim>(*t.phases, t.inverse, 1 / t.density, a, row, rate);
-        const double *now = v[a].row(j, k);
-        double *next = out[a].row(j, k);
-        if (t.rate_only) {
-          for (int i = 0; i < n[0]; ++i) next[i] = rate[i];
         } else {
-#pragma omp simd
-          for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+          for (int i = 0; i < n[0]; ++i) rate[i] = 0;
         }
+        elastic_force<Dim>(*t.phases, t.inverse, 1 / t.density, a, row, rate);
+        kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),
+                                                           p, p.stride(a), t.inverse[a] / t.density, t.force[a], rate,
+                                                           t.dt, out[a].row(j, k));
       }
     }
 }
 
-EULASTIC_CLONES void predict_2d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<2>(t, out, s); }
-EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) { predict<3>(t, out, s); }
+EULASTIC_CLONES void predict_2d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) {
+  t.rate_only ? predict<2, true>(t, out, s) : predict<2, false>(t, out, s);
+}
+EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) {
+  t.rate_only ? predict<3, true>(t, out, s) : predict<3, false>(t, out, s);
+}
 
 template <int Dim>
 EULASTIC_INLINE void elastic_rows(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
@@ -140,8 +138,8 @@ EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlo
 }
 
 EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, double rotation,
-                                  const FieldBlock &increment, const FieldBlock &divergence, const FieldBlock &star,
-                                  FieldBlock &velocity, FieldBlock &pressure) {
+                                  const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
+                                  FieldBlock &pressure) {
   const Int3 n = grid.owned();
   const int gz = grid.dimension() == 3 ? 1 : 0;
   const ConstView q = increment[0];
@@ -155,10 +153,9 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, doub
       for (int a = 0; a < grid.dimension(); ++a) {
         const double factor = dt_over_density / grid.spacing()[a];
         const std::ptrdiff_t s = q.stride(a);
-        const double *from = star[a].row(j, k);
-        double *to = velocity[a].row(j, k);
+        double *v = velocity[a].row(j, k);
 #pragma omp simd
-        for (int i = 0; i < n[0]; ++i) to[i] = kernels::fma(-factor, dp[i] - dp[i - s], from[i]);
+        for (int i = 0; i < n[0]; ++i) v[i] = kernels::fma(-factor, dp[i] - dp[i - s], v[i]);
       }
     }
 }
@@ -228,11 +225,11 @@ PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldB
 }
 
 PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence,
-                                const FieldBlock &velocity_star, FieldBlock &velocity, FieldBlock &pressure) {
+                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
+                                FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  correct_rows(grid, dt / density, rotation, increment, divergence, velocity_star, velocity, pressure);
+  correct_rows(grid, dt / density, rotation, increment, divergence, velocity, pressure);
   scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
   PetscFunctionReturn(0);
 }

@@ -42,10 +42,10 @@ PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vect
 PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
                                   FieldBlock &divergence);
 
-/// v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too (8).
+/// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too (8).
 /// rotation = nu/2 is the rotational form of the second-order step, 0 the paper's.
 PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence,
-                                const FieldBlock &velocity_star, FieldBlock &velocity, FieldBlock &pressure);
+                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
+                                FieldBlock &pressure);
 
 }  // namespace eulastic

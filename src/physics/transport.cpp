@@ -5,6 +5,7 @@
 #include "kernels/weno5.hpp"
 #include "physics/row_scratch.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace eulastic {
@@ -19,6 +20,7 @@ struct TransportTerms {
   Real3 inverse;
   EvolveRule rule{};
   bool second_of_heun = false;
+  const ActiveSegments *stale = nullptr;
 };
 
 template <int Dim>
@@ -29,10 +31,11 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi,
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Segment row{0, n[0], j, k};
-      for (int i = 0; i < n[0]; ++i) rate[i] = 0;
-      for (int d = 0; d < Dim; ++d)
-        kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
-      kernels::subtract_advection<Dim>(row, phi[0], carried, t.inverse.data(), epsilon, rate);
+  const int other = a == b ? (a + 1) % Dim : b;        // second direction
+  const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
+  const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
+                              t.inverse[a],  t.inverse[other],  t.inverse[third]};
+  kernels::advection_rate<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
       const double *now = phi[0].row(j, k);
       double *next = out[0].row(j, k);
 #pragma omp simd
@@ -65,12 +68,20 @@ EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase,
   const FieldBlock &v = *t.velocity;
   const ConstView phi = phase.fraction[0];
   const int f = position<Dim>(a, b);
+<<<<<<< HEAD
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
   const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
   const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
                               t.inverse[a],  t.inverse[other],  t.inverse[third]};
   for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
   kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
+=======
+  const int other = a == b ? (a + 1) % Dim : b;                        // second direction
+  const int third = Dim == 3 ? 3 - a - other : other;                  // and the remaining one
+  const kernels::Directions d{phi.stride(a), phi.stride(other),  phi.stride(third),
+                              t.inverse[a],  t.inverse[other], t.inverse[third]};
+  kernels::advection_rate<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
+>>>>>>> a26b9a2 (WENO5 in 56 flops, segments in whole vectors, huge pages, B outside bodies written only where it is stale, velocity corrected in place; effect on results: round-off)
   if (a == b)
     kernels::add_diagonal_stretch<Dim>(s, B[f], B[position<Dim>(a, other)], B[position<Dim>(a, third)], v[a], d, rate);
   else
@@ -118,10 +129,14 @@ EULASTIC_INLINE void tensor_row(const TransportTerms &t, const Phase &phase, con
       for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
     }
   };
+  const auto leave_to = [&](int stop) {  // from `done` on nothing evolves
+    if (!t.stale) return set_exterior(done, stop);
+    for (const Segment &old : t.stale->row(j, k)) set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
+  };
   for (const Segment &segment : phase.solid.row(j, k)) {
     const Segment s{segment.i_begin, segment.i_end < end ? segment.i_end : end, j, k};
     if (s.i_begin >= s.i_end) continue;
-    set_exterior(done, s.i_begin);
+    leave_to(s.i_begin);
     for (int e = 0; e < Dim; ++e) kernels::carry_velocity(s, (*t.velocity)[e], e, at, Dim, carried[e]);
     if (centre)
       for (int c = 0; c < Dim; ++c) tensor_segment<Dim>(t, phase, B, c, c, s, carried, out, scratch.row(0));
@@ -129,7 +144,7 @@ EULASTIC_INLINE void tensor_row(const TransportTerms &t, const Phase &phase, con
       tensor_segment<Dim>(t, phase, B, a, b, s, carried, out, scratch.row(0));
     done = s.i_end;
   }
-  set_exterior(done, end);
+  leave_to(end);
 }
 
 template <int Dim>
@@ -188,6 +203,7 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   TransportTerms terms = make_terms(grid, stage.dt, velocity);
   terms.rule = stage.rule;
   terms.second_of_heun = stage.second_of_heun;
+  terms.stale = stage.stale;
   if (grid.dimension() == 2) {
     tensor_2d(terms, phase, tensor, next, scratch);
     scope.flops(phase.solid.points() * (3 * (2 * (kernels::weno5_flops + 5) + 2) +

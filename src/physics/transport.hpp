@@ -26,6 +26,7 @@ struct TensorStage {
   EvolveRule rule;
   double dt;
   bool second_of_heun;  ///< next = (next + B + dt rate)/2, else next = B + dt rate
+  const ActiveSegments *stale = nullptr;  ///< where `next` may differ from I now; null: anywhere
 };
 
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which

@@ -45,7 +45,6 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
     work_ = FieldBlock(grid, 2 * dim);  // enough for what the transport of solids needs before the predictor
     viscous_.rate = work_.part(0, dim);
     viscous_.before = work_.part(dim, dim);
-    viscous_.now = velocity_star_.part(0, dim);
   }
   PetscFunctionReturn(0);
 }
@@ -178,6 +177,7 @@ PetscErrorCode Solver::predict(double dt) {
   }
   PetscCall(
       momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, viscous_.rate));
+  viscous_.now = velocity_star_.part(0, grid_->dimension());
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
@@ -202,8 +202,8 @@ PetscErrorCode Solver::project(double dt) {
   PetscCall(update_centre_ghosts(divergence_, 1));
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));  // (10) or (11)
-  PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.velocity,
-                             now_.pressure));
+  PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.pressure));
+  now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }
 
@@ -222,17 +222,20 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     phase.fraction.swap(next_fraction_);
   }
   PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  ActiveSegments before = phase.solid;
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
   PetscCall(transport_left_cauchy_green(phase, dt));  // (5)
+  stale_ = std::move(before);
   PetscFunctionReturn(0);
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
   PetscFunctionBeginUser;
-  PetscCall(
-      transport_tensor(*grid_, {evolve_rule(phase), dt, false}, now_.velocity, phase, phase.tensor, next_tensor_));
+  const bool swapped = !spec_.staggered() && spec_.exterior == SolidExterior::identity && stale_.rows_y() > 0;
+  PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, false, swapped ? &stale_ : nullptr}, now_.velocity, phase,
+                             phase.tensor, next_tensor_));
   PetscCall(complete_exterior(phase, next_tensor_));
   if (spec_.staggered()) {
     PetscCall(

@@ -82,6 +82,7 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
+  ActiveSegments stale_;       ///< where next_tensor_ is not I, once a phase has left it there
   FieldBlock work_;            ///< shared by what the verbs need one after the other
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time
   ExteriorLayers layers_;

@@ -42,12 +42,13 @@ EULASTIC_CLONES void carry(Block &b) {
 EULASTIC_CLONES void weno5(Block &b) {
   const double *velocity[3] = {b.carried[0].data(), b.carried[1].data(), b.carried[2].data()};
   for (const Segment &s : b.rows)
-    kernels::subtract_advection<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
+    kernels::advection_rate<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
 }
 
 EULASTIC_CLONES void viscous(Block &b) {
   for (const Segment &s : b.rows)
-    kernels::add_viscous_pressure_force<3>(s, b.fields[0], 1, b.inverse, b.fields[3], 1, 64, 1, b.rate.data());
+    kernels::add_viscous_pressure_force<3, false>(s, b.fields[0], 1, b.inverse, b.fields[3], 1, 64, 1, b.rate.data(), 1,
+                                                  b.carried[0].data());
 }
 
 EULASTIC_CLONES void elastic(Block &b) {

@@ -157,7 +157,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   const Walls walls;
   Random random(3);
   const double dt = 0.02, density = 1.7;
-  FieldBlock star(grid, grid.dimension()), velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), dp(grid, 1);
+  FieldBlock velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), dp(grid, 1);
   const auto velocity_ghosts = [&](FieldBlock &v) {
     EXPECT_EQ(exchange.update(v, 1), 0);
     fill_wall_ghosts_velocity(grid, walls, 0, v, 1);
@@ -173,11 +173,11 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
     return total;
   };
   for (int a = 0; a < grid.dimension(); ++a)
-    set(grid, star[a], at_face[a], [&](double, double, double) { return random(); });
+    set(grid, velocity[a], at_face[a], [&](double, double, double) { return random(); });
   set(grid, p[0], at_centre, [&](double, double, double) { return GetParam().pressure * (3 + random()); });
-  velocity_ghosts(star);
+  velocity_ghosts(velocity);
   centre_ghosts(p);
-  ASSERT_EQ(compute_divergence(grid, density, star, D), 0);
+  ASSERT_EQ(compute_divergence(grid, density, velocity, D), 0);
   centre_ghosts(D);
   // D + kappa lap D + g lap p for the coefficients that the solver reports.
   FieldBlock predicted(grid, 1), lap_D(grid, 1), lap_p(grid, 1);
@@ -204,7 +204,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   ASSERT_EQ(solver.solve(dt, D, p, dp), 0);
   const auto [kappa, g] = solver.last();
   EXPECT_GT(kappa, 0);
-  ASSERT_EQ(correct_velocity(grid, density, dt, 0, dp, D, star, velocity, p), 0);
+  ASSERT_EQ(correct_velocity(grid, density, dt, 0, dp, D, velocity, p), 0);
   velocity_ghosts(velocity);
   FieldBlock D_new(grid, 1);
   ASSERT_EQ(compute_divergence(grid, density, velocity, D_new), 0);
