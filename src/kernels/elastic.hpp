@@ -26,27 +26,26 @@ struct TensorViews {
   ConstView aa, bb, cc, ab, ac;
 };
 
-/// rate += factor div(G phi dev B)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
-template <int Dim>
-EULASTIC_INLINE void add_elastic_force(const Segment &s, ConstView phi, const TensorViews &tensor,
+/// force += modulus div(phi dev B)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
+template <int Dim, class Points>
+EULASTIC_INLINE void add_elastic_force(const Points &points, ConstView phi, const TensorViews &tensor,
                                        const std::ptrdiff_t *stride, const double *inverse_spacing, double modulus,
-                                       double *rate) noexcept {
+                                       View force) noexcept {
   const std::ptrdiff_t da = stride[0], db = stride[1], dc = stride[2];
   const double ia = inverse_spacing[0], ib = inverse_spacing[1], ic = inverse_spacing[2];
-  const double *f = phi.row(s.j, s.k);
-  const double *aa = tensor.aa.row(s.j, s.k), *bb = tensor.bb.row(s.j, s.k), *ab = tensor.ab.row(s.j, s.k);
-  const double *cc = Dim == 3 ? tensor.cc.row(s.j, s.k) : aa, *ac = Dim == 3 ? tensor.ac.row(s.j, s.k) : aa;
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
+  const double *f = phi.origin, *aa = tensor.aa.origin, *bb = tensor.bb.origin, *ab = tensor.ab.origin;
+  const double *cc = Dim == 3 ? tensor.cc.origin : aa, *ac = Dim == 3 ? tensor.ac.origin : aa;
+  for_points(points, phi, [=](std::ptrdiff_t i, int) EULASTIC_BODY {
     double sum = ia * (normal_stress<Dim>(f + i, aa + i, bb + i, cc + i, modulus) -
                        normal_stress<Dim>(f + i - da, aa + i - da, bb + i - da, cc + i - da, modulus));
-    sum = fma(ib, shear_stress(f + i + db, ab + i + db, da, db, modulus) -
-                      shear_stress(f + i, ab + i, da, db, modulus), sum);
+    sum = fma(ib, shear_stress(f + i + db, ab + i + db, da, db, modulus) - shear_stress(f + i, ab + i, da, db, modulus),
+              sum);
     if constexpr (Dim == 3)
-      sum = fma(ic, shear_stress(f + i + dc, ac + i + dc, da, dc, modulus) -
-                        shear_stress(f + i, ac + i, da, dc, modulus), sum);
-    rate[i] += sum;
-  }
+      sum =
+          fma(ic, shear_stress(f + i + dc, ac + i + dc, da, dc, modulus) - shear_stress(f + i, ac + i, da, dc, modulus),
+              sum);
+    force.origin[i] += sum;
+  });
 }
 
 }  // namespace eulastic::kernels

@@ -10,6 +10,7 @@
 #define EULASTIC_CLONES
 #endif
 #define EULASTIC_INLINE [[gnu::always_inline]] inline
+#define EULASTIC_BODY __attribute__((always_inline))  // of a lambda that a kernel calls for every point
 
 namespace eulastic::kernels {
 

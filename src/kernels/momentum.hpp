@@ -7,11 +7,12 @@ namespace eulastic::kernels {
 
 inline constexpr double viscous_pressure_flops_per_direction = 6;
 
-/// total = rate + nu lap q - (p - p[-step]) pressure_factor + force; out = total, or q + dt total. `second[d]` = 1/h_d^2.
+/// total = rate + nu lap q - (p - p[-step]) pressure_factor + force; out = total, or q + dt total. `second[d]` =
+/// 1/h_d^2.
 template <int Dim, bool RateOnly>
 EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, double viscosity, const double *second,
-                                                ConstView p, std::ptrdiff_t step, double pressure_factor,
-                                                double force, const double *rate, double dt, double *out) noexcept {
+                                                ConstView p, std::ptrdiff_t step, double pressure_factor, double force,
+                                                const double *rate, double dt, double *out) noexcept {
   const double *u = q.row(s.j, s.k), *pressure = p.row(s.j, s.k);
   const std::ptrdiff_t sy = q.sy, sz = q.sz;
   const double ax = viscosity * second[0], ay = viscosity * second[1], az = viscosity * second[2];

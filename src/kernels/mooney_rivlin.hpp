@@ -71,26 +71,24 @@ EULASTIC_INLINE double mooney_rivlin_shear(const double *phi, const TensorAt &t,
   return stress;
 }
 
-/// rate += div(sigma)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
-template <int Dim>
-EULASTIC_INLINE void add_mooney_rivlin_force(const Segment &s, ConstView phi, const TensorViews &tensor, ConstView bc,
-                                             const std::ptrdiff_t *stride, const double *inverse_spacing,
-                                             const MooneyRivlin &m, double *rate) noexcept {
+/// force += div(sigma)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
+template <int Dim, class Points>
+EULASTIC_INLINE void add_mooney_rivlin_force(const Points &points, ConstView phi, const TensorViews &tensor,
+                                             ConstView bc, const std::ptrdiff_t *stride, const double *inverse_spacing,
+                                             const MooneyRivlin &m, View force) noexcept {
   const std::ptrdiff_t da = stride[0], db = stride[1], dc = stride[2];
   const double ia = inverse_spacing[0], ib = inverse_spacing[1], ic = inverse_spacing[2];
-  const double *f = phi.row(s.j, s.k);
-  const double *aa = tensor.aa.row(s.j, s.k), *bb = tensor.bb.row(s.j, s.k), *ab = tensor.ab.row(s.j, s.k);
-  const double *cc = Dim == 3 ? tensor.cc.row(s.j, s.k) : aa, *ac = Dim == 3 ? tensor.ac.row(s.j, s.k) : ab;
-  const double *b_c = Dim == 3 ? bc.row(s.j, s.k) : ab;
+  const double *f = phi.origin, *aa = tensor.aa.origin, *bb = tensor.bb.origin, *ab = tensor.ab.origin;
+  const double *cc = Dim == 3 ? tensor.cc.origin : aa, *ac = Dim == 3 ? tensor.ac.origin : ab;
+  const double *b_c = Dim == 3 ? bc.origin : ab;
   const TensorAt t{aa, bb, cc, ab, ac, b_c, da, db, dc}, swapped{aa, cc, bb, ac, ab, b_c, da, dc, db};
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
+  for_points(points, phi, [=](std::ptrdiff_t i, int) EULASTIC_BODY {
     double sum = ia * (f[i] * mooney_rivlin_normal<Dim>(t, i, m) - f[i - da] * mooney_rivlin_normal<Dim>(t, i - da, m));
     sum = fma(ib, mooney_rivlin_shear<Dim>(f, t, i + db, m) - mooney_rivlin_shear<Dim>(f, t, i, m), sum);
     if constexpr (Dim == 3)
       sum = fma(ic, mooney_rivlin_shear<Dim>(f, swapped, i + dc, m) - mooney_rivlin_shear<Dim>(f, swapped, i, m), sum);
-    rate[i] += sum;
-  }
+    force.origin[i] += sum;
+  });
 }
 
 }  // namespace eulastic::kernels

@@ -1,8 +1,7 @@
 // Two-point averages along any set of directions, and the velocity that carries a field of any staggering.
 #pragma once
 
-#include "grid/segment.hpp"
-#include "kernels/isa.hpp"
+#include "kernels/points.hpp"
 
 namespace eulastic::kernels {
 
@@ -16,12 +15,13 @@ EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_
   return 0.125 * (((q[0] + q[a]) + (q[b] + q[a + b])) + ((q[c] + q[c + a]) + (q[c + b] + q[c + a + b])));
 }
 
-/// Face velocity component `d` at the points of a field staggered as `at`, into `out[i]` on segment s.
+/// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.
 /// Along each direction where the two locations differ the two neighbours are averaged: towards +d from faces to
 /// points that are not staggered in d, towards -e from centres to points that are staggered in e.
-EULASTIC_INLINE void carry_velocity(const Segment &s, ConstView face, int d, const bool *at, int dimension,
+template <class Points>
+EULASTIC_INLINE void carry_velocity(const Points &points, ConstView face, int d, const bool *at, int dimension,
                                     double *out) noexcept {
-  const double *q = face.row(s.j, s.k);
+  const double *q = face.origin;
   std::ptrdiff_t step[3] = {};
   int steps = 0;
   for (int e = 0; e < dimension; ++e)
@@ -29,20 +29,16 @@ EULASTIC_INLINE void carry_velocity(const Segment &s, ConstView face, int d, con
   const std::ptrdiff_t a = step[0], b = step[1], c = step[2];
   switch (steps) {
     case 0:
-#pragma omp simd
-      for (int i = s.i_begin; i < s.i_end; ++i) out[i] = q[i];
+      for_points(points, face, [=](std::ptrdiff_t o, int i) EULASTIC_BODY { out[i] = q[o]; });
       break;
     case 1:
-#pragma omp simd
-      for (int i = s.i_begin; i < s.i_end; ++i) out[i] = 0.5 * (q[i] + q[i + a]);
+      for_points(points, face, [=](std::ptrdiff_t o, int i) EULASTIC_BODY { out[i] = 0.5 * (q[o] + q[o + a]); });
       break;
     case 2:
-#pragma omp simd
-      for (int i = s.i_begin; i < s.i_end; ++i) out[i] = average4(q + i, a, b);
+      for_points(points, face, [=](std::ptrdiff_t o, int i) EULASTIC_BODY { out[i] = average4(q + o, a, b); });
       break;
     default:
-#pragma omp simd
-      for (int i = s.i_begin; i < s.i_end; ++i) out[i] = average8(q + i, a, b, c);
+      for_points(points, face, [=](std::ptrdiff_t o, int i) EULASTIC_BODY { out[i] = average8(q + o, a, b, c); });
   }
 }
 

@@ -21,19 +21,14 @@ EULASTIC_INLINE double edge_power(const double *ab, const double *va, std::ptrdi
                  (ab[b] * (va[b] - va[0]) + ab[a + b] * (va[a + b] - va[a])));
 }
 
-/// rate += 2 (B_aa dv_a/dx_a + avg4(B_ab dv_a/dx_b) + avg4(B_ac dv_a/dx_c)).
+/// B_aa dv_a/dx_a + avg4(B_ab dv_a/dx_b) + avg4(B_ac dv_a/dx_c), half the rate of B_aa; in 2-D ac is unused.
 template <int Dim>
-EULASTIC_INLINE void add_diagonal_stretch(const Segment &s, ConstView aa, ConstView ab, ConstView ac, ConstView va,
-                                          const Directions &d, double *rate) noexcept {
-  const double *baa = aa.row(s.j, s.k), *bab = ab.row(s.j, s.k), *v = va.row(s.j, s.k);
-  const double *bac = Dim == 3 ? ac.row(s.j, s.k) : bab;
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
-    double sum = baa[i] * (d.ia * (v[i + d.a] - v[i]));
-    sum = fma(d.ib, edge_power(bab + i, v + i, d.a, d.b), sum);
-    if constexpr (Dim == 3) sum = fma(d.ic, edge_power(bac + i, v + i, d.a, d.c), sum);
-    rate[i] = fma(2, sum, rate[i]);
-  }
+EULASTIC_INLINE double half_diagonal_stretch(const double *aa, const double *ab, const double *ac, const double *va,
+                                             const Directions &d) noexcept {
+  double sum = aa[0] * (d.ia * (va[d.a] - va[0]));
+  sum = fma(d.ib, edge_power(ab, va, d.a, d.b), sum);
+  if constexpr (Dim == 3) sum = fma(d.ic, edge_power(ac, va, d.a, d.c), sum);
+  return sum;
 }
 
 /// 4 h dv_a/dx_a averaged to the edge ab.
@@ -47,28 +42,23 @@ EULASTIC_INLINE double vertex_power4(const double *bc, const double *va, std::pt
   return (bc[0] + bc[-a]) * ((va[0] - va[-c]) + (va[-b] - va[-b - c]));
 }
 
-/// rate += B_aa dv_b/dx_a + B_bb dv_a/dx_b + B_ab (dv_a/dx_a + dv_b/dx_b) + B_bc dv_a/dx_c + B_ac dv_b/dx_c.
+/// B_aa dv_b/dx_a + B_bb dv_a/dx_b + B_ab (dv_a/dx_a + dv_b/dx_b) + B_bc dv_a/dx_c + B_ac dv_b/dx_c, the rate of B_ab;
+/// in 2-D bc and ac are unused.
 template <int Dim>
-EULASTIC_INLINE void add_shear_stretch(const Segment &s, ConstView aa, ConstView bb, ConstView ab, ConstView bc,
-                                       ConstView ac, ConstView va, ConstView vb, const Directions &d,
-                                       double *rate) noexcept {
-  const double *baa = aa.row(s.j, s.k), *bbb = bb.row(s.j, s.k), *bab = ab.row(s.j, s.k);
-  const double *bbc = Dim == 3 ? bc.row(s.j, s.k) : baa, *bac = Dim == 3 ? ac.row(s.j, s.k) : baa;
-  const double *u = va.row(s.j, s.k), *v = vb.row(s.j, s.k);
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
-    double sum = average4(baa + i, -d.a, -d.b) * (d.ia * (v[i] - v[i - d.a]));
-    sum = fma(average4(bbb + i, -d.a, -d.b), d.ib * (u[i] - u[i - d.b]), sum);
-    const double rates = fma(0.25 * d.ia, normal_rate4(u + i, d.a, d.b), 0.25 * d.ib * normal_rate4(v + i, d.b, d.a));
-    sum = fma(bab[i], rates, sum);
-    if constexpr (Dim == 3) {
-      const double low = vertex_power4(bbc + i, u + i, d.a, d.b, d.c) + vertex_power4(bac + i, v + i, d.b, d.a, d.c);
-      const double high = vertex_power4(bbc + i + d.c, u + i + d.c, d.a, d.b, d.c) +
-                          vertex_power4(bac + i + d.c, v + i + d.c, d.b, d.a, d.c);
-      sum = fma(0.125 * d.ic, low + high, sum);
-    }
-    rate[i] += sum;
+EULASTIC_INLINE double shear_stretch(const double *aa, const double *bb, const double *ab, const double *bc,
+                                     const double *ac, const double *va, const double *vb,
+                                     const Directions &d) noexcept {
+  double sum = average4(aa, -d.a, -d.b) * (d.ia * (vb[0] - vb[-d.a]));
+  sum = fma(average4(bb, -d.a, -d.b), d.ib * (va[0] - va[-d.b]), sum);
+  const double rates = fma(0.25 * d.ia, normal_rate4(va, d.a, d.b), 0.25 * d.ib * normal_rate4(vb, d.b, d.a));
+  sum = fma(ab[0], rates, sum);
+  if constexpr (Dim == 3) {
+    const double low = vertex_power4(bc, va, d.a, d.b, d.c) + vertex_power4(ac, vb, d.b, d.a, d.c);
+    const double high =
+        vertex_power4(bc + d.c, va + d.c, d.a, d.b, d.c) + vertex_power4(ac + d.c, vb + d.c, d.b, d.a, d.c);
+    sum = fma(0.125 * d.ic, low + high, sum);
   }
+  return sum;
 }
 
 }  // namespace eulastic::kernels

@@ -1,8 +1,7 @@
 // WENO5 (Jiang & Shu, JCP 126, 1996) in the non-conservative, upwind form v.grad q.
 #pragma once
 
-#include "grid/segment.hpp"
-#include "kernels/isa.hpp"
+#include "kernels/points.hpp"
 
 namespace eulastic::kernels {
 
@@ -42,21 +41,19 @@ EULASTIC_INLINE double weno5_difference(const double *q, std::ptrdiff_t stride, 
   return fma(from_left ? 1. / 6 : -1. / 6, above / below, from_left ? d2 : d3);
 }
 
-/// rate[i] = -v . grad q on segment s. `velocity[d]` and `rate` are rows indexed like q's; q needs three ghosts.
-template <int Dim>
-EULASTIC_INLINE void advection_rate(const Segment &s, ConstView q, const double *const *velocity,
-                                        const double *inverse_spacing, double epsilon, double *rate) noexcept {
-  const double *centre = q.row(s.j, s.k);
-  const std::ptrdiff_t sy = q.sy, sz = q.sz;
+/// rate = -v . grad q; `velocity[d]` and `rate` by slots; q needs three ghosts.
+template <int Dim, class Points>
+EULASTIC_INLINE void advection_rate(const Points &points, ConstView q, const double *const *velocity,
+                                    const double *inverse_spacing, double epsilon, double *rate) noexcept {
   const double *u = velocity[0], *v = velocity[1], *w = velocity[Dim == 3 ? 2 : 0];
   const double ix = inverse_spacing[0], iy = inverse_spacing[1], iz = inverse_spacing[2];
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
-    double sum = u[i] * ix * weno5_difference(centre + i, 1, u[i], epsilon);
-    sum = fma(v[i] * iy, weno5_difference(centre + i, sy, v[i], epsilon), sum);
-    if constexpr (Dim == 3) sum = fma(w[i] * iz, weno5_difference(centre + i, sz, w[i], epsilon), sum);
+  for_points(points, q, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+    const double *centre = q.origin + o;
+    double sum = u[i] * ix * weno5_difference(centre, 1, u[i], epsilon);
+    sum = fma(v[i] * iy, weno5_difference(centre, q.sy, v[i], epsilon), sum);
+    if constexpr (Dim == 3) sum = fma(w[i] * iz, weno5_difference(centre, q.sz, w[i], epsilon), sum);
     rate[i] = -sum;
-  }
+  });
 }
 
 }  // namespace eulastic::kernels

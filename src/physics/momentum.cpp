@@ -1,11 +1,12 @@
 #include "physics/momentum.hpp"
 
 #include "base/events.hpp"
-#include "kernels/mooney_rivlin.hpp"
 #include "kernels/momentum.hpp"
+#include "kernels/mooney_rivlin.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/row_scratch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace eulastic {
@@ -23,29 +24,36 @@ struct PredictorTerms {
   Real3 force, inverse, inverse_squared;
 };
 
-// rate += scale div(sigma)_a, the law's stress, on the stressed segments of a row.
+// force += scale div(sigma), the law's stress, on the stressed segments of rows of plane k.
 template <int Dim>
-EULASTIC_INLINE void elastic_force(const std::vector<Phase> &phases, const Real3 &inverse_spacing, double scale, int a,
-                                   const Segment &row, double *rate) {
+EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int k,
+                                   FieldBlock &force) {
   // Block position of a tensor component, see tensor_components().
   const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
-  const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
   for (const Phase &phase : phases) {
     const Material &material = phase.material;
     if (!material.elastic()) continue;
     const FieldBlock &B = phase.tensor;
     const ConstView phi = phase.fraction[0];
-    const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
-    const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
-    const double inverse[3] = {inverse_spacing[a], inverse_spacing[b], inverse_spacing[c]};
     const kernels::MooneyRivlin law{scale * 2 * material.c1, scale * 2 * material.c2, scale * 4 * material.c3};
-    for (const Segment &s : phase.stressed.row(row.j, row.k)) {
-      const Segment part{s.i_begin, std::min(s.i_end, row.i_end), s.j, s.k};
-      if (material.law == Law::neo_hookean)
-        kernels::add_elastic_force<Dim>(part, phi, views, stride, inverse, scale * material.shear_modulus, rate);
-      else
-        kernels::add_mooney_rivlin_force<Dim>(part, phi, views, B[at(b, c)], stride, inverse, law, rate);
-    }
+    const auto add = [&](const kernels::Batch &batch) EULASTIC_BODY {
+      for (int a = 0; a < Dim; ++a) {
+        const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
+        const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
+        const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
+        const Real3 &h = grid.spacing();
+        const double inverse[3] = {1 / h[a], 1 / h[b], 1 / h[c]};
+        if (material.law == Law::neo_hookean)
+          kernels::add_elastic_force<Dim>(batch, phi, views, stride, inverse, scale * material.shear_modulus, force[a]);
+        else
+          kernels::add_mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, force[a]);
+      }
+    };
+    kernels::Batch batch;
+    for (int j = j_begin; j < std::min(j_begin + kernels::block_rows, grid.owned()[1]); ++j)
+      for (const Segment &s : phase.stressed.row(j, k))
+        kernels::gather(batch, j * phi.sy + k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
+    add(batch);
   }
 }
 
@@ -66,22 +74,24 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
-      const Segment row{0, n[0], j, k};
-      for (int a = 0; a < Dim; ++a) {
-        if (t.inertia) {
-          for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
-          kernels::advection_rate<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
-          if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
-        } else {
-          for (int i = 0; i < n[0]; ++i) rate[i] = 0;
+  for (int block = 0; block < n[1]; block += kernels::block_rows)
+    for (int k = 0; k < n[2]; ++k) {
+      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
+        const Segment row{0, n[0], j, k};
+        for (int a = 0; a < Dim; ++a) {
+          if (t.inertia) {
+            for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
+            kernels::advection_rate<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
+            if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
+          } else {
+            for (int i = 0; i < n[0]; ++i) rate[i] = 0;
+          }
+          kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),
+                                                             p, p.stride(a), t.inverse[a] / t.density, t.force[a], rate,
+                                                             t.dt, out[a].row(j, k));
         }
-        elastic_force<Dim>(*t.phases, t.inverse, 1 / t.density, a, row, rate);
-        kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),
-                                                           p, p.stride(a), t.inverse[a] / t.density, t.force[a], rate,
-                                                           t.dt, out[a].row(j, k));
       }
+      elastic_force<Dim>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, k, out);
     }
 }
 
@@ -94,12 +104,8 @@ EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScr
 
 template <int Dim>
 EULASTIC_INLINE void elastic_rows(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
-  const Int3 n = grid.owned();
-  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
-  for (int a = 0; a < Dim; ++a)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j)
-        elastic_force<Dim>(phases, inverse, scale, a, {0, n[0], j, k}, force[a].row(j, k));
+  for (int block = 0; block < grid.owned()[1]; block += kernels::block_rows)
+    for (int k = 0; k < grid.owned()[2]; ++k) elastic_force<Dim>(grid, phases, scale, block, k, force);
 }
 
 EULASTIC_CLONES void elastic_2d(const Grid &g, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
@@ -184,21 +190,45 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
   run_predictor(grid, fluid,
-                {&grid, &velocity, &pressure, &phases, fluid.inertia, step.dt, fluid.density,
-                 fluid.kinematic_viscosity(), weno_epsilon(step.speed_scale), step.weights, nullptr, false,
-                 fluid.body_force.at(step.force_time), {}, {}},
+                {&grid,
+                 &velocity,
+                 &pressure,
+                 &phases,
+                 fluid.inertia,
+                 step.dt,
+                 fluid.density,
+                 fluid.kinematic_viscosity(),
+                 weno_epsilon(step.speed_scale),
+                 step.weights,
+                 nullptr,
+                 false,
+                 fluid.body_force.at(step.force_time),
+                 {},
+                 {}},
                 velocity_star);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
-                             const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
-                             FieldBlock &advection, FieldBlock &rate) {
+PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+                             const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
+                             FieldBlock &rate) {
   PetscFunctionBeginUser;
   run_predictor(grid, fluid,
-                {&grid, &velocity, &pressure, &phases, fluid.inertia, step.dt, fluid.density,
-                 fluid.kinematic_viscosity(), weno_epsilon(step.speed_scale), step.weights,
-                 advection ? &advection : nullptr, true, fluid.body_force.at(step.force_time), {}, {}},
+                {&grid,
+                 &velocity,
+                 &pressure,
+                 &phases,
+                 fluid.inertia,
+                 step.dt,
+                 fluid.density,
+                 fluid.kinematic_viscosity(),
+                 weno_epsilon(step.speed_scale),
+                 step.weights,
+                 advection ? &advection : nullptr,
+                 true,
+                 fluid.body_force.at(step.force_time),
+                 {},
+                 {}},
                 rate);
   PetscFunctionReturn(0);
 }

@@ -6,6 +6,7 @@
 #include "physics/row_scratch.hpp"
 
 #include <algorithm>
+
 #include <limits>
 
 namespace eulastic {
@@ -31,11 +32,9 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi,
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Segment row{0, n[0], j, k};
-  const int other = a == b ? (a + 1) % Dim : b;        // second direction
-  const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
-  const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
-                              t.inverse[a],  t.inverse[other],  t.inverse[third]};
-  kernels::advection_rate<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
+      for (int d = 0; d < Dim; ++d)
+        kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
+      kernels::advection_rate<Dim>(row, phi[0], carried, t.inverse.data(), epsilon, rate);
       const double *now = phi[0].row(j, k);
       double *next = out[0].row(j, k);
 #pragma omp simd
@@ -61,110 +60,103 @@ constexpr int position(int x, int y) {
   return x == y ? x : Dim == 2 ? 2 : 6 - x - y;
 }
 
-// One component on one segment: rate, then the stage.
-template <int Dim>
-EULASTIC_INLINE void tensor_segment(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                    const Segment &s, double *const *carried, FieldBlock &out, double *rate) {
-  const FieldBlock &v = *t.velocity;
-  const ConstView phi = phase.fraction[0];
+// One component at the points of a batch: advection, then stretching and the stage. One loop for both would need more
+// registers than there are: a third slower.
+template <int Dim, bool SecondOfHeun>
+EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
+                                       const kernels::Batch &batch, const double *const *carried, double *rate,
+                                       FieldBlock &out) {
   const int f = position<Dim>(a, b);
-<<<<<<< HEAD
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
   const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
+  const ConstView phi = phase.fraction[0];
   const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
                               t.inverse[a],  t.inverse[other],  t.inverse[third]};
-  for (int i = s.i_begin; i < s.i_end; ++i) rate[i] = 0;
-  kernels::subtract_advection<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
-=======
-  const int other = a == b ? (a + 1) % Dim : b;                        // second direction
-  const int third = Dim == 3 ? 3 - a - other : other;                  // and the remaining one
-  const kernels::Directions d{phi.stride(a), phi.stride(other),  phi.stride(third),
-                              t.inverse[a],  t.inverse[other], t.inverse[third]};
-  kernels::advection_rate<Dim>(s, B[f], carried, t.inverse.data(), epsilon, rate);
->>>>>>> a26b9a2 (WENO5 in 56 flops, segments in whole vectors, huge pages, B outside bodies written only where it is stale, velocity corrected in place; effect on results: round-off)
+  const double *va = (*t.velocity)[a].origin, *vb = (*t.velocity)[b].origin, *solid = phi.origin;
+  const double *aa = B[a].origin, *bb = B[b].origin, *now = B[f].origin, *ab = B[position<Dim>(a, other)].origin;
+  const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
+  const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
+  double *next = out[f].origin;
+  kernels::advection_rate<Dim>(batch, B[f], carried, t.inverse.data(), epsilon, rate);
+  const auto stage = [=](std::ptrdiff_t o, double total, double share, double exterior, double least) EULASTIC_BODY {
+    // positive_definite.hpp; minus infinity stays, so that it is noticed.
+    constexpr double lowest = -std::numeric_limits<double>::max();
+    double moved = kernels::fma(dt, total, now[o]);
+    if constexpr (SecondOfHeun) moved = 0.5 * (next[o] + moved);
+    next[o] = share < threshold ? exterior : moved < least && moved >= lowest ? least : moved;
+  };
   if (a == b)
-    kernels::add_diagonal_stretch<Dim>(s, B[f], B[position<Dim>(a, other)], B[position<Dim>(a, third)], v[a], d, rate);
+    kernels::for_points(batch, phi, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+      const double half = kernels::half_diagonal_stretch<Dim>(aa + o, ab + o, ac + o, va + o, d);
+      stage(o, kernels::fma(2, half, rate[i]), solid[o], 1, 0);
+    });
   else
-    kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[f], B[position<Dim>(b, third)], B[position<Dim>(a, third)], v[a],
-                                    v[b], d, rate);
-  const double exterior = a == b ? 1.0 : 0.0, threshold = a == b ? t.rule.centre : t.rule.edge;
-  // positive_definite.hpp; minus infinity stays, so that it is noticed.
-  constexpr double lowest = -std::numeric_limits<double>::max();
-  const double least = a == b ? 0 : lowest;
-  const double *now = B[f].row(s.j, s.k), *solid = phi.row(s.j, s.k);
-  double *next = out[f].row(s.j, s.k);
-  if (t.second_of_heun) {
-#pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i) {
-      const double moved = 0.5 * (next[i] + kernels::fma(t.dt, rate[i], now[i]));
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior
-                : moved < least && moved >= lowest                   ? least
-                                                                     : moved;
-    }
-  } else {
-#pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i) {
-      const double moved = kernels::fma(t.dt, rate[i], now[i]);
-      next[i] = fraction_at(solid + i, a == b, d.a, d.b) < threshold ? exterior
-                : moved < least && moved >= lowest                   ? least
-                                                                     : moved;
-    }
-  }
+    kernels::for_points(batch, phi, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+      const double rise = kernels::shear_stretch<Dim>(aa + o, bb + o, ab + o, bc + o, ac + o, va + o, vb + o, d);
+      stage(o, rate[i] + rise, kernels::average4(solid + o, -d.a, -d.b), 0, -std::numeric_limits<double>::max());
+    });
 }
 
-// The components that live at one location (all diagonal ones, or one off-diagonal) on row (j, k).
-template <int Dim>
-EULASTIC_INLINE void tensor_row(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b, int j,
-                                int k, FieldBlock &out, RowScratch &scratch) {
+// The components that live at one location, all diagonal ones or the off-diagonal one of a and b, on rows of plane k.
+template <int Dim, bool SecondOfHeun>
+EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
+                                  int j_begin, int j_end, int k, FieldBlock &out) {
   const bool centre = a == b;
   const bool at[3] = {!centre && (a == 0 || b == 0), !centre && (a == 1 || b == 1), !centre && (a == 2 || b == 2)};
-  if (j >= t.grid->points_end(1, at[1]) || k >= t.grid->points_end(2, at[2])) return;
   const int end = t.grid->points_end(0, at[0]);
   const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
-  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
-  int done = 0;
-  const auto set_exterior = [&](int begin, int stop) {
-    for (int f = first; f < last; ++f) {
-      double *next = out[f].row(j, k);
-      for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
-    }
-  };
-  const auto leave_to = [&](int stop) {  // from `done` on nothing evolves
-    if (!t.stale) return set_exterior(done, stop);
-    for (const Segment &old : t.stale->row(j, k)) set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
-  };
-  for (const Segment &segment : phase.solid.row(j, k)) {
-    const Segment s{segment.i_begin, segment.i_end < end ? segment.i_end : end, j, k};
-    if (s.i_begin >= s.i_end) continue;
-    leave_to(s.i_begin);
-    for (int e = 0; e < Dim; ++e) kernels::carry_velocity(s, (*t.velocity)[e], e, at, Dim, carried[e]);
+  alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
+  const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
+  const auto advance = [&](kernels::Batch &batch) EULASTIC_BODY {
+    for (int e = 0; e < Dim; ++e) kernels::carry_velocity(batch, (*t.velocity)[e], e, at, Dim, velocity[e]);
     if (centre)
-      for (int c = 0; c < Dim; ++c) tensor_segment<Dim>(t, phase, B, c, c, s, carried, out, scratch.row(0));
+      for (int c = 0; c < Dim; ++c) advance_component<Dim, SecondOfHeun>(t, phase, B, c, c, batch, carried, rate, out);
     else
-      tensor_segment<Dim>(t, phase, B, a, b, s, carried, out, scratch.row(0));
-    done = s.i_end;
+      advance_component<Dim, SecondOfHeun>(t, phase, B, a, b, batch, carried, rate, out);
+  };
+  if (k >= t.grid->points_end(2, at[2])) return;
+  kernels::Batch batch;
+  for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
+    int done = 0;
+    const auto set_exterior = [&](int begin, int stop) {
+      for (int f = first; f < last; ++f) {
+        double *next = out[f].row(j, k);
+        for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
+      }
+    };
+    const auto leave_to = [&](int stop) {  // from `done` on nothing evolves
+      if (!t.stale) return set_exterior(done, stop);
+      for (const Segment &old : t.stale->row(j, k))
+        set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
+    };
+    const std::ptrdiff_t row = j * phase.fraction.layout().sy + k * phase.fraction.layout().sz;
+    for (const Segment &s : phase.solid.row(j, k)) {
+      leave_to(s.i_begin);
+      const int stop = std::min(s.i_end, end);
+      kernels::gather(batch, row, s.i_begin, stop, advance);
+      done = stop;
+    }
+    leave_to(end);
   }
-  leave_to(end);
+  advance(batch);
 }
 
-template <int Dim>
-EULASTIC_INLINE void tensor_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
-                                 RowScratch &scratch) {
-  for (int k = 0; k < phase.solid.rows_z(); ++k)
-    for (int j = 0; j < phase.solid.rows_y(); ++j) {
-      tensor_row<Dim>(t, phase, B, 0, 0, j, k, out, scratch);
+template <int Dim, bool SecondOfHeun>
+EULASTIC_INLINE void advance_tensor(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+  constexpr int block = kernels::block_rows;
+  for (int j = 0; j < phase.solid.rows_y(); j += block)
+    for (int k = 0; k < phase.solid.rows_z(); ++k) {
+      advance_rows<Dim, SecondOfHeun>(t, phase, B, 0, 0, j, j + block, k, out);
       for (int a = 0; a < Dim; ++a)
-        for (int b = a + 1; b < Dim; ++b) tensor_row<Dim>(t, phase, B, a, b, j, k, out, scratch);
+        for (int b = a + 1; b < Dim; ++b) advance_rows<Dim, SecondOfHeun>(t, phase, B, a, b, j, j + block, k, out);
     }
 }
 
-EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
-                               RowScratch &s) {
-  tensor_rows<2>(t, phase, B, out, s);
+EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+  t.second_of_heun ? advance_tensor<2, true>(t, phase, B, out) : advance_tensor<2, false>(t, phase, B, out);
 }
-EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out,
-                               RowScratch &s) {
-  tensor_rows<3>(t, phase, B, out, s);
+EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+  t.second_of_heun ? advance_tensor<3, true>(t, phase, B, out) : advance_tensor<3, false>(t, phase, B, out);
 }
 
 TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
@@ -199,17 +191,16 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
-  RowScratch scratch(grid, 4);
   TransportTerms terms = make_terms(grid, stage.dt, velocity);
   terms.rule = stage.rule;
   terms.second_of_heun = stage.second_of_heun;
   terms.stale = stage.stale;
   if (grid.dimension() == 2) {
-    tensor_2d(terms, phase, tensor, next, scratch);
+    tensor_2d(terms, phase, tensor, next);
     scope.flops(phase.solid.points() * (3 * (2 * (kernels::weno5_flops + 5) + 2) +
                                         2 * kernels::stretch_diagonal_flops_2d + kernels::stretch_shear_flops_2d));
   } else {
-    tensor_3d(terms, phase, tensor, next, scratch);
+    tensor_3d(terms, phase, tensor, next);
     scope.flops(phase.solid.points() * (6 * (3 * (kernels::weno5_flops + 5) + 2) +
                                         3 * kernels::stretch_diagonal_flops_3d + 3 * kernels::stretch_shear_flops_3d));
   }

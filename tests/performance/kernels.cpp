@@ -55,19 +55,29 @@ EULASTIC_CLONES void elastic(Block &b) {
   const std::ptrdiff_t stride[3] = {b.directions.a, b.directions.b, b.directions.c};
   const kernels::TensorViews views{b.fields[4], b.fields[5], b.fields[6], b.fields[9], b.fields[8]};
   for (const Segment &s : b.rows)
-    kernels::add_elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1, b.rate.data());
+    kernels::add_elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1, b.fields[0]);
 }
 
 EULASTIC_CLONES void stretch_diagonal(Block &b) {
-  for (const Segment &s : b.rows)
-    kernels::add_diagonal_stretch<3>(s, b.fields[4], b.fields[9], b.fields[8], b.fields[0], b.directions,
-                                     b.rate.data());
+  for (const Segment &s : b.rows) {
+    const auto row = [&](int f) { return b.fields[f].row(s.j, s.k); };
+    const double *xx = row(4), *xy = row(9), *xz = row(8), *u = row(0);
+    double *rate = b.rate.data();
+#pragma omp simd
+    for (int i = 0; i < s.i_end; ++i)
+      rate[i] += kernels::half_diagonal_stretch<3>(xx + i, xy + i, xz + i, u + i, b.directions);
+  }
 }
 
 EULASTIC_CLONES void stretch_shear(Block &b) {
-  for (const Segment &s : b.rows)
-    kernels::add_shear_stretch<3>(s, b.fields[4], b.fields[5], b.fields[9], b.fields[7], b.fields[8], b.fields[0],
-                                  b.fields[1], b.directions, b.rate.data());
+  for (const Segment &s : b.rows) {
+    const auto row = [&](int f) { return b.fields[f].row(s.j, s.k); };
+    const double *xx = row(4), *yy = row(5), *xy = row(9), *yz = row(7), *xz = row(8), *u = row(0), *v = row(1);
+    double *rate = b.rate.data();
+#pragma omp simd
+    for (int i = 0; i < s.i_end; ++i)
+      rate[i] += kernels::shear_stretch<3>(xx + i, yy + i, xy + i, yz + i, xz + i, u + i, v + i, b.directions);
+  }
 }
 
 void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cell) {

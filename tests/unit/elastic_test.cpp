@@ -123,10 +123,12 @@ void trace_rate(const Grid &grid, const FieldBlock &B, const FieldBlock &v, Fiel
       double *out = rate[0].row(s.j, s.k);
       const auto inverse = [&](int d) { return 1 / grid.spacing()[d]; };
       const kernels::Directions d{v[0].stride(a), v[0].stride(b), v[0].stride(c), inverse(a), inverse(b), inverse(c)};
-      if (dim == 2)
-        kernels::add_diagonal_stretch<2>(s, B[a], B[2], {}, v[a], d, out);
-      else
-        kernels::add_diagonal_stretch<3>(s, B[a], B[at(a, b)], B[at(a, c)], v[a], d, out);
+      const auto row = [&s](ConstView q) { return q.row(s.j, s.k); };
+      const double *aa = row(B[a]), *va = row(v[a]);
+      for (int i = s.i_begin; i < s.i_end; ++i)
+        out[i] += 2 * (dim == 2 ? kernels::half_diagonal_stretch<2>(aa + i, row(B[2]) + i, nullptr, va + i, d)
+                                : kernels::half_diagonal_stretch<3>(aa + i, row(B[at(a, b)]) + i,
+                                                                    row(B[at(a, c)]) + i, va + i, d));
     }
 }
 

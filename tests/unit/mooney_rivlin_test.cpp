@@ -228,11 +228,12 @@ void stretch(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBl
         const kernels::Directions d{v[0].stride(a), v[0].stride(other), v[0].stride(third),
                                     inverse(a),     inverse(other),     inverse(third)};
         double *out = rate[at(a, b)].row(s.j, s.k);
-        if (a == b)
-          kernels::add_diagonal_stretch<Dim>(s, B[a], B[at(a, other)], B[at(a, third)], v[a], d, out);
-        else
-          kernels::add_shear_stretch<Dim>(s, B[a], B[b], B[at(a, b)], B[at(b, third)], B[at(a, third)], v[a], v[b], d,
-                                          out);
+        const auto row = [&s](ConstView q) { return q.row(s.j, s.k); };
+        const double *aa = row(B[a]), *bb = row(B[b]), *ab = row(B[at(a, other)]), *bc = row(B[at(b, third)]);
+        const double *ac = row(B[at(a, third)]), *va = row(v[a]), *vb = row(v[b]);
+        for (int i = s.i_begin; i < s.i_end; ++i)
+          out[i] += a == b ? 2 * kernels::half_diagonal_stretch<Dim>(aa + i, ab + i, ac + i, va + i, d)
+                           : kernels::shear_stretch<Dim>(aa + i, bb + i, ab + i, bc + i, ac + i, va + i, vb + i, d);
       }
 }
 
