@@ -157,7 +157,8 @@ TEST(InterfaceBand, IsThinAndLeavesTheRestAlone) {
   scene.set_velocity(Real3{0.3, -0.2, 0.1});
   for (int step = 0; step < 40; ++step) ASSERT_EQ(scene.advance(0.5), 0);
   const double area = 4 * pi * 100;
-  EXPECT_LT(scene.band_cells(), 13 * area);
+  // Segments end with a whole vector: 3.5 cells more on average, once for the half of the surface that faces +x.
+  EXPECT_LT(scene.band_cells(), (13 + 3.5 / 2) * area);
   const double mixed = scene.sum([](double q) { return q > 0 && q < 1; });
   EXPECT_LT(mixed, 7 * area);
   EXPECT_GT(mixed, area);

@@ -179,7 +179,7 @@ TEST(Weno5, AdvectedStepStaysBounded) {
   for (int step = 0; step < 200; ++step) {  // 40 cells: once around
     for (int g = 0; g < 3; ++g) q[g] = q[n + g], q[n + 3 + g] = q[3 + g];
     std::vector<double> rate(n);
-    kernels::advection_rate<2>({0, n, 0, 0}, {q.data() + 3, 0, 0}, carried, inverse, 1e-6, rate.data());
+    kernels::advection_rate<2>(Segment{0, n, 0, 0}, {q.data() + 3, 0, 0}, carried, inverse, 1e-6, rate.data());
     for (int i = 0; i < n; ++i) q[i + 3] += 0.2 * rate[i];
   }
   const auto [low, high] = std::minmax_element(q.begin() + 3, q.begin() + 3 + n);
@@ -231,10 +231,10 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   for (double &v : velocity) v = random();
   const double *carried[3] = {velocity.data(), velocity.data(), velocity.data()};
   const double inverse[3] = {37, 3, 2.7};
-  kernels::advection_rate<3>({0, 37, 1, 1}, q[0], carried, inverse, 1e-6, whole.data());
+  kernels::advection_rate<3>(Segment{0, 37, 1, 1}, q[0], carried, inverse, 1e-6, whole.data());
   const int cuts[] = {0, 1, 8, 11, 27, 37};
   for (int c = 0; c < 5; ++c)
-    kernels::advection_rate<3>({cuts[c], cuts[c + 1], 1, 1}, q[0], carried, inverse, 1e-6, pieces.data());
+    kernels::advection_rate<3>(Segment{cuts[c], cuts[c + 1], 1, 1}, q[0], carried, inverse, 1e-6, pieces.data());
   EXPECT_EQ(std::memcmp(whole.data(), pieces.data(), sizeof(double) * 37), 0);
 }
 
