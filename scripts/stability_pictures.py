@@ -68,14 +68,15 @@ def write_table(scenes, path):
     before, rest = path.read_text().split("<!-- table -->\n")
     old, after = rest.split("<!-- end of table -->\n")
     groups = {s.group.name: s.group for s in scenes}
-    titles = {g.title for g in groups.values()}
-    rows = [line for line in old.splitlines()[2:] if line.startswith("| ") and line.split(" | ")[0][2:] not in titles]
-    rows += [table_row(group, method, scenes) for group in groups.values() for method in ("fast", "classic")]
+    rows = {tuple(line.split(" | ")[:2]): line for line in old.splitlines()[2:] if line.startswith("| ")}
+    for group in groups.values():
+        for method in ("fast", "classic"):
+            rows["| " + group.title, method] = table_row(group, method, scenes)
     died = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     died += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
-    count = sum(int(row.split(" | ")[column]) for row in rows for column in (2, 4))
+    count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
     lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch |",
-             "|---|---|---|---|---|---|---|---|---|", *rows, "",
+             "|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
              f"{count} scenes at the automatic time step (up to 1.2 of it), {len(died)} die" + (":" if died else "."),
              *[""] * bool(died), *died]
     path.write_text(before + "<!-- table -->\n" + "\n".join(lines) + "\n<!-- end of table -->\n" + after)
