@@ -41,8 +41,7 @@ EULASTIC_CLONES void carry(Block &b) {
 
 EULASTIC_CLONES void weno5(Block &b) {
   const double *velocity[3] = {b.carried[0].data(), b.carried[1].data(), b.carried[2].data()};
-  for (const Segment &s : b.rows)
-    kernels::advection_rate<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
+  for (const Segment &s : b.rows) kernels::advection_rate<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
 }
 
 EULASTIC_CLONES void viscous(Block &b) {
@@ -82,8 +81,8 @@ EULASTIC_CLONES void stretch_shear(Block &b) {
 
 void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cell) {
   Block block;
-  const double cells = block.grid.owned_count();
-  performance::measure(state, cells, 0, flops_per_cell * cells, [&] {
+  const double cells = block.grid.owned_count() * performance::sum_over_ranks(1);  // a block on every rank
+  performance::measure(state, {cells, 0, flops_per_cell}, [&] {
     std::fill(block.rate.begin(), block.rate.end(), 0.0);
     work(block);
     benchmark::DoNotOptimize(block.rate.data());
@@ -91,11 +90,17 @@ void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cel
   });
 }
 
-BENCHMARK_CAPTURE(kernel, carry_velocity, carry, 9);
-BENCHMARK_CAPTURE(kernel, weno5_advection, weno5, 3 * (kernels::weno5_flops + 3));
-BENCHMARK_CAPTURE(kernel, viscous_pressure, viscous, 3 * kernels::viscous_pressure_flops_per_direction + 5);
-BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::elastic_flops_3d);
-BENCHMARK_CAPTURE(kernel, stretch_diagonal, stretch_diagonal, kernels::stretch_diagonal_flops_3d);
-BENCHMARK_CAPTURE(kernel, stretch_shear, stretch_shear, kernels::stretch_shear_flops_3d);
+BENCHMARK_CAPTURE(kernel, carry_velocity, carry, 9)->Iterations(1000)->UseRealTime();
+BENCHMARK_CAPTURE(kernel, weno5_advection, weno5, 3 * (kernels::weno5_flops + 3))->Iterations(1000)->UseRealTime();
+BENCHMARK_CAPTURE(kernel, viscous_pressure, viscous, 3 * kernels::viscous_pressure_flops_per_direction + 5)
+    ->Iterations(1000)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::elastic_flops_3d)->Iterations(1000)->UseRealTime();
+BENCHMARK_CAPTURE(kernel, stretch_diagonal, stretch_diagonal, kernels::stretch_diagonal_flops_3d)
+    ->Iterations(1000)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(kernel, stretch_shear, stretch_shear, kernels::stretch_shear_flops_3d)
+    ->Iterations(1000)
+    ->UseRealTime();
 
 }  // namespace

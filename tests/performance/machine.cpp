@@ -30,19 +30,25 @@ EULASTIC_CLONES void triad(std::ptrdiff_t n, double *a, const double *b, const d
   for (std::ptrdiff_t i = 0; i < n; ++i) a[i] = kernels::fma(s, c[i], b[i]);
 }
 
-// Least time of one call of `work` in seconds.
-template <class Work>
-double least_time(int calls, Work work) {
+// Least time of one call of `task` in seconds; all ranks begin together.
+template <class Task>
+double least_time(int calls, Task task) {
   double least = 1e30;
   for (int n = 0; n < calls; ++n) {
+    (void)MPI_Barrier(PETSC_COMM_WORLD);
     const auto begin = std::chrono::steady_clock::now();
-    work();
+    task();
     least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   return least;
 }
 
 }  // namespace
+
+double sum_over_ranks(double value) {
+  (void)MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return value;
+}
 
 double peak_flops() {
   static const double peak = [] {
@@ -53,7 +59,8 @@ double peak_flops() {
                benchmark::DoNotOptimize(values.data());
              });
     };
-    return std::max(run(40, multiply_add_40), run(96, multiply_add_96));
+    const double forty = run(40, multiply_add_40), ninety_six = run(96, multiply_add_96);
+    return sum_over_ranks(std::max(forty, ninety_six));
   }();
   return peak;
 }
@@ -62,10 +69,10 @@ double triad_bandwidth() {
   static const double bandwidth = [] {
     const std::ptrdiff_t n = 1 << 23;
     std::vector<double> a(n), b(n, 1), c(n, 2);
-    return 24.0 * n / least_time(10, [&] {
-             triad(n, a.data(), b.data(), c.data(), 3);
-             benchmark::DoNotOptimize(a.data());
-           });
+    return sum_over_ranks(32.0 * n / least_time(10, [&] {
+                            triad(n, a.data(), b.data(), c.data(), 3);
+                            benchmark::DoNotOptimize(a.data());
+                          }));
   }();
   return bandwidth;
 }

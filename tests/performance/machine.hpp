@@ -1,39 +1,64 @@
-// What this core can do, measured in this process: the yardsticks of all benchmarks; and how results are reported.
+// What the cores can do, measured in this process: the yardsticks of all benchmarks; and how results are reported.
+// Under mpiexec all ranks run the same benchmarks together, and everything counted is the sum over them.
 #pragma once
 
 #include "base/petsc.hpp"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 namespace eulastic::performance {
 
-/// Fused multiply-adds on registers, flops per second (two per fma); best of several, measured once.
+/// Fused multiply-adds on registers, flops per second (two per fma); best of several, measured once, by all ranks at
+/// the same time.
 double peak_flops();
-/// a = b + s c on arrays far larger than the caches, bytes per second (24 per element); likewise.
+/// a = b + s c on arrays far larger than the caches, bytes per second; likewise. An element counts 32: the line of a
+/// is read before it is written (write-allocate).
 double triad_bandwidth();
+/// Sum over all ranks.
+double sum_over_ranks(double value);
 
-/// Runs `verb` and reports ns per cell and, from the flops that it logs or `flops` per call, GFlop/s and the share of
-/// the peak; from `values`, the doubles per cell that it must read or write, the share of the triad.
+/// What one call has to do, in the open.
+struct Work {
+  double cells;      ///< cell updates (or cells x stages) of all ranks together
+  double bytes = 0;  ///< per cell: read 8, write 16, update in place 16 a value; 0 = in the caches
+  double flops = 0;  ///< per cell; 0 = what the call logs to PETSc
+};
+
+/// Calls as many times as make about 4 million cells; the same on every rank.
+inline int calls(double cells) { return std::max(1, static_cast<int>(4.2e6 / cells)); }
+
+/// Times `verb` and reports ns per cell; from the flops GFlop/s and the share of the peak; from the bytes GB/s and the
+/// share of the triad; from both the time predicted by the slower of the two.
 template <class Verb>
-void measure(benchmark::State &state, double cells, double values, double flops, Verb verb) {
+void measure(benchmark::State &state, const Work &work, Verb verb) {
+  bool failed = verb() != 0;  // warms up
   PetscLogDouble before = 0, after = 0;
   (void)PetscGetFlops(&before);
+  (void)MPI_Barrier(PETSC_COMM_WORLD);
   for (auto _ : state) {
-    if (verb() != 0) {
-      state.SkipWithError("failed");
-      return;
-    }
+    failed = failed || verb() != 0;
     benchmark::ClobberMemory();
+    (void)MPI_Barrier(PETSC_COMM_WORLD);  // the slowest rank counts
   }
   (void)PetscGetFlops(&after);
-  const double done = flops > 0 ? flops * static_cast<double>(state.iterations()) : after - before;
+  if (failed) return state.SkipWithError("failed");
+  const double iterations = static_cast<double>(state.iterations());
+  const double flops = work.flops > 0 ? work.flops : sum_over_ranks(after - before) / (iterations * work.cells);
   using benchmark::Counter;
-  state.counters["ns_per_cell"] = Counter(1e-9 * cells, Counter::kIsIterationInvariantRate | Counter::kInvert);
-  state.counters["flops_per_cell"] = Counter(done / cells, Counter::kAvgIterations);
-  state.counters["GFlops"] = Counter(1e-9 * done, Counter::kIsRate);
-  state.counters["of_peak"] = Counter(done / peak_flops(), Counter::kIsRate);
-  if (values > 0)
-    state.counters["of_triad"] = Counter(8 * values * cells / triad_bandwidth(), Counter::kIsIterationInvariantRate);
+  const auto per_second = [](double n) { return Counter(n, Counter::kIsIterationInvariantRate); };
+  state.counters["ns_per_cell"] = Counter(1e-9 * work.cells, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["flops_per_cell"] = Counter(flops);
+  state.counters["GFlops"] = per_second(1e-9 * flops * work.cells);
+  state.counters["of_peak"] = per_second(flops * work.cells / peak_flops());
+  const double computing = flops / peak_flops(), moving = work.bytes / triad_bandwidth();
+  if (work.bytes > 0) {
+    state.counters["bytes_per_cell"] = Counter(work.bytes);
+    state.counters["GBytes"] = per_second(1e-9 * work.bytes * work.cells);
+    state.counters["of_triad"] = per_second(moving * work.cells);
+  }
+  state.counters["predicted_ns"] = Counter(1e9 * std::max(computing, moving));
 }
 
 }  // namespace eulastic::performance

@@ -1,22 +1,46 @@
-// google-benchmark under PETSc; scripts/benchmark runs it and prints a table.
+// google-benchmark under PETSc; scripts/benchmark runs it and prints a table. Under mpiexec rank 0 reports.
+#include "base/events.hpp"
+#include "box.hpp"
 #include "machine.hpp"
 
-#include "base/events.hpp"
-
 #include <string>
+#include <vector>
+
+namespace {
+
+struct Silent : benchmark::BenchmarkReporter {
+  bool ReportContext(const Context &) override { return true; }
+  void ReportRuns(const std::vector<Run> &) override {}
+};
+
+}  // namespace
 
 int main(int argc, char **argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   int none = 1;
   char **arguments = argv;
   PetscCall(PetscInitialize(&none, &arguments, nullptr, nullptr));
+  int rank = 0, ranks = 1;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  std::vector<char *> words;
+  for (int i = 0; i < argc; ++i)
+    if (rank == 0 || std::string(argv[i]).rfind("--benchmark_out", 0) != 0) words.push_back(argv[i]);
+  words.push_back(nullptr);
+  int count = static_cast<int>(words.size()) - 1;
+  benchmark::Initialize(&count, words.data());
+  if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 1;
   PetscCall(eulastic::register_events());
+  benchmark::AddCustomContext("ranks", std::to_string(ranks));
   benchmark::AddCustomContext("peak_gflops", std::to_string(1e-9 * eulastic::performance::peak_flops()));
   benchmark::AddCustomContext("triad_gbytes_per_second",
                               std::to_string(1e-9 * eulastic::performance::triad_bandwidth()));
-  benchmark::RunSpecifiedBenchmarks();
+  Silent silent;
+  if (rank == 0)
+    benchmark::RunSpecifiedBenchmarks();
+  else
+    benchmark::RunSpecifiedBenchmarks(&silent);
   benchmark::Shutdown();
+  eulastic::performance::forget_box();
   PetscCall(PetscFinalize());
   return 0;
 }

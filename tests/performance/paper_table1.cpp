@@ -1,0 +1,147 @@
+// The parts of the step that the paper's Table 1 lists, on a solid everywhere. The loops are those of the step, less
+// what the step does in the same pass.
+#include "box.hpp"
+#include "kernels/elastic.hpp"
+#include "kernels/upper_convected.hpp"
+#include "kernels/weno5.hpp"
+#include "physics/momentum.hpp"
+#include "physics/row_scratch.hpp"
+
+using namespace eulastic;
+using performance::Box;
+
+namespace {
+
+struct Fields {
+  const Grid &grid;
+  const FieldBlock &velocity, &fraction, &tensor;
+  FieldBlock &next;  // ten
+  double dt;
+  Real3 inverse;
+};
+
+// Calls f(row) in the order of the step.
+template <class F>
+EULASTIC_INLINE void in_blocks(const Int3 &n, F f) {
+  for (int block = 0; block < n[1]; block += kernels::block_rows)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) f(Segment{0, n[0], j, k});
+}
+
+EULASTIC_INLINE void carry(const Fields &t, const Segment &row, const Staggering &at, double *const *carried) {
+  for (int d = 0; d < 3; ++d) kernels::carry_velocity(row, t.velocity[d], d, at.data(), 3, carried[d]);
+}
+
+EULASTIC_INLINE void move(const Fields &t, const Segment &row, ConstView q, int f, double *const *carried,
+                          double *rate) {
+  kernels::advection_rate<3>(row, q, carried, t.inverse.data(), 1e-6, rate);
+  const double *now = q.row(row.j, row.k);
+  double *next = t.next[f].row(row.j, row.k);
+  const double dt = t.dt;
+#pragma omp simd
+  for (int i = 0; i < row.i_end; ++i) next[i] = kernels::fma(dt, rate[i], now[i]);
+}
+
+// q - dt v.grad q of three velocities, phi and six components of B, each where it lives.
+EULASTIC_CLONES void advect(const Fields &t, RowScratch &scratch) {
+  double *rate = scratch.row(0), *const carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  const Int3 n = t.grid.owned();
+  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
+    for (int a = 0; a < 3; ++a) {
+      carry(t, row, at_face[a], carried);
+      move(t, row, t.velocity[a], a, carried, rate);
+    }
+  });
+  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
+    carry(t, row, at_centre, carried);
+    move(t, row, t.fraction[0], 3, carried, rate);
+  });
+  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
+    carry(t, row, at_centre, carried);
+    for (int c = 0; c < 3; ++c) move(t, row, t.tensor[c], 4 + c, carried, rate);
+    for (int c = 0; c < 3; ++c) {
+      carry(t, row, {c != 0, c != 1, c != 2}, carried);
+      move(t, row, t.tensor[3 + c], 7 + c, carried, rate);
+    }
+  });
+}
+// Averages to the faces 3 x 8, to the centres 6 twice, to the edges 3 x 12; ten updates.
+constexpr double derivatives = 30, advection_flops = derivatives * (kernels::weno5_flops + 3) + 24 + 12 + 36 + 20;
+constexpr double advection_bytes = 10 * (8 + 16) + 2 * 24;  // the velocities once more for phi and for B
+
+// L.B + B.L^T into a row that stays in the first-level cache, as in the step.
+EULASTIC_CLONES void stretch(const Fields &t, RowScratch &scratch) {
+  double *rate = scratch.row(0);
+  const ConstView v0 = t.velocity[0];
+  const std::ptrdiff_t stride[3] = {1, v0.sy, v0.sz};
+  in_blocks(t.grid.owned(), [&](const Segment &row) EULASTIC_BODY {
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      const kernels::Directions d{stride[a], stride[b], stride[c], t.inverse[a], t.inverse[b], t.inverse[c]};
+      // Of a and b; the edge component opposite to direction x is 3 + x.
+      const double *aa = t.tensor[a].origin, *bb = t.tensor[b].origin, *ab = t.tensor[3 + c].origin;
+      const double *bc = t.tensor[3 + a].origin, *ac = t.tensor[3 + b].origin;
+      const double *va = t.velocity[a].origin, *vb = t.velocity[b].origin;
+      kernels::for_points(row, v0, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+        rate[i] = 2 * kernels::half_diagonal_stretch<3>(aa + o, ab + o, ac + o, va + o, d);
+      });
+      benchmark::DoNotOptimize(rate);
+      kernels::for_points(row, v0, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+        rate[i] = kernels::shear_stretch<3>(aa + o, bb + o, ab + o, bc + o, ac + o, va + o, vb + o, d);
+      });
+      benchmark::DoNotOptimize(rate);
+    }
+  });
+}
+constexpr double stretch_flops = 3 * (kernels::stretch_diagonal_flops_3d + kernels::stretch_shear_flops_3d);
+constexpr double stretch_bytes = 9 * 8;
+constexpr double elastic_bytes = 7 * 8 + 3 * 16;
+
+template <class Task>
+void part(benchmark::State &state, double bytes, double flops, Task task) {
+  Box *box =
+      performance::box(performance::cells_of(state), performance::Filling::all, method_preset(MethodKind::classic));
+  if (!box) return state.SkipWithError("no scene");
+  const Grid &grid = box->scene.grid;
+  State &now = box->scene.solver.state();
+  FieldBlock next(grid, 10);
+  const Real3 &h = grid.spacing();
+  const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor,
+                      next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
+  RowScratch scratch(grid, 4);
+  performance::measure(state, {grid.cell_count(), bytes, flops}, [&] { return task(fields, scratch, now.phases); });
+}
+
+void advection(benchmark::State &state) {
+  part(state, advection_bytes, advection_flops, [](const Fields &fields, RowScratch &scratch, const auto &) {
+    advect(fields, scratch);
+    return 0;
+  });
+  state.counters["derivatives"] = derivatives;
+}
+
+void oldroyd_rate(benchmark::State &state) {
+  part(state, stretch_bytes, stretch_flops, [](const Fields &fields, RowScratch &scratch, const auto &) {
+    stretch(fields, scratch);
+    return 0;
+  });
+}
+
+// Stress and its divergence: one pass, no stress is stored.
+void elastic_force(benchmark::State &state) {
+  part(state, elastic_bytes, 3 * kernels::elastic_flops_3d,
+       [](const Fields &fields, RowScratch &, const std::vector<Phase> &phases) {
+         return add_elastic_force(fields.grid, 1, phases, fields.next);
+       });
+}
+
+#define EULASTIC_PART(name)                      \
+  BENCHMARK(name)->Apply(performance::cube_64);  \
+  BENCHMARK(name)->Apply(performance::cube_128); \
+  BENCHMARK(name)->Apply(performance::long_box)
+
+EULASTIC_PART(advection);
+EULASTIC_PART(oldroyd_rate);
+EULASTIC_PART(elastic_force);
+
+}  // namespace

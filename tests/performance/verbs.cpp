@@ -1,0 +1,126 @@
+// Verbs on a solid everywhere: the bytes that each must move (every value from and to memory once a pass, a written
+// one read before: write-allocate) and the flops it logs say how long it should take.
+#include "../support/verbs.hpp"
+#include "box.hpp"
+#include "physics/super_time_stepping.hpp"
+#include "pressure/acm.hpp"
+#include "pressure/acm_sweeps.hpp"
+
+using namespace eulastic;
+
+namespace {
+
+struct Scratch {
+  performance::Box &box;
+  const Grid &grid;
+  State &now;
+  GhostExchange &exchange;
+  FieldBlock velocity, tensor, scalar, increment;
+
+  explicit Scratch(performance::Box &b)
+      : box(b),
+        grid(b.scene.grid),
+        now(b.scene.solver.state()),
+        exchange(b.scene.solver.exchange()),
+        velocity(grid, 3),
+        tensor(grid, 6),
+        scalar(grid, 1),
+        increment(grid, 1) {}
+  const Fluid &fluid() const { return box.scene.solver.spec().fluid; }
+};
+
+// `work(scratch, bytes per cell and round)` gives the verb and how many rounds (stages, sweeps) a call has.
+template <class Make>
+void verb(benchmark::State &state, Make make) {
+  const int n = int(state.range(0));
+  performance::Box *box = performance::box({n, n, n}, performance::Filling::all, method_preset(MethodKind::classic));
+  if (!box) return state.SkipWithError("no scene");
+  Scratch scratch(*box);
+  make(scratch, [&](double bytes, int rounds, auto task) {
+    performance::measure(state, {rounds * scratch.grid.cell_count(), bytes}, task);
+  });
+}
+
+#define EULASTIC_NAMED(name)                                                              \
+  BENCHMARK(name)->Arg(64)->Iterations(16)->UseRealTime()->Unit(benchmark::kMillisecond); \
+  BENCHMARK(name)->Arg(128)->Iterations(2)->UseRealTime()->Unit(benchmark::kMillisecond)
+
+#define EULASTIC_VERB(name, bytes, expression)                                                    \
+  void name(benchmark::State &state) {                                                            \
+    verb(state, [](Scratch &s, auto measure) { measure(bytes, 1, [&] { return expression; }); }); \
+  }                                                                                               \
+  EULASTIC_NAMED(name)
+
+// v, p -> v*
+EULASTIC_VERB(predict_fluid, 4 * 8 + 3 * 16,
+              test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, {}, s.velocity));
+// v, p, phi, B -> v*
+EULASTIC_VERB(predict_solid, 11 * 8 + 3 * 16,
+              test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, s.now.phases, s.velocity));
+// v -> D
+EULASTIC_VERB(divergence, 3 * 8 + 16, compute_divergence(s.grid, 1, s.now.velocity, s.scalar));
+// D, p for the sums; D, p -> increment
+EULASTIC_VERB(acm, 2 * 8 + 2 * 8 + 16,
+              AcmSolver(s.grid).solve(s.box.dt, s.now.phases[0].fraction, s.now.pressure, s.increment));
+// increment -> v, p in place
+EULASTIC_VERB(correction, 8 + 4 * 16,
+              correct_velocity(s.grid, 1, s.box.dt, 0, s.increment, s.scalar, s.velocity, s.now.pressure));
+// v, phi -> phi
+EULASTIC_VERB(fraction, 4 * 8 + 16,
+              advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0].fraction, s.scalar));
+// phi
+EULASTIC_VERB(segments, 8, find_solid(s.grid, reset_below_one_per_cent, s.now.phases[0]));
+// v, phi, B -> B
+EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
+              test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
+
+// A ghost is read and written; three layers, none behind walls (y).
+double exchanged(const Grid &grid, int fields) {
+  const Int3 n = grid.owned();
+  return 24. * fields * ((n[0] + 6.) * (n[2] + 6.) / (double(n[0]) * n[2]) - 1);
+}
+EULASTIC_VERB(exchange_velocity, exchanged(s.grid, 3), s.exchange.update(s.velocity, 3));
+EULASTIC_VERB(exchange_tensor, exchanged(s.grid, 6), s.exchange.update(s.tensor, 3));
+
+// Two stages of a velocity component: W_j-1, W_j-2 in place, the rate. Before: rate -> W_1 and W_0 = 0; after:
+// v, W -> v*.
+void rkl_stage(benchmark::State &state) {
+  verb(state, [](Scratch &s, auto measure) {
+    constexpr int stages = 41;
+    constexpr double pair = 16 + 16 + 8, ends = (8 + 16) + 16 + (8 + 8 + 16);
+    SuperTimeStepping work{FieldBlock(s.grid, 3), {}, FieldBlock(s.grid, 3), FieldBlock(s.grid, 3)};
+    measure(3 * (pair / 2 + ends / (stages - 1)), stages - 1, [&] {
+      return super_time_step(s.grid, s.exchange, s.box.scene.solver.spec().walls, 1, 0, 100 * s.box.dt, stages, {},
+                             s.now.velocity, work, s.velocity);
+    });
+  });
+}
+EULASTIC_NAMED(rkl_stage);
+
+// A sweep without V-cycle: sums of D and two directions; both, increment and D in place -> d. The first sweep has one
+// direction, the last leaves D and d alone; before them D is copied and the increment set to 0.
+constexpr int sweeps = 6;
+constexpr double sweep_bytes = 3 * 8 + 2 * 8 + 2 * 16 + 16;
+constexpr double sweeps_bytes = ((8 + 16 + 16) + sweeps * sweep_bytes - 2 * 8 - 2 * 16) / sweeps;
+// D -> half the cells; them, D -> q; two relaxations. Below an eighth of the cells each: one relaxation more, the
+// right-hand side is written, the solution read.
+constexpr double cycle_finest = 8 + (8 + 16) + 2 * (8 + 8 + 16);
+constexpr double cycle_bytes = cycle_finest + (cycle_finest + (8 + 8 + 16) + 16 + 8) / 7;
+
+void sweep(benchmark::State &state, bool multigrid) {
+  verb(state, [&](Scratch &s, auto measure) {
+    AcmSweepSolver solver;
+    if (solver.create(s.grid, s.exchange, {sweeps, 0, multigrid}) != 0) return state.SkipWithError("no solver");
+    test::set(s.grid, s.scalar[0], at_centre,
+              [](double x, double y, double z) { return std::sin(x) * std::cos(2 * y) + std::sin(3 * z); });
+    solver.set_target(0);
+    measure(sweeps_bytes + (multigrid ? cycle_bytes : 0), sweeps,
+            [&] { return solver.solve(s.box.dt, s.scalar, s.now.pressure, s.increment); });
+  });
+}
+void acm_sweep(benchmark::State &state) { sweep(state, false); }
+void acm_sweep_and_cycle(benchmark::State &state) { sweep(state, true); }
+EULASTIC_NAMED(acm_sweep);
+EULASTIC_NAMED(acm_sweep_and_cycle);
+
+}  // namespace
