@@ -80,8 +80,11 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
           if (t.inertia) {
-            for (int d = 0; d < Dim; ++d) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
-            kernels::advection_rate<Dim>(row, v[a], carried, t.inverse.data(), t.epsilon, rate);
+            const double *velocity[3] = {carried[0], carried[1], carried[2]};
+            velocity[a] = v[a].row(j, k);
+            for (int d = 0; d < Dim; ++d)
+              if (d != a) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
+            kernels::advection_rate<Dim>(row, v[a], velocity, t.inverse.data(), t.epsilon, rate);
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
             for (int i = 0; i < n[0]; ++i) rate[i] = 0;
