@@ -18,7 +18,8 @@ struct Phase {
   FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
   FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
   FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
-  ActiveSegments solid;     ///< points where B may differ from I
+  ActiveSegments solid;     ///< points where B may evolve
+  ActiveSegments strained;  ///< points where B may differ from I: those and the layers it is extended over
   ActiveSegments stressed;  ///< faces that feel the elastic stress
 };
 

@@ -61,25 +61,34 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, in
   const bool flat = grid.dimension() == 2;
   const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low;
   const std::size_t width = points_x_, plane = width * rows_y_;
-  std::vector<unsigned char> flags(width + reach);
-  mask_.assign(plane * (rows_z_ + reach_z), 0);  // what is within reach along x and y
+  std::vector<unsigned char> flags(width + reach), marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
+  mask_.assign(plane * (rows_z_ + reach_z),
+               0);  // what is within reach along x and y; `marked`: rows that are not all 0
   for (int k = 0; k < rows_z_ + reach_z; ++k)
     for (int j = 0; j < rows_y_ + reach; ++j) {
       const double *q = value.row(begin_[1] + j - low, begin_[2] + k - low_z) + begin_[0] - low;
-      for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = flag(q[i]);
+      unsigned char any = 0;
+#pragma omp simd reduction(| : any)
+      for (std::size_t i = 0; i < flags.size(); ++i) any |= flags[i] = flag(q[i]);
+      if (any == 0) continue;
       for (int d = 1; d <= reach; ++d)
         for (std::size_t i = 0; i < width + reach - d; ++i) flags[i] |= flags[i + 1];
       for (int row = std::max(0, j - reach); row <= std::min(j, rows_y_ - 1); ++row) {
         unsigned char *mask = mask_.data() + k * plane + row * width;
         for (std::size_t i = 0; i < width; ++i) mask[i] |= flags[i];
+        marked[k * static_cast<std::size_t>(rows_y_) + row] = 1;
       }
     }
   for (int k = 0; k < rows_z_; ++k)
     for (int j = 0; j < rows_y_; ++j) {
-      unsigned char *mask = mask_.data() + k * plane + j * width;
-      for (int d = 1; d <= reach_z; ++d)
+      unsigned char *mask = mask_.data() + k * plane + j * width, *own = &marked[k * std::size_t(rows_y_) + j];
+      for (int d = 1; d <= reach_z; ++d) {
+        if (!own[d * static_cast<std::size_t>(rows_y_)]) continue;
         for (std::size_t i = 0; i < width; ++i) mask[i] |= mask[i + d * plane];
-      for (std::size_t i = 0; i < width; ++i) mask[i] = mask[i] == wanted;
+        *own = 1;
+      }
+      if (*own)
+        for (std::size_t i = 0; i < width; ++i) mask[i] = mask[i] == wanted;
       append_row(mask, begin_[1] + j, begin_[2] + k);
     }
 }

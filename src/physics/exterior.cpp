@@ -122,8 +122,14 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
   const Reach all(grid, at, layers);
   const int first = all.begin[0], width = all.end[0] - first;
+  const auto idle = [&](int j, int k) {  // an owned row that no body is near
+    if (j < 0 || k < 0 || j >= phase.strained.rows_y() || k >= phase.strained.rows_z()) return false;
+    const ActiveSegments::Range range = phase.strained.row(j, k);
+    return range.first == range.last;
+  };
   for (int k = all.begin[2]; k < all.end[2]; ++k)
     for (int j = all.begin[1]; j < all.end[1]; ++j) {
+      if (idle(j, k)) continue;
       const double *phi = fraction.row(j, k) + first;
       unsigned char *row = mask + layout.offset(first, j, k);
       flag_row(width, phi, step, steps ? rule.edge : rule.centre, row);
@@ -152,6 +158,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
     if (L == 1) {
       for (int k = box.begin[2]; k < box.end[2]; ++k)
         for (int j = box.begin[1]; j < box.end[1]; ++j) {
+          if (idle(j, k)) continue;
           const int begin = box.begin[0], n = box.end[0] - begin;
           const std::ptrdiff_t offset = layout.offset(begin, j, k);
           if (find_first_layer(n, mask + offset, stride[1], stride[2], found.data()) == 0) continue;

@@ -15,9 +15,9 @@ namespace eulastic {
 
 /// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
 /// and empty centres does not decide.
-inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30};
+inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30, 4};
 /// Attached bodies: only where all is solid. With linear extension that is second order wherever the surface lies.
-inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30};
+inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30, 4};
 inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
   return material.linear ? evolve_where_full : evolve_above_half;
 }
@@ -29,9 +29,9 @@ bool damps_short_waves(const Grid &grid, const Fluid &fluid, const Material &mat
 /// Which points each layer holds; made anew whenever phi has changed.
 class ExteriorLayers {
 public:
-  static constexpr int layers = 4;
+  static constexpr int layers = evolve_above_half.layers;
 
-  /// phi of the phase needs five valid ghost layers.
+  /// phi of the phase needs five valid ghost layers; find_solid() has run.
   PetscErrorCode build(const Grid &grid, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees two
   /// points in, so that attached bodies exchange ghosts after every layer.

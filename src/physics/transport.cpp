@@ -183,6 +183,10 @@ PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   phase.solid.build(grid, phase.fraction[0], rule.centre, 1, 0);
+  if (rule.layers > 0)
+    phase.strained.build(grid, phase.fraction[0], rule.centre, rule.layers + 1, rule.layers);
+  else
+    phase.strained = phase.solid;
   phase.stressed.build(grid, phase.fraction[0], rule.stressed, 2, 2);  // one more: also where it was a step ago
   PetscFunctionReturn(0);
 }

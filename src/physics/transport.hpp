@@ -10,6 +10,7 @@ namespace eulastic {
 struct EvolveRule {
   double centre, edge;  ///< least solid fraction, at centres and (mean of four) on edges
   double stressed;      ///< least solid fraction that makes stress
+  int layers = 0;       ///< how far B is extended outside, in points
 };
 /// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
 inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
@@ -18,7 +19,8 @@ inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
 PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const FieldBlock &fraction,
                                FieldBlock &next);
 
-/// Lists where B may evolve and which faces feel the stress. Two ghosts of phi.
+/// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of phi, or one more
+/// than there are layers.
 PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase);
 
 /// One Runge-Kutta stage of B.
@@ -26,7 +28,7 @@ struct TensorStage {
   EvolveRule rule;
   double dt;
   bool second_of_heun;  ///< next = (next + B + dt rate)/2, else next = B + dt rate
-  const ActiveSegments *stale = nullptr;  ///< where `next` may differ from I now; null: anywhere
+  const ActiveSegments *stale = nullptr;  ///< where `next` is set to I if B does not evolve there; null: everywhere
 };
 
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which

@@ -222,27 +222,31 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     phase.fraction.swap(next_fraction_);
   }
   PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
-  ActiveSegments before = phase.solid;
+  const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(transport_left_cauchy_green(phase, dt));  // (5)
-  stale_ = std::move(before);
+  PetscCall(transport_left_cauchy_green(phase, before, dt));  // (5)
   PetscFunctionReturn(0);
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
-PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, double dt) {
+// `before` is where the B of the phase differed from I; what lies outside it stays I untouched. The first stage is read
+// no further than its layers: the rest of it may be anything.
+PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt) {
   PetscFunctionBeginUser;
-  const bool swapped = !spec_.staggered() && spec_.exterior == SolidExterior::identity && stale_.rows_y() > 0;
-  PetscCall(transport_tensor(*grid_, {evolve_rule(phase), dt, false, swapped ? &stale_ : nullptr}, now_.velocity, phase,
-                             phase.tensor, next_tensor_));
-  PetscCall(complete_exterior(phase, next_tensor_));
+  const EvolveRule rule = evolve_rule(phase);
   if (spec_.staggered()) {
     PetscCall(
-        transport_tensor(*grid_, {evolve_rule(phase), dt, true}, now_.velocity, phase, next_tensor_, phase.tensor));
+        transport_tensor(*grid_, {rule, dt, false, &phase.solid}, now_.velocity, phase, phase.tensor, next_tensor_));
+    PetscCall(complete_exterior(phase, next_tensor_));
+    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor));
   } else {
+    const ActiveSegments *stale = stale_.rows_y() > 0 ? &stale_ : nullptr;
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, stale}, now_.velocity, phase, phase.tensor, next_tensor_));
+    PetscCall(complete_exterior(phase, next_tensor_));
     phase.tensor.swap(next_tensor_);
+    stale_ = before;
   }
   PetscFunctionReturn(0);
 }
@@ -274,6 +278,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     copy.colour = phase.colour;
     copy.fraction.copy_from(phase.fraction);
     copy.tensor.copy_from(phase.tensor);
+    copy.strained = phase.strained;
     if (phase.label) copy.label.copy_from(phase.label);
   }
   PetscCall(transport(phases_now_, 0.5 * now_.dt));

@@ -69,7 +69,7 @@ private:
   PetscErrorCode project(double dt);
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport(Phase &phase, double dt);
-  PetscErrorCode transport_left_cauchy_green(Phase &phase, double dt);
+  PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt);
   PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
@@ -82,7 +82,7 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
-  ActiveSegments stale_;       ///< where next_tensor_ is not I, once a phase has left it there
+  ActiveSegments stale_;       ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
   FieldBlock work_;            ///< shared by what the verbs need one after the other
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time
   ExteriorLayers layers_;
