@@ -231,13 +231,13 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 // `before` is where the B of the phase differed from I; what lies outside it stays I untouched. The first stage is read
-// no further than its layers: the rest of it may be anything.
+// no further than that of now: the rest of it may be anything.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt) {
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
   if (spec_.staggered()) {
     PetscCall(
-        transport_tensor(*grid_, {rule, dt, false, &phase.solid}, now_.velocity, phase, phase.tensor, next_tensor_));
+        transport_tensor(*grid_, {rule, dt, false, &phase.strained}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor));
