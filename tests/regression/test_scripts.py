@@ -4,6 +4,7 @@ import importlib.machinery
 import importlib.util
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -209,6 +210,44 @@ class Pictures(WithFolder):
         self.assertIn("pressure", pressure)
         self.assertLess(float(pressure.split()[-1]), 1e-6)  # a constant is no difference
         compare.draw(other, run, [None, None], Units("")).savefig(self.folder / "comparison.png")
+
+
+class Performance(WithFolder):
+    def test_tables_stand_between_their_marks(self):
+        import performance_runs
+        page = self.folder / "performance.md"
+        page.write_text("a\n<!-- table x -->\nold\n<!-- end -->\nb\n<!-- table y -->\n<!-- end -->\n")
+        keep, performance_runs.PAGE = performance_runs.PAGE, page
+        self.addCleanup(setattr, performance_runs, "PAGE", keep)
+        performance_runs.write_tables({"x": performance_runs.markdown_table([{"n": 3}], {"n": "cells"})})
+        self.assertEqual(page.read_text(), "a\n<!-- table x -->\n\n| cells |\n|---|\n| 3 |\n\n<!-- end -->\nb\n"
+                                           "<!-- table y -->\n<!-- end -->\n")
+        with self.assertRaises(SystemExit):
+            performance_runs.write_tables({"z": ""})
+        marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
+        self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "targets", "verbs", "two_ranks",
+                                 "cost_of_bodies", "small_body", "memory"})
+
+    def test_table_of_verbs(self):
+        table1 = load("paper_table1")
+        run = {"bytes_per_cell": 100, "flops_per_cell": 100, "ns_per_cell": 6}
+        text = table1.verbs_table(128, {"peak": 50, "triad": 25}, {f"{verb}/128": run for verb in table1.VERBS})
+        self.assertIn("| divergence (8) | 100 | 100 | 4.00 | 2.00 | 6.00 | 1.50 |", text)
+
+    def test_the_paper_has_its_own_rate(self):
+        ns = 0.73e9 / 8.39e6
+        rows = {f"{part}/64/64/64": {"ns_per_cell": ns, "derivatives": 30} for part in
+                ("step/red_cells", "step/pure_flow", "advection")}
+        text = load("paper_table1").targets_table({"64/64/64": "64^3"}, *[({"peak": 128}, rows)] * 2)
+        self.assertIn("red cells, 64^3 | 0.090 | 0.090 | 0.090 |", text)
+
+    def test_cost_of_bodies(self):
+        done = start(SCRIPTS / "cost_of_bodies", "--quick", "--only", "share", "memory")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("|")]
+        self.assertEqual([row[1] for row in rows[2:5]], ["0.000", "0.562", "1.000"])  # half, and the cells cut
+        fields = {row[0]: int(row[1]) for row in rows if "classic" in row[0]}
+        self.assertLess(fields["pure flow, classic"], fields["red cells, classic"])
 
 
 class RealRun(WithFolder):
