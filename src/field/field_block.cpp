@@ -10,8 +10,8 @@ namespace eulastic {
 // Stencils reach over many pages at once: in huge pages, where the system has them, their addresses fit the TLB.
 double *FieldBlock::allocate(std::size_t values) {
   constexpr std::size_t line = 64, huge = std::size_t{1} << 21;
-  const std::size_t bytes = values * sizeof(double);
-  void *memory = std::aligned_alloc(bytes >= huge ? huge : line, bytes);
+  const std::size_t bytes = values * sizeof(double), alignment = bytes >= huge ? huge : line;
+  void *memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
   if (!memory) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
   if (bytes >= huge) (void)madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: nothing is lost when it is refused
