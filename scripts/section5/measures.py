@@ -85,6 +85,19 @@ def held_by_walls(run):
     return float(total / (force(run) * run.length.prod()))
 
 
+def wall_displacement(run):
+    """Largest radial displacement of the lumen's surface in the last snapshot since the first, above, below and at the
+    sides of the axis: the wall between it and the box, cell by cell along the vessel."""
+    (y0, z0), h = tube(run)[1], run.spacing
+    largest = 0.0
+    for axis, place, middle in ((1, y0 / h[1], z0 / h[2]), (0, z0 / h[2], y0 / h[1])):
+        walls = [numpy.split(snapshot["solid_fraction_vessel"].astype(float).take(int(middle), 1 - axis), [int(place)])
+                 for snapshot in (run.snapshots[0], run.snapshots[-1])]
+        for first, last in zip(*walls):
+            largest = max(largest, abs(last.sum(axis=0) - first.sum(axis=0)).max() * h[2 - axis])
+    return largest
+
+
 # Flow
 
 def after(run, part):

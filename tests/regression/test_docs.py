@@ -12,15 +12,19 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from read_page import blocks, commands, file_name, is_python  # noqa: E402
+
 BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
-PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake", "git", ".ci/", "sbatch", "srun")
 NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
     "scripts/tidy": "all sources", "scripts/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
     "scripts/paper_figure2": "test_scripts.py runs it", "scripts/work_precision": "many long runs",
-    "scripts/paper_section5": "an hour; it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
+    "scripts/paper_section5": "an hour; it has a test of its own",
+    "scripts/tutorial": "it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
     "scripts/accuracy_tables": "needs the runs of scripts/validate",
     "scripts/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",
@@ -32,31 +36,6 @@ BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_inter
 
 def pages():
     return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-
-
-def blocks(page):
-    """Indented or fenced blocks of a page, each with the words that end the line before it."""
-    block, before, fenced = [], "", False
-    lines = page.read_text().splitlines() + ["end"]
-    for n, line in enumerate(lines):
-        fence = line.startswith("```")
-        fenced ^= fence
-        indented = line.startswith("    ") or not line and any(x for x in lines[n:]) and \
-            next(x for x in lines[n:] if x).startswith("    ")
-        if not fence and (fenced or block and indented or line.startswith("    ")):
-            block.append(line if fenced else line[4:])
-        elif block:
-            yield before, block
-            block = []
-        if line and not fence and not block:
-            before = line
-
-
-def commands(block):
-    """The block's commands without comments, continued lines joined; none if it is no shell."""
-    text = re.sub(r"\\\n\s*", "", "\n".join(block))
-    found = [re.sub(r"\s+#.*", "", line).strip() for line in text.splitlines()]
-    return [line for line in found if line.startswith(PROGRAMS) and not re.search(r"\[|\bDIRECTORY\b|\bCASE\b", line)]
 
 
 def reason_not_to_run(command):
@@ -91,12 +70,14 @@ class Docs(unittest.TestCase):
     def test_commands(self):
         ran = 0
         for page in pages():
+            if page.name == "tutorial.md":  # scripts/tutorial follows it, and has a test of its own
+                continue
             shutil.rmtree(self.room / "output", ignore_errors=True)
             if page.name in BEFORE:
                 self.run_line(BEFORE[page.name])
             for before, block in blocks(page):
-                if re.search(r"\b\w+\.opts:$", before) and any(line.startswith("-") for line in block):
-                    (self.room / re.search(r"(\w+\.opts):$", before)[1]).write_text("\n".join(block) + "\n")
+                if name := file_name(before):
+                    (self.room / name).write_text("\n".join(block) + "\n")
                 for command in commands(block):
                     with self.subTest(page=page.name, command=command):
                         if reason_not_to_run(command):
@@ -105,7 +86,7 @@ class Docs(unittest.TestCase):
                             continue
                         self.run_line(command)
                         ran += 1
-                if block[0].startswith(("from ", "import ")):
+                if is_python(block):
                     with self.subTest(page=page.name, python=block[0]):
                         self.run_python(block)
                         ran += 1

@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+"""docs/tutorial.md, typed from beginning to end by scripts/tutorial; the runs are cut short from outside, through
+PETSC_OPTIONS, which the commands do not say anything against."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from read_page import blocks, commands, file_name, is_python  # noqa: E402
+from read_run import Run  # noqa: E402
+
+PAGE = ROOT / "docs/tutorial.md"
+
+
+class Tutorial(unittest.TestCase):
+    def test_every_command(self):
+        with tempfile.TemporaryDirectory() as room:
+            room = pathlib.Path(room)
+            done = subprocess.run([ROOT / "scripts/tutorial", "--folder", room / "clone", "--docs", room / "docs"],
+                                  env=dict(os.environ, PETSC_OPTIONS="-time_steps_max 2"), capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            wanted = re.findall(r"images/(tutorial_\w+\.png)", PAGE.read_text())
+            self.assertGreaterEqual(len(wanted), 5)
+            self.assertEqual(sorted(path.name for path in (room / "docs/images").iterdir()), sorted(wanted))
+            for name in wanted:
+                picture = matplotlib.image.imread(room / "docs/images" / name)[..., :3]
+                self.assertGreater((picture < 0.7).any(axis=2).sum(), 1000, name)
+            runs = {name: Run(room / "clone/output" / name) for name in ("first", "pair", "mine", "capillary")}
+            self.assertEqual({run.summary["exit_reason"] for run in runs.values()}, {"steps"})
+            self.assertEqual([len(runs[name].bodies.id) for name in ("first", "pair")], [16, 2])
+            self.assertEqual(set(runs["mine"].bodies.species), {"vessel", "platelet", "rbc"})
+            cells = runs["capillary"].bodies.volume[0, runs["capillary"].bodies.species == "rbc"].sum()
+            lumen = 3.14159265 * 12 ** 2 * runs["capillary"].length[0]
+            self.assertAlmostEqual(cells / lumen, 0.2, delta=0.004)
+            self.assertEqual(len(list((room / "clone/output/frames").iterdir())), 2)
+            self.assertIn("flow rate:", done.stdout)
+            self.assertIn("platelet [", done.stdout)
+
+    def test_the_page_is_read_as_it_is_meant(self):
+        found = list(blocks(PAGE))
+        self.assertEqual([name for before, _ in found if (name := file_name(before))], ["pair.csv", "pair.opts", "mine.opts"])
+        self.assertEqual(sum(is_python(block) for _, block in found), 2)
+        typed = [line for before, block in found if not file_name(before) for line in commands(block)]
+        self.assertEqual(sum(line.startswith("scripts/run ") for line in typed), 4)
+        self.assertIn("scripts/quickstart", typed)
+
+
+if __name__ == "__main__":
+    unittest.main()
