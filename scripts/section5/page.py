@@ -1,7 +1,12 @@
 """docs/capillary.md: checks, a table, the pictures."""
 import math
+import pathlib
+
+from read_run import read_options
 
 from . import measures
+
+CASE = pathlib.Path(__file__).resolve().parents[2] / "options/capillary_plasma.opts"
 
 WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 
@@ -16,7 +21,7 @@ an elastic vessel at hematocrits of 0, 5, 10, 15 and 20 %, at a size for two cor
 
 The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (tube) in a box of {cells} cells of
 {spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest; lengths in µm,
-times in µs, density 1. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
+times in µs, density 1; they end at {end:g}. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
 same places whatever the hematocrit. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's
 own case, a vessel of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is
 options/capillary_paper.opts: `-check_only` says what it takes, 535 GB of memory and about 155 days of one core.
@@ -95,7 +100,8 @@ anywhere. tests/convergence/tube_test.cpp asserts the order.
 |---|---|---|---|
 {rows}
 
-u: root mean square over the lumen, in parts of the largest; order: from half as many cells; flow rate: relative.
+u: root mean square over the lumen, in parts of the largest; order: from half as many cells, it scatters as the surface
+cuts the cells otherwise; flow rate: relative.
 """
 
 
@@ -186,8 +192,19 @@ def trend(runs):
     return (f"In plasma alone platelets stay on their circles: {rms['plasma'][0]:.3f} µm/ms. Red cells push them about, "
             f"{value[0] / rms['plasma'][0]:.0f} times\nas fast with the fewest cells; the rms {words}: "
             + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
-            + " µm/ms for " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %.\n"
-            "That is the paper's point: the motion of the red cells makes the platelets fluctuate, the more the more cells.")
+            + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. That is "
+            "what the paper is about: the motion of the red cells makes the platelets fluctuate"
+            + (", the more the more cells." if rises else ".\nThe order among the hematocrits is within the scatter of so few "
+               "platelets in so short a time."))
+
+
+def other_options(run):
+    """How the runs differ from the files of options/, in words."""
+    file, changed = read_options(CASE), []
+    for name in ("grid_cells", "grid_length", "time_end"):
+        if [float(x) for x in file[name].split(",")] != [float(x) for x in run.options[name].split(",")]:
+            changed.append(f"-{name} {run.options[name]}")
+    return f"**The runs of this page were made with `{' '.join(changed)}`, other than in options/.**\n\n" if changed else ""
 
 
 def write(runs, tubes, missing, path):
@@ -199,10 +216,10 @@ def write(runs, tubes, missing, path):
     strain = wall_stress / float(run.options["fluid_viscosity"]) * run.bodies.time[-1]
     text = PAGE.format(
         cases="plasma, h05, h10, h15, h20, tube", diameter=2 * radius, length=run.length[0],
-        cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
+        end=run.bodies.time[-1], cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
         viscosity=float(run.options["fluid_viscosity"]), platelets=len(measures.of_species(run, "platelet")),
         capillary=wall_stress / measures.shear_modulus(run, "platelet"),
-        unfinished=f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else "", trend=trend(runs),
+        unfinished=other_options(run) + (f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else ""), trend=trend(runs),
         names=" | ".join(runs), columns="---|" * len(runs),
         checks="\n".join(f"| {name} | {' | '.join(values.get(case, '') for case in runs)} | {wanted} | {WORDS[passed]} |"
                          for name, values, wanted, passed in rows),
