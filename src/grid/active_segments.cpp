@@ -71,8 +71,10 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, in
 #pragma omp simd reduction(| : any)
       for (std::size_t i = 0; i < flags.size(); ++i) any |= flags[i] = flag(q[i]);
       if (any == 0) continue;
-      for (int d = 1; d <= reach; ++d)
-        for (std::size_t i = 0; i < width + reach - d; ++i) flags[i] |= flags[i + 1];
+      for (int done = 1, step; done <= reach; done += step) {  // of reach + 1 flags
+        step = std::min(done, reach + 1 - done);
+        for (std::size_t i = 0; i + step < flags.size(); ++i) flags[i] |= flags[i + step];
+      }
       for (int row = std::max(0, j - reach); row <= std::min(j, rows_y_ - 1); ++row) {
         unsigned char *mask = mask_.data() + k * plane + row * width;
         for (std::size_t i = 0; i < width; ++i) mask[i] |= flags[i];
