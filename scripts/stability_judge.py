@@ -12,7 +12,9 @@ PHI = {"fast": 1e-9, "classic": 0.01}  # beyond 0 and 1
 DETERMINANT = (0.5, 4.0)  # of B at the centres in free bodies, as long as no stretch was beyond
 STRETCH = 3.0
 # WENO5 bounds neither phi nor the volume: of classic this is reported, not judged.
-REPORTED = {"fast": (), "classic": ("volume", "phi", "det B")}
+# Bodies of one species that touch have phases of their own; a snapshot holds the sum of their phi. Each is between 0 and 1
+# (THINC), the sum need not be: where it is not, they overlap.
+REPORTED = {"fast": ("overlap",), "classic": ("volume", "phi", "det B", "overlap")}
 
 
 def fields_of_b(snapshot, name):
@@ -77,13 +79,15 @@ def judge(directory, method):
     m["energy"] = energy_growth(run)
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0
-    m["phi"], m["stretch"], det = 0.0, 1.0, []
+    m["phi"], m["overlap"], m["stretch"], det = 0.0, 0.0, 1.0, []
     flat = run.cells[2] == 1
     for name in [n for n in run.options.get("species", "none").split(",") if n != "none"]:
         largest, free = 1.0, run.options[f"{name}_shape"] != "slab"
         for snapshot in run.snapshots:
             phi, trace, determinant = fields_of_b(snapshot, name)
-            m["phi"] = max(m["phi"], float(-phi.min()), float(phi.max() - 1))
+            beyond = "overlap" if sum(body["species"] == name for body in summary["bodies"]) > 1 else "phi"
+            m["phi"] = max(m["phi"], float(-phi.min()))
+            m[beyond] = max(m[beyond], float(phi.max() - 1))
             solid, inside = phi > 0.5, phi > 0.999
             free = free and not any(run.is_wall(d) and solid.take([0, -1], 2 - d).any() for d in range(3))
             if solid.any():
@@ -93,7 +97,7 @@ def judge(directory, method):
         m["stretch"] = max(m["stretch"], largest)
     m["det"] = [min(det), max(det)] if det else None
     broken = [name for name, bad in (
-        ("energy", not m["energy"] <= 1 + GROWTH[method]), ("phi", m["phi"] > PHI[method]),
+        ("energy", not m["energy"] <= 1 + GROWTH[method]), ("phi", m["phi"] > PHI[method]), ("overlap", m["overlap"] > PHI[method]),
         ("volume", not m["volume"] <= DRIFT[method]),
         ("det B", bool(det) and not DETERMINANT[0] <= min(det) <= max(det) <= DETERMINANT[1])) if bad]
     died = [name for name in broken if name not in REPORTED[method]]

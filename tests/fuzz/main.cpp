@@ -121,7 +121,12 @@ Outcome Fuzzer::judge(const Words &words) {
   outcome.accepted = true;
   if (!one_line(Grid::why_not(parsed.config.grid, 1) + ".")) outcome.found = "not one line";
   if (!Grid::why_not(parsed.config.grid, 1).empty()) return outcome;
-  (void)check_report(parsed.config, 1);
+  if (!parsed.config.check_only) line.push_back("-check_only");  // with it the files of voxels are read and measured
+  const ParseResult checked = parse(line);
+  if (checked.error.empty())
+    (void)check_report(checked.config, 1);
+  else if (!one_line(checked.error))
+    outcome.found = "not one line: " + checked.error;
   const std::string text = options_text(parsed);
   const ParseResult again = parse({put("options.txt", text)});
   const auto rows = [](const std::string &all) { return all.substr(all.find('\n')); };
