@@ -61,7 +61,7 @@ constexpr int position(int x, int y) {
 }
 
 // One component at the points of a batch: advection, then stretching and the stage. One loop for both would need more
-// registers than there are: a third slower.
+// registers than there are: a fifth slower.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
                                        const kernels::Batch &batch, const double *const *carried, double *rate,
