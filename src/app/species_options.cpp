@@ -84,6 +84,8 @@ void add_count(Rows &rows, SpeciesSpec &spec) {
   count.accepted = "with lattice 3 integers >= 1, separated by commas, with random an integer >= 0";
   count.default_note = "1,1,1 with lattice";
   count.read = [&spec](const std::string &value) {
+    spec.count = {1, 1, 1};  // of a file that is overruled
+    spec.number = -1;
     if (value.find(',') == std::string::npos) return read_integer(value, {0, false}, &spec.number);
     return read_integers(value, at_least_one, spec.count.data(), 3);
   };

@@ -28,20 +28,32 @@ std::size_t Crowd::bin(const Real3 &x) const {
 
 void Crowd::add(const PlacedConvex &body) {
   int &first = first_[bin(body.centre)];
-  next_.push_back(first);
+  links_.push_back({body.centre, first});
   first = static_cast<int>(bodies_.size());
   bodies_.push_back(body);
+  widest_ = std::max(widest_, body.body->outer_radius());
 }
 
 void Crowd::move(std::size_t b, const PlacedConvex &to) {
   const int index = static_cast<int>(b);
   int *link = &first_[bin(bodies_[b].centre)];
-  while (*link != index) link = &next_[*link];
-  *link = next_[b];
+  while (*link != index) link = &links_[*link].next;
+  *link = links_[b].next;
   int &first = first_[bin(to.centre)];
-  next_[b] = first;
+  links_[b] = {to.centre, first};
   first = index;
   bodies_[b] = to;
+}
+
+// Whether all images of b are farther from a than `reach`.
+bool Crowd::is_far(const Real3 &a, const Real3 &b, double reach) const {
+  double square = 0;
+  for (int d = 0; d < dimension_; ++d) {
+    double x = std::abs(b[d] - a[d]);
+    if (grid_.boundary[d] == Boundary::periodic) x = std::min(x, grid_.length[d] - x);
+    square += x * x;
+  }
+  return square > reach * reach;
 }
 
 bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
@@ -49,10 +61,7 @@ bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
   Int3 from{}, to{};
   for (int d = 0; d < dimension_; ++d) {
     const double x = b.centre[d] - a.centre[d], length = grid_.length[d];
-    const bool wraps = grid_.boundary[d] == Boundary::periodic;
-    // A quick refusal: most are far.
-    if (std::abs(x) > reach && !(wraps && std::abs(x) > length - reach)) return true;
-    if (!wraps) continue;
+    if (grid_.boundary[d] == Boundary::wall || std::abs(x) <= length - reach) continue;  // no image is near
     from[d] = static_cast<int>(std::ceil((-reach - x) / length));
     to[d] = static_cast<int>(std::floor((reach - x) / length));
   }
@@ -78,12 +87,15 @@ bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
       if (wrapped == i || grid_.boundary[d] == Boundary::periodic) list[d][count[d]++] = wrapped;
     }
   }
+  const double reach = 1.0001 * (body.body->outer_radius() + widest_);  // round-off of images
   for (int k = 0; k < count[2]; ++k)
     for (int j = 0; j < count[1]; ++j)
       for (int i = 0; i < count[0]; ++i) {
         const std::size_t at = list[0][i] + std::size_t(bins_[0]) * (list[1][j] + std::size_t(bins_[1]) * list[2][k]);
-        for (int b = first_[at]; b >= 0; b = next_[b])
-          if (static_cast<std::size_t>(b) != except && !clear(body, bodies_[b])) return false;
+        for (int b = first_[at]; b >= 0; b = links_[b].next) {
+          if (static_cast<std::size_t>(b) == except || is_far(body.centre, links_[b].centre, reach)) continue;
+          if (!clear(body, bodies_[b])) return false;
+        }
       }
   return true;
 }

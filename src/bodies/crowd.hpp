@@ -20,14 +20,23 @@ public:
   bool has_room_for(const PlacedConvex &body, std::size_t except) const;
 
 private:
+  // What most looks need, two to a cache line: a million bodies are looked at some ten times each.
+  struct Link {
+    Real3 centre;
+    int next;  ///< in the chain of its bin
+  };
+
   std::size_t bin(const Real3 &x) const;
+  bool is_far(const Real3 &a, const Real3 &b, double reach) const;
   bool clear(const PlacedConvex &a, const PlacedConvex &b) const;
 
   GridSpec grid_;
   int dimension_;
   Int3 bins_{1, 1, 1};
+  double widest_ = 0;  ///< largest outer radius
   std::vector<PlacedConvex> bodies_;
-  std::vector<int> first_, next_;  ///< of a bin, of a body: chains
+  std::vector<Link> links_;
+  std::vector<int> first_;  ///< of the chain of a bin
 };
 
 }  // namespace eulastic

@@ -26,7 +26,7 @@ std::vector<Range> ranges(const Grid &grid, const PlacedBody &body, int d) {
   return result;
 }
 
-// A quick refusal, so that far bodies cost nothing: the sphere around the body misses this rank's box.
+// The sphere around the body misses this rank's box.
 bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
   for (int d = 0; d < grid.dimension(); ++d) {
     const double h = grid.spacing()[d], low = grid.layout().begin[d] * h, length = grid.spec().length[d];
@@ -57,8 +57,7 @@ template <class PhaseOf>
 void add_bodies(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                 PhaseOf phase_of) {
   const Surface surface(spec, grid.dimension());
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    if (is_far(grid, places[b], surface.bounding_radius())) continue;
+  for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
     Phase *phase = phase_of(b);
     add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), phase->fraction[0],
              phase->label[0]);
@@ -66,6 +65,15 @@ void add_bodies(const Grid &grid, const SpeciesSpec &spec, const std::vector<Bod
 }
 
 }  // namespace
+
+std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spec,
+                                        const std::vector<BodyPlace> &places) {
+  const double radius = Surface(spec, grid.dimension()).bounding_radius();
+  std::vector<std::size_t> own;
+  for (std::size_t b = 0; b < places.size(); ++b)
+    if (!is_far(grid, places[b], radius)) own.push_back(b);
+  return own;
+}
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   const auto &components = tensor_components(grid.dimension());

@@ -12,10 +12,13 @@ namespace {
 
 constexpr double degrees = 180 / 3.14159265358979323846;
 constexpr int least_rounds = 12, most_rounds = 2000;  // tries of each body to go somewhere else
-constexpr std::size_t all_tries = 1000000;            // as many rounds as these allow
-constexpr int insertions = 2000;                      // tries of each body that the packing has no site for
-constexpr double small_turn = 25;                     // degrees
-constexpr double small_step = 0.3;                    // of the smallest radius
+constexpr int least_rounds_of_copies = 2;
+constexpr std::size_t all_tries = 1000000;  // as many rounds as these allow
+constexpr int insertions = 2000;            // tries of each body that the packing has no site for
+constexpr std::size_t most_single = 20000;  // more bodies begin as copies of a block
+constexpr double block_bodies = 3000;
+constexpr double small_turn = 25;   // degrees
+constexpr double small_step = 0.3;  // of the smallest radius
 constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 
 // Angles about x, y, z of a rotation; inverse of rotation().
@@ -48,8 +51,12 @@ public:
     std::vector<Real3> orientations{spec_.orientation};
     if (spec_.random_orientation && dimension_ == 3) orientations = {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
     if (spec_.random_orientation && dimension_ == 2) orientations = {{}, {0, 0, 90}};
-    const auto sites = find_packing(region_, crowd_, grid_, shape_, orientations, count + count / 2);
+    std::vector<BodyPlace> sites;
+    if (count > most_single) sites = repeat_block(count);
+    const bool repeated = sites.size() >= count;
+    if (!repeated) sites = find_packing(region_, crowd_, grid_, shape_, orientations, count + count / 2);
     places->clear();
+    places->reserve(count);
     for (std::size_t s = 0; s < sites.size() && places->size() < count;
          ++s) {  // in order: neighbours stay near in memory
       if (random_.below(sites.size() - s) >= count - places->size()) continue;
@@ -63,7 +70,7 @@ public:
       places->push_back(place);
       crowd_.add(convex(place));
     }
-    if (places->size() == count) shuffle(places);
+    if (places->size() == count) shuffle(repeated, places);
     return places->size();
   }
 
@@ -80,7 +87,7 @@ private:
     if (spec_.random_orientation) place.orientation = random_.orientation(dimension_);
     return place;
   }
-  BodyPlace nearby(BodyPlace place) {
+  BodyPlace nearby(BodyPlace place, const Rotation &turned) {
     const double step = small_step * shape_.inner_radius();
     for (int d = 0; d < dimension_; ++d) {
       double &x = place.centre[d];
@@ -91,23 +98,59 @@ private:
     if (!spec_.random_orientation) return place;
     Real3 turn{};
     for (int d = dimension_ == 2 ? 2 : 0; d < 3; ++d) turn[d] = random_.between(-small_turn, small_turn);
-    place.orientation = angles(product(rotation(turn), rotation(place.orientation)));
+    place.orientation = angles(product(rotation(turn), turned));
     return place;
   }
 
-  void shuffle(std::vector<BodyPlace> *places) {
+  // A periodic block of the box, seeded by itself, again and again: sites that are at random already. Empty if no block
+  // has enough.
+  std::vector<BodyPlace> repeat_block(std::size_t count) const {
+    const double share = std::min(1.0, block_bodies / double(count)), least = 6 * shape_.outer_radius();
+    const double side = std::pow(share * region_.volume(), 1.0 / dimension_);
+    GridSpec block = grid_;
+    Int3 copies{1, 1, 1};
+    double volume = 1;
+    for (int d = 0; d < dimension_; ++d) {
+      copies[d] = std::max(1, static_cast<int>(grid_.length[d] / std::max(side, least)));
+      block.length[d] /= copies[d];
+      block.boundary[d] = Boundary::periodic;
+      volume *= block.length[d];
+    }
+    SpeciesSpec spec = spec_;
+    spec.name += " block";  // random numbers of its own
+    spec.inside.clear();
+    std::vector<BodyPlace> places, sites;
+    for (const double more : {1.15, 1.05}) {  // some are in the way of walls and earlier species
+      spec.number = static_cast<long>(std::ceil(more * double(count) * volume / region_.volume()));
+      if (!seed_bodies({spec}, 0, block, {}, {}, &places).empty()) continue;
+      sites.clear();
+      for (int k = 0; k < copies[2]; ++k)
+        for (int j = 0; j < copies[1]; ++j)
+          for (int i = 0; i < copies[0]; ++i)
+            for (BodyPlace place : places) {
+              for (int d = 0; d < dimension_; ++d) place.centre[d] += Int3{i, j, k}[d] * block.length[d];
+              if (fits(place, nobody)) sites.push_back(place);
+            }
+      if (sites.size() >= count) return sites;
+    }
+    return {};
+  }
+
+  // Of copies of a block, which are at random, a part is missing by now; small moves take the rest of the likeness.
+  void shuffle(bool copies, std::vector<BodyPlace> *places) {
     std::vector<bool> far(places->size());
     std::size_t moved = places->size();
-    const int rounds = std::clamp(static_cast<int>(all_tries / (places->size() + 1)), least_rounds, most_rounds);
+    const int least = copies ? least_rounds_of_copies : least_rounds;
+    const int rounds = std::clamp(static_cast<int>(all_tries / (places->size() + 1)), least, most_rounds);
     for (int round = 0; round < rounds; ++round) {
-      const bool try_far = rounds > least_rounds || moved > places->size() / 50;  // else not worth the time
+      const bool try_far = rounds > least || (!copies && moved > places->size() / 50);  // else not worth the time
       moved = 0;
       for (std::size_t b = 0; b < places->size(); ++b) {
         if (far[b]) continue;
         BodyPlace to;
         if (try_far) far[b] = fits(to = anywhere(), first_ + b);
         moved += far[b];
-        if (!far[b] && !fits(to = nearby((*places)[b]), first_ + b)) continue;
+        if (!far[b] && !fits(to = nearby((*places)[b], crowd_[first_ + b].rotation), first_ + b)) continue;
         (*places)[b] = to;
         crowd_.move(first_ + b, convex(to));
       }

@@ -25,9 +25,8 @@ struct Turn {
 };
 
 Turn turn(double degrees) {
-  const double angle = std::remainder(degrees, 360.0);
-  if (std::remainder(angle, 90.0) == 0) {
-    const int quarter = static_cast<int>(angle / 90.0);
+  const double angle = std::abs(degrees) <= 180 ? degrees : std::remainder(degrees, 360.0);  // the latter is slow
+  if (const int quarter = static_cast<int>(angle / 90.0); angle == 90.0 * quarter) {
     return {quarter == 0 ? 1.0 : std::abs(quarter) == 2 ? -1.0 : 0.0, std::abs(quarter) == 1 ? double(quarter) : 0.0};
   }
   return {std::cos(angle * (pi / 180)), std::sin(angle * (pi / 180))};

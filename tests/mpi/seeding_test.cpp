@@ -1,6 +1,9 @@
 // A vessel with red cells and platelets at random: the same scene, and the same first steps, on any ranks.
 #include "app/scene.hpp"
+#include "bodies/fill_phase.hpp"
 #include "support/command_line.hpp"
+
+#include <algorithm>
 
 using namespace eulastic;
 
@@ -58,4 +61,34 @@ TEST(BodySeries, OffTheFlowIsTheSame) {
     EXPECT_EQ(hash[1] == flow[on], !on) << "labels are part of the state, or are not there";
   }
   EXPECT_EQ(flow[0], flow[1]);
+}
+
+TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
+  // 125000 bodies of radius 0.4 cells; those with a centre up to a cell and that much outside count.
+  const ParseResult result = parse_line(
+      "-time_end 1 -grid_cells 80,80,80 -grid_length 200,200,200 -species ball -ball_shape sphere -ball_radius 1 "
+      "-ball_shear_modulus 1 -ball_placement lattice -ball_count 50,50,50 -ball_jitter 1");
+  ASSERT_EQ(result.error, "");
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, result.config.grid), 0);
+  const auto &places = result.config.places[0];
+  const auto own = bodies_of_rank(grid, result.config.species[0], places);
+  double most = 1;
+  for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.owned()[d] + 2 * (0.4 + 1) + 2) / 80.0);
+  EXPECT_LE(double(own.size()), most * double(places.size()));
+  // Nobody is left out: every body with its centre in a cell of this rank is there.
+  std::size_t inside = 0;
+  for (const BodyPlace &place : places) {
+    bool here = true;
+    for (int d = 0; d < 3; ++d) {
+      const int cell = static_cast<int>(place.centre[d] / 2.5) - grid.layout().begin[d];
+      here = here && cell >= 0 && cell < grid.owned()[d];
+    }
+    inside += here;
+    EXPECT_TRUE(!here || std::binary_search(own.begin(), own.end(), std::size_t(&place - places.data())));
+  }
+  unsigned long sums[2] = {inside, own.size()};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UNSIGNED_LONG, MPI_SUM, PETSC_COMM_WORLD);
+  EXPECT_EQ(sums[0], places.size());
+  EXPECT_GE(sums[1], places.size());
 }

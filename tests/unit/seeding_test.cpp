@@ -1,8 +1,9 @@
 // Random placement: no overlap, the hematocrit that was asked for, the same scene again, refusals.
-#include "bodies/convex.hpp"
+#include "bodies/crowd.hpp"
 #include "bodies/shapes.hpp"
 #include "support/command_line.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace eulastic;
@@ -144,6 +145,44 @@ TEST(Seeding, OrientationsAreRandomEvenWhenCrowded) {
   }
 }
 
+// More than 20000 begin as copies of a block: still random orientations, no overlap, clear of walls, no two alike.
+TEST(Seeding, ManyBodiesAreNoLattice) {
+  const std::string line =
+      "-time_end 1 -grid_cells 64,64,64 -grid_length 300,240,180 -boundary_y wall -species dot,rbc -dot_shape sphere "
+      "-dot_radius 1 -dot_shear_modulus 1 -dot_placement random -dot_count 500 " +
+      cells + "-rbc_hematocrit 0.2";
+  const ParseResult result = parse_line(line);
+  ASSERT_EQ(result.error, "");
+  const GridSpec &grid = result.config.grid;
+  const SpeciesSpec &dot = result.config.species[0], &rbc = result.config.species[1];
+  const auto &places = result.config.places[1];
+  EXPECT_NEAR(double(places.size()) * shape_volume(rbc, 3), 0.2 * 300 * 240 * 180, 0.5001 * shape_volume(rbc, 3));
+  EXPECT_GT(places.size(), 25000u);
+  Real3 mean{};
+  Crowd crowd(grid, 8.5, places.size());
+  const ConvexBody shape(rbc, 3, 0), ball(dot, 3, 0);
+  for (const BodyPlace &place : result.config.places[0]) crowd.add({&ball, place.centre, rotation({})});
+  for (const BodyPlace &place : places) crowd.add({&shape, place.centre, rotation(place.orientation)});
+  std::size_t touching = 0, outside = 0, alike = 0;
+  std::vector<Real3> centres;
+  for (std::size_t b = 0; b < crowd.size(); ++b) {
+    touching += !crowd.has_room_for(crowd[b], b);
+    const double half = crowd[b].half_width(1);
+    outside += crowd[b].centre[1] < half || crowd[b].centre[1] > 240 - half;
+    if (b < 500) continue;
+    for (int d = 0; d < 3; ++d) mean[d] += crowd[b].rotation[d][1] * crowd[b].rotation[d][1] / double(places.size());
+    centres.push_back(crowd[b].centre);
+  }
+  EXPECT_EQ(touching, 0u);
+  EXPECT_EQ(outside, 0u);
+  std::sort(centres.begin(), centres.end());
+  for (std::size_t b = 1; b < centres.size(); ++b) alike += centres[b][0] == centres[b - 1][0];
+  EXPECT_LT(alike, centres.size() / 100) << "centres with the same x as another";
+  std::printf("  %zu bodies: mean squares of the axes %.3f %.3f %.3f, %zu alike\n", places.size(), mean[0], mean[1],
+              mean[2], alike);
+  for (int d = 0; d < 3; ++d) EXPECT_NEAR(mean[d], 1.0 / 3, 0.06);
+}
+
 TEST(Seeding, SeveralSpeciesInsideATube) {
   std::string line =
       "-time_end 1 -grid_cells 48,32,32 -grid_length 50,27,27 -boundary_y wall -boundary_z wall -species "
@@ -211,6 +250,15 @@ TEST(Seeding, TheSeedIsTheScene) {
                             "-ball_placement random -ball_count 3");
   ASSERT_EQ(finer.size(), one.size());
   for (std::size_t b = 0; b < one.size(); ++b) EXPECT_EQ(one[b].centre, finer[b].centre);
+}
+
+TEST(Seeding, TheCountOfTheCommandLineWins) {
+  const std::string line = box + "-species rbc -rbc_shape sphere -rbc_radius 2 -rbc_shear_modulus 1 -rbc_placement ";
+  const ParseResult random = parse_line(line + "random -rbc_count 5", "-rbc_count 2,2,2");
+  const ParseResult lattice = parse_line(line + "lattice -rbc_count 2,2,2", "-rbc_count 5");
+  EXPECT_EQ(random.error + lattice.error, "");
+  EXPECT_EQ(random.config.places[0].size(), 5u);
+  EXPECT_EQ(lattice.config.places[0].size(), 8u);
 }
 
 TEST(Seeding, TwoDimensions) {
