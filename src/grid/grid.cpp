@@ -113,6 +113,11 @@ int Grid::owner(int i, int j, int k) const {
   return position[0] + processors(0) * (position[1] + processors(1) * position[2]);
 }
 
+InverseSquares Grid::inverse_squares() const {
+  const auto &[x, y, z] = spacing_;
+  return {1 / (x * x), 1 / (y * y), 1 / (z * z)};
+}
+
 double Grid::cell_volume() const { return spacing_[0] * spacing_[1] * (dimension() == 3 ? spacing_[2] : 1.0); }
 
 std::vector<Segment> Grid::rows() const {

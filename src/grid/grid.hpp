@@ -66,6 +66,7 @@ public:
   double cell_count() const { return double(spec_.cells[0]) * spec_.cells[1] * spec_.cells[2]; }
   double owned_count() const { return double(layout_.cells[0]) * layout_.cells[1] * layout_.cells[2]; }
   const Real3 &spacing() const { return spacing_; }
+  InverseSquares inverse_squares() const;
   double cell_volume() const;  ///< area in 2-D
   Boundary boundary(int d) const { return spec_.boundary[d]; }
   bool is_wall(int d) const { return d < dimension() && spec_.boundary[d] == Boundary::wall; }

@@ -23,6 +23,12 @@ struct BasicView {
   operator BasicView<const T>() const noexcept { return {origin, sy, sz}; }
 };
 
+/// 1/h^2 of the three directions. Kernels take a copy: what a pointer leads to could be what they write, and would be
+/// read again for every cell.
+struct InverseSquares {
+  double x, y, z;
+};
+
 using View = BasicView<double>;
 using ConstView = BasicView<const double>;
 

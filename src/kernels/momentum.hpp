@@ -46,11 +46,11 @@ EULASTIC_INLINE void divergence(const Segment &s, ConstView u, ConstView v, Cons
 
 /// Compact Laplacian of a centred field at q[0].
 template <int Dim>
-EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, const double *second) noexcept {
+EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, InverseSquares h) noexcept {
   const double twice = 2 * q[0];
-  double sum = second[0] * ((q[1] + q[-1]) - twice);
-  sum = fma(second[1], (q[sy] + q[-sy]) - twice, sum);
-  if constexpr (Dim == 3) sum = fma(second[2], (q[sz] + q[-sz]) - twice, sum);
+  double sum = h.x * ((q[1] + q[-1]) - twice);
+  sum = fma(h.y, (q[sy] + q[-sy]) - twice, sum);
+  if constexpr (Dim == 3) sum = fma(h.z, (q[sz] + q[-sz]) - twice, sum);
   return sum;
 }
 

@@ -1,4 +1,4 @@
-// The Laplacian on lines of unequal cells, the transfers between two grids row by row, and products of rows.
+// The Laplacian on lines of unequal cells, the transfers between two grids row by row, and sums of products.
 #pragma once
 
 #include "grid/segment.hpp"
@@ -35,7 +35,7 @@ EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy,
 
 /// sum += weight (r - factor lap r): what one relaxation from zero leaves of the right-hand side r.
 template <int Dim>
-EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const LineCoefficients &c, double factor,
+EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, LineCoefficients c, double factor,
                                           double weight, double *sum) noexcept {
   const double *f = r.row(s.j, s.k);
   const std::ptrdiff_t sy = r.sy, sz = r.sz;
@@ -46,7 +46,7 @@ EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const L
 
 /// out = q + factor (r - lap q), one relaxation.
 template <int Dim>
-EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, const LineCoefficients &c, double factor,
+EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, LineCoefficients c, double factor,
                            View out) noexcept {
   const double *old = q.row(s.j, s.k), *f = r.row(s.j, s.k);
   double *next = out.row(s.j, s.k);
@@ -79,17 +79,24 @@ EULASTIC_INLINE void blend(int begin, int end, const double *a, const double *b,
   for (int i = begin; i < end; ++i) out[i] = fma(share, b[i] - a[i], a[i]);
 }
 
-/// Sum of a[i] b[i], at most one block of the exact sums, in eight fixed lanes (absolute index mod 8) and a fixed
-/// tree; the first product has absolute index `first`.
-EULASTIC_INLINE double lane_dot(const double *a, const double *b, int n, std::int64_t first) noexcept {
-  double lane[8] = {};
+/// N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute index mod 8)
+/// and a fixed tree; the first point has absolute index `first`. product(i, add) calls add(s, a, b) for every sum s. All
+/// of them go through the points together: one alone would wait for its own last addition.
+template <int N, class Product>
+EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, double *sum) noexcept {
+  double lane[N][8] = {};
+  const auto at = [&](int i, int l) EULASTIC_BODY {
+    product(i, [&, l](int s, double a, double b) EULASTIC_BODY { lane[s][l] = fma(a, b, lane[s][l]); });
+  };
   int i = 0;
-  for (; i < n && ((first + i) & 7); ++i) lane[(first + i) & 7] = a[i] * b[i];
+  for (; i < n && ((first + i) & 7); ++i) at(i, static_cast<int>((first + i) & 7));
   for (; i + 8 <= n; i += 8)
 #pragma omp simd
-    for (int l = 0; l < 8; ++l) lane[l] = fma(a[i + l], b[i + l], lane[l]);
-  for (int l = 0; i < n; ++i, ++l) lane[l] = fma(a[i], b[i], lane[l]);
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+    for (int l = 0; l < 8; ++l) at(i + l, l);
+  for (int l = 0; i < n; ++i, ++l) at(i, l);
+  for (int s = 0; s < N; ++s)
+    sum[s] = ((lane[s][0] + lane[s][4]) + (lane[s][2] + lane[s][6])) +
+             ((lane[s][1] + lane[s][5]) + (lane[s][3] + lane[s][7]));
 }
 
 }  // namespace eulastic::kernels

@@ -14,8 +14,8 @@ inline constexpr double rkl_stage_flops_2d = 12, rkl_stage_flops_3d = 16;
 
 /// `before` holds W_j-2 and gets W_j. M_1 = slope is read if WithSlope.
 template <int Dim, bool WithSlope>
-EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView now, ConstView rate, ConstView slope,
-                               const double *second, View before) noexcept {
+EULASTIC_INLINE void rkl_stage(const Segment &s, RklStage c, ConstView now, ConstView rate, ConstView slope,
+                               InverseSquares h, View before) noexcept {
   const double *w = now.row(s.j, s.k), *m = rate.row(s.j, s.k), *m1 = WithSlope ? slope.row(s.j, s.k) : m;
   double *out = before.row(s.j, s.k);
   const std::ptrdiff_t sy = now.sy, sz = now.sz;
@@ -25,7 +25,7 @@ EULASTIC_INLINE void rkl_stage(const Segment &s, const RklStage &c, ConstView no
     sum = fma(c.mu, w[i], sum);
     sum = fma(c.rate, m[i], sum);
     sum = WithSlope ? fma(c.slope, m1[i], sum) : sum + 0.0;  // a slope of 0: the same bits, -0 too
-    out[i] = fma(c.viscous, laplacian<Dim>(w + i, sy, sz, second), sum);
+    out[i] = fma(c.viscous, laplacian<Dim>(w + i, sy, sz, h), sum);
   }
 }
 

@@ -77,23 +77,23 @@ struct Surroundings {
 
 // One stage on row (j, k), the points [begin, end).
 template <int Dim>
-EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const double *second, const StageFields &f,
+EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const InverseSquares &h, const StageFields &f,
                                int a, ConstView w, View out, const Segment &row) {
   const ConstView m = (*f.rate)[a];
   if (!f.stressed) {
-    kernels::rkl_stage<Dim, false>(row, c, w, m, m, second, out);
+    kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
     return;
   }
   const ConstView m1 = (*f.slope)[a];
   const bool owned = row.i_begin == 0 && row.i_end == n[0] && row.j >= 0 && row.j < n[1] && row.k >= 0 && row.k < n[2];
   const Segment part = owned ? (*f.stressed)[row.j + std::size_t(n[1]) * row.k] : row;
   if (part.size() == 0) {
-    kernels::rkl_stage<Dim, false>(row, c, w, m, m, second, out);
+    kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
     return;
   }
-  kernels::rkl_stage<Dim, false>({row.i_begin, part.i_begin, row.j, row.k}, c, w, m, m, second, out);
-  kernels::rkl_stage<Dim, true>(part, c, w, m, m1, second, out);
-  kernels::rkl_stage<Dim, false>({part.i_end, row.i_end, row.j, row.k}, c, w, m, m, second, out);
+  kernels::rkl_stage<Dim, false>({row.i_begin, part.i_begin, row.j, row.k}, c, w, m, m, h, out);
+  kernels::rkl_stage<Dim, true>(part, c, w, m, m1, h, out);
+  kernels::rkl_stage<Dim, false>({part.i_end, row.i_end, row.j, row.k}, c, w, m, m, h, out);
 }
 
 // What the next stage reads beside row (j, k) of component a: the points across a periodic x and behind walls.
@@ -128,23 +128,23 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Surroundings &around, int
 // Stages j and j + 1 in one pass over memory: W_j on a slice (a plane, in 2-D a row), then W_j+1 on the one before.
 // `before` holds W_j-2 and gets W_j, `now` holds W_j-1 and gets W_j+1.
 template <int Dim>
-EULASTIC_INLINE void stage_pair(const Grid &grid, const kernels::RklStage *c, const double *second,
+EULASTIC_INLINE void stage_pair(const Grid &grid, const kernels::RklStage *c, const InverseSquares &h,
                                 const Surroundings &around, const StageFields &f) {
   constexpr int last = Dim - 1;
   const Int3 n = grid.owned();
   const Int3 &begin = around.begin, &end = around.end;
   for (int a = 0; a < Dim; ++a) {
     const View now = (*f.now)[a], before = (*f.before)[a];
-    const auto first_stage = [&](int slice) {
+    const auto first_stage = [&](int slice) EULASTIC_BODY {
       for (int r = Dim == 3 ? begin[1] : slice; r < (Dim == 3 ? end[1] : slice + 1); ++r) {
         const int k = Dim == 3 ? slice : 0;
-        stage_row<Dim>(n, c[0], second, f, a, now, before, {begin[0], end[0], r, k});
+        stage_row<Dim>(n, c[0], h, f, a, now, before, {begin[0], end[0], r, k});
         surround_row<Dim>(n, around, a, before, r, k);
       }
     };
-    const auto second_stage = [&](int slice) {
+    const auto second_stage = [&](int slice) EULASTIC_BODY {
       for (int r = Dim == 3 ? 0 : slice; r < (Dim == 3 ? n[1] : slice + 1); ++r)
-        stage_row<Dim>(n, c[1], second, f, a, before, now, {0, n[0], r, Dim == 3 ? slice : 0});
+        stage_row<Dim>(n, c[1], h, f, a, before, now, {0, n[0], r, Dim == 3 ? slice : 0});
     };
     for (int slice = begin[last]; slice < end[last]; ++slice) {
       first_stage(slice);
@@ -154,13 +154,13 @@ EULASTIC_INLINE void stage_pair(const Grid &grid, const kernels::RklStage *c, co
   }
 }
 
-EULASTIC_CLONES void stage_pair_2d(const Grid &grid, const kernels::RklStage *c, const double *second,
+EULASTIC_CLONES void stage_pair_2d(const Grid &grid, const kernels::RklStage *c, const InverseSquares &h,
                                    const Surroundings &around, const StageFields &f) {
-  stage_pair<2>(grid, c, second, around, f);
+  stage_pair<2>(grid, c, h, around, f);
 }
-EULASTIC_CLONES void stage_pair_3d(const Grid &grid, const kernels::RklStage *c, const double *second,
+EULASTIC_CLONES void stage_pair_3d(const Grid &grid, const kernels::RklStage *c, const InverseSquares &h,
                                    const Surroundings &around, const StageFields &f) {
-  stage_pair<3>(grid, c, second, around, f);
+  stage_pair<3>(grid, c, h, around, f);
 }
 
 // to = scale a + b at all owned points; b may be null.
@@ -197,8 +197,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                                FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  double second[3];
-  for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
+  const InverseSquares h = grid.inverse_squares();
   const double first = stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2);  // mu~_1
   if (work.slope) scale_add(grid, -0.5 * dt, work.slope, &work.rate, work.rate);  // the force at the start
   scale_add(grid, first * dt, work.rate, nullptr, work.now);
@@ -216,7 +215,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     const kernels::RklStage pair[2] = {stage_coefficients(j, stages, dt, kinematic_viscosity),
                                        stage_coefficients(j + 1, stages, dt, kinematic_viscosity)};
     (grid.dimension() == 2 ? stage_pair_2d : stage_pair_3d)(
-        grid, pair, second, Surroundings(grid, walls, time, time_of(j)),
+        grid, pair, h, Surroundings(grid, walls, time, time_of(j)),
         {&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before});
   }
   scale_add(grid, 1, work.now, &velocity, velocity_star);

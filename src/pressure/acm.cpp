@@ -1,44 +1,43 @@
 #include "pressure/acm.hpp"
 
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
 #include "kernels/momentum.hpp"
+#include "pressure/row_sums.hpp"
 
 #include <cmath>
-#include <vector>
 
 namespace eulastic {
 namespace {
 
 constexpr int sum_count = 6;  // A1, A2, A3, B1, B2 of (13) and <p> of (6)
 
-struct SumRows {
-  double *product[sum_count];
-};
-
 template <int Dim>
-EULASTIC_INLINE void products(const Segment &s, ConstView divergence, ConstView pressure, const double *second,
-                              const SumRows &rows) {
-  const double *D = divergence.row(s.j, s.k), *p = pressure.row(s.j, s.k);
+EULASTIC_INLINE void add_sums(const Grid &grid, ConstView divergence, ConstView pressure, ExactSums &sums) {
+  const Int3 n = grid.owned();
+  const std::int64_t begin = grid.layout().begin[0];
+  const InverseSquares h = grid.inverse_squares();
   const std::ptrdiff_t sy = divergence.sy, sz = divergence.sz;
-#pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i) {
-    const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, second);
-    const double lap_p = kernels::laplacian<Dim>(p + i, sy, sz, second);
-    rows.product[0][i] = -D[i] * lap_D;
-    rows.product[1][i] = lap_D * lap_D;
-    rows.product[2][i] = lap_p * lap_p;
-    rows.product[3][i] = D[i] * lap_p;
-    rows.product[4][i] = lap_D * lap_p;
-    rows.product[5][i] = p[i];
-  }
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const double *D = divergence.row(j, k), *p = pressure.row(j, k);
+      const auto products = [=](int i, auto add) EULASTIC_BODY {
+        const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h), lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
+        add(0, -D[i], lap_D);
+        add(1, lap_D, lap_D);
+        add(2, lap_p, lap_p);
+        add(3, D[i], lap_p);
+        add(4, lap_D, lap_p);
+        add(5, p[i], 1);
+      };
+      add_row_sums<sum_count>(n[0], begin, products, sums);
+    }
 }
 
-EULASTIC_CLONES void products_2d(const Segment &s, ConstView D, ConstView p, const double *second, const SumRows &r) {
-  products<2>(s, D, p, second, r);
+EULASTIC_CLONES void add_sums_2d(const Grid &grid, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<2>(grid, D, p, s);
 }
-EULASTIC_CLONES void products_3d(const Segment &s, ConstView D, ConstView p, const double *second, const SumRows &r) {
-  products<3>(s, D, p, second, r);
+EULASTIC_CLONES void add_sums_3d(const Grid &grid, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<3>(grid, D, p, s);
 }
 
 EULASTIC_CLONES void increment_rows(const Grid &grid, double kappa, double g, double inverse_dt, double mean,
@@ -72,19 +71,9 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
 PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
-  const Int3 n = grid_->owned();
   const int dim = grid_->dimension();
-  double second[3];
-  for (int d = 0; d < 3; ++d) second[d] = 1 / (grid_->spacing()[d] * grid_->spacing()[d]);
-  std::vector<double> scratch(static_cast<std::size_t>(n[0]) * sum_count);
-  SumRows rows;
-  for (int s = 0; s < sum_count; ++s) rows.product[s] = scratch.data() + static_cast<std::size_t>(s) * n[0];
   ExactSums sums(sum_count);
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
-      (dim == 2 ? products_2d : products_3d)({0, n[0], j, k}, divergence[0], pressure[0], second, rows);
-      for (int s = 0; s < sum_count; ++s) sums.add_row(s, rows.product[s], n[0], grid_->layout().begin[0]);
-    }
+  (dim == 2 ? add_sums_2d : add_sums_3d)(*grid_, divergence[0], pressure[0], sums);
   double total[sum_count];
   PetscCall(sums.reduce(grid_->comm(), total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});

@@ -1,9 +1,9 @@
 #include "pressure/acm_sweeps.hpp"
 
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
 #include "field/walls.hpp"
 #include "kernels/momentum.hpp"
+#include "pressure/row_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,14 @@ constexpr int most = SweepSums::most;
 
 // The Laplacians of all directions on one row, into rows of `pitch` doubles.
 template <int Dim>
-EULASTIC_INLINE void laplacians(const Segment &s, const ConstView *q, int count, const double *second, double *rows,
+EULASTIC_INLINE void laplacians(const Segment &s, const ConstView *q, int count, InverseSquares h, double *rows,
                                 std::ptrdiff_t pitch) {
   for (int f = 0; f < count; ++f) {
     const double *from = q[f].row(s.j, s.k);
     double *to = rows + f * pitch;
     const std::ptrdiff_t sy = q[f].sy, sz = q[f].sz;
 #pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i) to[i] = kernels::laplacian<Dim>(from + i, sy, sz, second);
+    for (int i = s.i_begin; i < s.i_end; ++i) to[i] = kernels::laplacian<Dim>(from + i, sy, sz, h);
   }
 }
 
@@ -33,33 +33,46 @@ struct SumTask {
   ConstView residual;
   const ConstView *q;
   int count;
-  const double *second;
+  InverseSquares h;
   double *rows;
 };
 
 constexpr int sum_count(int directions) { return 2 + directions + directions * (directions + 1) / 2; }
 
-template <int Dim>
+template <int Dim, int Directions>
 EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
   const Int3 n = t.grid->owned();
   const std::int64_t begin = t.grid->layout().begin[0];
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
-      laplacians<Dim>({0, n[0], j, k}, t.q, t.count, t.second, t.rows, n[0]);
+      laplacians<Dim>({0, n[0], j, k}, t.q, Directions, t.h, t.rows, n[0]);
       const double *D = t.residual.row(j, k), *q0 = t.q[0].row(j, k);
-      for (int i = 0; i < n[0];) {
-        const int length = std::min<int>(n[0] - i, ExactSums::block - static_cast<int>((begin + i) % ExactSums::block));
-        const std::int64_t first = begin + i;
+      const double *L = t.rows;
+      const std::ptrdiff_t pitch = n[0];
+      const auto products = [=](int i, auto add) EULASTIC_BODY {
         int s = 0;
-        sums.add(s++, kernels::lane_dot(D + i, D + i, length, first));
-        sums.add(s++, lane_sum(q0 + i, length, first));
-        for (int f = 0; f < t.count; ++f) sums.add(s++, kernels::lane_dot(D + i, t.rows + f * n[0] + i, length, first));
-        for (int f = 0; f < t.count; ++f)
-          for (int g = 0; g <= f; ++g)
-            sums.add(s++, kernels::lane_dot(t.rows + f * n[0] + i, t.rows + g * n[0] + i, length, first));
-        i += length;
-      }
+        add(s++, D[i], D[i]);
+        add(s++, q0[i], 1);
+#pragma GCC unroll 4
+        for (int f = 0; f < Directions; ++f) add(s++, D[i], L[f * pitch + i]);
+#pragma GCC unroll 4
+        for (int f = 0; f < Directions; ++f)
+#pragma GCC unroll 4
+          for (int g = 0; g <= f; ++g) add(s++, L[f * pitch + i], L[g * pitch + i]);
+      };
+      add_row_sums<sum_count(Directions)>(n[0], begin, products, sums);
     }
+}
+
+template <int Dim>
+EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
+  static_assert(most == 4, "one case for every number of directions");
+  switch (t.count) {
+    case 1: return add_sums<Dim, 1>(t, sums);
+    case 2: return add_sums<Dim, 2>(t, sums);
+    case 3: return add_sums<Dim, 3>(t, sums);
+    default: return add_sums<Dim, 4>(t, sums);
+  }
 }
 
 EULASTIC_CLONES void add_sums_2d(const SumTask &t, ExactSums &sums) { add_sums<2>(t, sums); }
@@ -70,7 +83,8 @@ struct StepTask {
   const Grid *grid;
   const ConstView *q;
   int count;
-  const double *coefficient, *second;
+  const double *coefficient;
+  InverseSquares h;
   double shift, scale;
   bool last;  // leaves D and d alone
   ConstView residual;
@@ -82,10 +96,12 @@ template <int Dim>
 EULASTIC_INLINE void take_step(const StepTask &t) {
   const Int3 n = t.grid->owned();
   const int gz = Dim == 3 ? 1 : 0;
+  const InverseSquares h = t.h;
+  const double shift = t.shift, scale = t.scale;
   for (int k = -gz; k < n[2] + gz; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       double *d = t.row + 8;
-      for (int i = -1; i < n[0] + 1; ++i) d[i] = -t.shift;
+      for (int i = -1; i < n[0] + 1; ++i) d[i] = -shift;
       for (int f = 0; f < t.count; ++f) {
         const double *q = t.q[f].row(j, k), c = t.coefficient[f];
 #pragma omp simd
@@ -93,7 +109,7 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
       }
       double *increment = t.increment.row(j, k);
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) increment[i] = kernels::fma(t.scale, d[i], increment[i]);
+      for (int i = -1; i < n[0] + 1; ++i) increment[i] = kernels::fma(scale, d[i], increment[i]);
       if (t.last) continue;
       std::copy(d - 1, d + n[0] + 1, t.new_direction.row(j, k) - 1);
       if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
@@ -105,19 +121,13 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
         const double *old = f == 0 ? from : D;
 #pragma omp simd
         for (int i = 0; i < n[0]; ++i)
-          D[i] = kernels::fma(-c, kernels::laplacian<Dim>(q + i, sy, sz, t.second), old[i]);
+          D[i] = kernels::fma(-c, kernels::laplacian<Dim>(q + i, sy, sz, h), old[i]);
       }
     }
 }
 
 EULASTIC_CLONES void take_step_2d(const StepTask &t) { take_step<2>(t); }
 EULASTIC_CLONES void take_step_3d(const StepTask &t) { take_step<3>(t); }
-
-std::array<double, 3> inverse_squares(const Grid &grid) {
-  std::array<double, 3> second;
-  for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
-  return second;
-}
 
 }  // namespace
 
@@ -212,10 +222,9 @@ PetscErrorCode AcmSweepSolver::start(const FieldBlock &divergence) {
 PetscErrorCode AcmSweepSolver::find_minimum(SweepMinimum *minimum, double *mean) {
   PetscFunctionBeginUser;
   const int count = static_cast<int>(directions_.size());
-  const auto second = inverse_squares(*grid_);
   ExactSums exact(sum_count(count));
   (grid_->dimension() == 2 ? add_sums_2d : add_sums_3d)(
-      {grid_, residual_[0], directions_.data(), count, second.data(), rows_.data()}, exact);
+      {grid_, residual_[0], directions_.data(), count, grid_->inverse_squares(), rows_.data()}, exact);
   double total[sum_count(most)];
   PetscCall(exact.reduce(grid_->comm(), total));
   SweepSums sums;
@@ -231,11 +240,10 @@ PetscErrorCode AcmSweepSolver::find_minimum(SweepMinimum *minimum, double *mean)
 }
 
 void AcmSweepSolver::step(bool last, double dt, const SweepMinimum &minimum, double mean, FieldBlock &increment) {
-  const auto second = inverse_squares(*grid_);
   // The stencils read D, when it is a direction itself, and d: the new ones go elsewhere.
   FieldBlock &new_residual = multigrid_ ? residual_ : correction_;
   (grid_->dimension() == 2 ? take_step_2d : take_step_3d)(
-      {grid_, directions_.data(), static_cast<int>(directions_.size()), minimum.coefficient, second.data(),
+      {grid_, directions_.data(), static_cast<int>(directions_.size()), minimum.coefficient, grid_->inverse_squares(),
        minimum.coefficient[0] * mean, 1 / dt, last, residual_[0], new_residual[0], scratch_[0], increment[0],
        rows_.data()});
   if (last) return;

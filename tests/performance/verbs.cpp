@@ -42,7 +42,7 @@ void verb(benchmark::State &state, Make make) {
 }
 
 #define EULASTIC_NAMED(name)                                                              \
-  BENCHMARK(name)->Arg(64)->Iterations(16)->UseRealTime()->Unit(benchmark::kMillisecond); \
+  BENCHMARK(name)->Arg(32)->Iterations(64)->UseRealTime()->Unit(benchmark::kMillisecond); \
   BENCHMARK(name)->Arg(128)->Iterations(2)->UseRealTime()->Unit(benchmark::kMillisecond)
 
 #define EULASTIC_VERB(name, bytes, expression)                                                    \

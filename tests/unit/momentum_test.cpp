@@ -140,13 +140,12 @@ TEST(Divergence, ExactOnQuadratics) {
 TEST(Laplacian, ExactOnQuadratics) {
   for (const bool flat : {false, true}) {
     Flow flow(flat, 2, 6);
-    double second[3];
-    for (int d = 0; d < 3; ++d) second[d] = 1 / (flow.grid.spacing()[d] * flow.grid.spacing()[d]);
+    const InverseSquares h = flow.grid.inverse_squares();
     const ConstView p = flow.pressure[0];
     for (const Segment &s : flow.grid.rows())
       for (int i = 0; i < s.i_end; ++i) {
         const double *q = p.row(s.j, s.k) + i;
-        EXPECT_NEAR(flat ? kernels::laplacian<2>(q, p.sy, p.sz, second) : kernels::laplacian<3>(q, p.sy, p.sz, second),
+        EXPECT_NEAR(flat ? kernels::laplacian<2>(q, p.sy, p.sz, h) : kernels::laplacian<3>(q, p.sy, p.sz, h),
                     flow.p.laplacian(flow.grid.dimension()), 5e-13);
       }
   }
