@@ -26,13 +26,13 @@ double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
   const double tensor = dimension == 2 ? 3 : 6, phases = double(config.species.size());
+  const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
+             thinc = method.interface == InterfaceScheme::thinc;
   double sum = 2 * dimension + 3;
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
-    sum += 4 + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // sweeps, coarse grids
-  const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
-             thinc = method.interface == InterfaceScheme::thinc;
+    sum += (work ? 0 : 4) + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // coarse grids
   if (work) sum += 2 * dimension;
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (phases == 0) return sum;
@@ -48,7 +48,7 @@ double ghosted_cells(const Config &config, const Int3 &parts) {
   double cells = 1;
   for (int d = 0; d < 3; ++d)
     cells *=
-        std::ceil(double(config.grid.cells[d]) / parts[d]) + (d < dimension_of(config) ? 2 * Grid::ghost_width : 0);
+        std::ceil(double(config.grid.cells[d]) / parts[d]) + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
   return cells;
 }
 

@@ -146,6 +146,9 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
     if (!spec.centre_given) spec.centre = {length[0] / 2, length[1] / 2, length[2] / 2};
   }
   if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
+  const Method &method = config->method;
+  const bool paper = method.interface == InterfaceScheme::weno5 && method.exterior == SolidExterior::identity;
+  if (paper || config->species.empty()) config->grid.ghosts = Grid::stencil_width;
   return validate(config);
 }
 

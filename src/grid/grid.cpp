@@ -19,7 +19,8 @@ std::vector<int> split(int cells, int parts, bool in_blocks) {
   if (in_blocks && cells >= sum_block * parts) unit = sum_block;
   const std::int64_t units = (cells + unit - 1) / unit;
   std::vector<int> starts(parts + 1);
-  for (int p = 0; p <= parts; ++p) starts[p] = static_cast<int>(std::min<std::int64_t>(cells, units * p / parts * unit));
+  for (int p = 0; p <= parts; ++p)
+    starts[p] = static_cast<int>(std::min<std::int64_t>(cells, units * p / parts * unit));
   return starts;
 }
 
@@ -85,10 +86,10 @@ Layout Grid::make_layout(const Int3 &position) const {
   for (int d = 0; d < 3; ++d) {
     layout.begin[d] = starts_[d][position[d]];
     layout.cells[d] = starts_[d][position[d] + 1] - layout.begin[d];
-    layout.ghosts[d] = d < dimension() ? ghost_width : 0;
+    layout.ghosts[d] = d < dimension() ? spec_.ghosts : 0;
   }
   // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets.
-  layout.sy = round_up(layout.cells[0] + 2 * ghost_width + is_wall(0), 8);
+  layout.sy = round_up(layout.cells[0] + 2 * spec_.ghosts + is_wall(0), 8);
   if (layout.sy % 64 == 0) layout.sy += 8;
   layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1] + is_wall(1));
   if (layout.sz % 512 == 0) layout.sz += 8;
@@ -144,14 +145,14 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
     spacing_[d] = spec.length[d] / spec.cells[d];
     starts_[d] = split(spec.cells[d], ranks[d], d == 0);
     for (int p = 0; p < ranks[d]; ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
-    type[d] = d >= dimension()                           ? DM_BOUNDARY_NONE
+    type[d] = d >= dimension()                         ? DM_BOUNDARY_NONE
               : spec.boundary[d] == Boundary::periodic ? DM_BOUNDARY_PERIODIC
-                                                         : DM_BOUNDARY_GHOSTED;
+                                                       : DM_BOUNDARY_GHOSTED;
   }
   layout_ = make_layout({rank_ % ranks[0], rank_ / ranks[0] % ranks[1], rank_ / ranks[0] / ranks[1]});
-  PetscCall(DMDACreate3d(comm, type[0], type[1], type[2], DMDA_STENCIL_BOX, spec.cells[0], spec.cells[1],
-                         spec.cells[2], ranks[0], ranks[1], ranks[2], 1, stencil_width, counts[0].data(),
-                         counts[1].data(), counts[2].data(), dm_.put()));
+  PetscCall(DMDACreate3d(comm, type[0], type[1], type[2], DMDA_STENCIL_BOX, spec.cells[0], spec.cells[1], spec.cells[2],
+                         ranks[0], ranks[1], ranks[2], 1, stencil_width, counts[0].data(), counts[1].data(),
+                         counts[2].data(), dm_.put()));
   PetscCall(DMSetUp(dm_.get()));
   PetscFunctionReturn(0);
 }
@@ -172,7 +173,8 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
       for (int p = 1; p < processors(d); ++p)
         result.starts_[d].push_back(std::min(cells[d], (starts_[d][p] + stride - 1) / stride));
       position[d] = static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), layout_.begin[d]) -
-                                     starts_[d].begin()) - 1;
+                                     starts_[d].begin()) -
+                    1;
     }
     result.starts_[d].push_back(cells[d]);
   }

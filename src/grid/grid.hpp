@@ -19,10 +19,11 @@ using Int3 = std::array<int, 3>;
 using Real3 = std::array<double, 3>;
 
 struct GridSpec {
-  Int3 cells{64, 64, 64};                ///< N_x, N_y, N_z; N_z = 1 is 2-D
-  Real3 length{1, 1, 1};                 ///< box, any length unit
-  std::array<Boundary, 3> boundary{};    ///< both sides of a direction alike; ignored in z when 2-D
-  Int3 processors{0, 0, 0};              ///< ranks per direction, 0 = chosen here
+  Int3 cells{64, 64, 64};              ///< N_x, N_y, N_z; N_z = 1 is 2-D
+  Real3 length{1, 1, 1};               ///< box, any length unit
+  std::array<Boundary, 3> boundary{};  ///< both sides of a direction alike; ignored in z when 2-D
+  Int3 processors{0, 0, 0};            ///< ranks per direction, 0 = chosen here
+  int ghosts = 5;                      ///< layers in memory: WENO5 reads three, B outside bodies takes five
 };
 
 /// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the
@@ -41,7 +42,6 @@ struct Layout {
 
 class Grid {
 public:
-  static constexpr int ghost_width = 5;    ///< layers in memory: four of B outside bodies, and the centres of their edges
   static constexpr int stencil_width = 3;  ///< layers that WENO5 reads; also the fewest cells of a rank
 
   /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, or by order) and makes

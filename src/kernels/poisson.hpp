@@ -79,9 +79,9 @@ EULASTIC_INLINE void blend(int begin, int end, const double *a, const double *b,
   for (int i = begin; i < end; ++i) out[i] = fma(share, b[i] - a[i], a[i]);
 }
 
-/// N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute index mod 8)
-/// and a fixed tree; the first point has absolute index `first`. product(i, add) calls add(s, a, b) for every sum s. All
-/// of them go through the points together: one alone would wait for its own last addition.
+/// N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute index mod
+/// 8) and a fixed tree; the first point has absolute index `first`. product(i, add) calls add(s, a, b) for every sum s.
+/// All of them go through the points together: one alone would wait for its own last addition.
 template <int N, class Product>
 EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, double *sum) noexcept {
   double lane[N][8] = {};

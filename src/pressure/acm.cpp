@@ -21,7 +21,8 @@ EULASTIC_INLINE void add_sums(const Grid &grid, ConstView divergence, ConstView 
     for (int j = 0; j < n[1]; ++j) {
       const double *D = divergence.row(j, k), *p = pressure.row(j, k);
       const auto products = [=](int i, auto add) EULASTIC_BODY {
-        const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h), lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
+        const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h),
+                     lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
         add(0, -D[i], lap_D);
         add(1, lap_D, lap_D);
         add(2, lap_p, lap_p);
@@ -49,8 +50,7 @@ EULASTIC_CLONES void increment_rows(const Grid &grid, double kappa, double g, do
       const double *DD = D.row(j, k), *pp = p.row(j, k);
       double *dp = out.row(j, k);
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i)
-        dp[i] = -inverse_dt * kernels::fma(kappa, DD[i], g * (pp[i] - mean)) - mean;
+      for (int i = -1; i < n[0] + 1; ++i) dp[i] = -inverse_dt * kernels::fma(kappa, DD[i], g * (pp[i] - mean)) - mean;
     }
 }
 
@@ -62,7 +62,7 @@ double AcmCoefficients::relaxation() const { return kappa > 0 ? g / kappa : 0; }
 AcmCoefficients acm_coefficients(const AcmSums &s) {
   if (!(s.A2 > 0)) return {};
   const double determinant = s.A2 * s.A3 - s.B2 * s.B2;
-  const double kappa = s.A1 * s.A3 + s.B1 * s.B2;   // times the determinant
+  const double kappa = s.A1 * s.A3 + s.B1 * s.B2;  // times the determinant
   const double g = -(s.B1 * s.A2 + s.A1 * s.B2);
   if (determinant > 1e-12 * s.A2 * s.A3 && kappa > 0 && g >= 0) return {kappa / determinant, g / determinant};
   return {s.A1 / s.A2, 0};

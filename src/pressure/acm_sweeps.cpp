@@ -68,10 +68,14 @@ template <int Dim>
 EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
   static_assert(most == 4, "one case for every number of directions");
   switch (t.count) {
-    case 1: return add_sums<Dim, 1>(t, sums);
-    case 2: return add_sums<Dim, 2>(t, sums);
-    case 3: return add_sums<Dim, 3>(t, sums);
-    default: return add_sums<Dim, 4>(t, sums);
+    case 1:
+      return add_sums<Dim, 1>(t, sums);
+    case 2:
+      return add_sums<Dim, 2>(t, sums);
+    case 3:
+      return add_sums<Dim, 3>(t, sums);
+    default:
+      return add_sums<Dim, 4>(t, sums);
   }
 }
 
@@ -120,8 +124,7 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
         const std::ptrdiff_t sy = t.q[f].sy, sz = t.q[f].sz;
         const double *old = f == 0 ? from : D;
 #pragma omp simd
-        for (int i = 0; i < n[0]; ++i)
-          D[i] = kernels::fma(-c, kernels::laplacian<Dim>(q + i, sy, sz, h), old[i]);
+        for (int i = 0; i < n[0]; ++i) D[i] = kernels::fma(-c, kernels::laplacian<Dim>(q + i, sy, sz, h), old[i]);
       }
     }
 }
@@ -131,7 +134,8 @@ EULASTIC_CLONES void take_step_3d(const StepTask &t) { take_step<3>(t); }
 
 }  // namespace
 
-PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options) {
+PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options,
+                                      FieldBlock work) {
   PetscFunctionBeginUser;
   PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= most, grid.comm(),
              PETSC_ERR_ARG_OUTOFRANGE, "sweeps %d, memory %d", options.sweeps_max, options.memory);
@@ -142,10 +146,9 @@ PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange,
     multigrid_ = std::make_unique<Multigrid>();
     PetscCall(multigrid_->create(grid));
   }
-  residual_ = FieldBlock(grid, 1);
-  correction_ = FieldBlock(grid, 1);
-  direction_ = FieldBlock(grid, 1);
-  scratch_ = FieldBlock(grid, 1);
+  work_ = std::move(work);
+  int next = 0;
+  for (FieldBlock *field : {&residual_, &correction_, &direction_, &scratch_}) *field = work_.part(next++, 1);
   if (options.memory > 0) memory_ = FieldBlock(grid, options.memory);
   rows_.resize(static_cast<std::size_t>(grid.owned()[0] + 16) * (most + 1));
   PetscFunctionReturn(0);
@@ -157,8 +160,7 @@ FieldBlock *AcmSweepSolver::memory() {
 }
 
 std::size_t AcmSweepSolver::bytes() const {
-  return residual_.bytes() + correction_.bytes() + direction_.bytes() + scratch_.bytes() + memory_.bytes() +
-         (multigrid_ ? multigrid_->bytes() : 0);
+  return work_.bytes() + memory_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
 }
 
 PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {

@@ -19,8 +19,10 @@ struct AcmSweepOptions {
 
 class AcmSweepSolver final : public PressureSolver {
 public:
-  /// Collective; `grid` and `exchange` must outlive the solver.
-  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options);
+  static constexpr int work_fields = 4;
+  /// Collective; `grid` and `exchange` must outlive the solver. `work`: fields that nobody else uses during a solve;
+  /// they keep nothing from one to the next.
+  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options, FieldBlock work);
 
   /// The increment has zero mean. It is NaN where D is not finite anywhere.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
@@ -44,9 +46,10 @@ private:
   GhostExchange *exchange_ = nullptr;
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
-  FieldBlock residual_, correction_, direction_, scratch_, memory_;
-  std::vector<ConstView> directions_;  ///< of this sweep
-  std::vector<double> rows_;           ///< scratch, one row per direction and one more
+  FieldBlock work_, residual_, correction_, direction_, scratch_;  ///< the first holds the others
+  FieldBlock memory_;                                              ///< the newest increment first
+  std::vector<ConstView> directions_;                              ///< of this sweep
+  std::vector<double> rows_;                                       ///< scratch, one row per direction and one more
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
   bool ghosts_of_memory_ = true;  ///< valid

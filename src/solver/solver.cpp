@@ -22,6 +22,8 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   spec_ = spec;
   const int dim = grid.dimension();
   exchange_ = std::make_unique<GhostExchange>(grid);
+  if (spec.staggered() || spec.viscous == ViscousScheme::rkl)
+    work_ = FieldBlock(grid, 2 * dim);  // enough for what solids need before the predictor, and the pressure after it
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
   } else if (spec.pressure == PressureKind::ksp) {
@@ -32,7 +34,9 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
   } else {
     auto sweeps = std::make_unique<AcmSweepSolver>();
-    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}));
+    constexpr int count = AcmSweepSolver::work_fields;
+    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse},
+                             work_ ? work_.part(0, count) : FieldBlock(grid, count)));
     pressure_solver_ = std::move(sweeps);
   }
   now_.velocity = FieldBlock(grid, dim);
@@ -41,8 +45,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   divergence_ = FieldBlock(grid, 1);
   increment_ = FieldBlock(grid, 1);
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
-  if (spec.staggered() || spec.viscous == ViscousScheme::rkl) {
-    work_ = FieldBlock(grid, 2 * dim);  // enough for what the transport of solids needs before the predictor
+  if (work_) {
     viscous_.rate = work_.part(0, dim);
     viscous_.before = work_.part(dim, dim);
   }
@@ -71,7 +74,7 @@ PetscErrorCode Solver::prepare() {
 // Ghosts, B outside the bodies and active segments of a phase whose owned cells are set.
 PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
-  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
@@ -86,7 +89,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
-    PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+    PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
     PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
   }
@@ -221,7 +224,7 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
   }
-  PetscCall(update_centre_ghosts(phase.fraction, Grid::ghost_width));
+  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));

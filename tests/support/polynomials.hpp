@@ -77,7 +77,7 @@ inline void randomise(const Grid &grid, FieldBlock &block, Random &random, doubl
   for (int f = 0; f < block.count(); ++f)
     set(grid, block[f], at_centre, [&](double, double, double) { return mean + random(); });
   GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update(block, Grid::ghost_width), 0);
+  EXPECT_EQ(exchange.update(block, grid.spec().ghosts), 0);
 }
 
 /// 3-D (or 2-D) periodic box with three different spacings.

@@ -21,8 +21,8 @@ TEST(CheckOnly, NumbersOfAChannel) {
   has("velocity scale (estimate): 1");
   has("Reynolds number: 4 (length 2)");
   has("capillary number of a: 0.5 (viscosity x shear rate / shear modulus)");
-  has("hematocrit: 0.19635");  // 2 pi/4 / 8
-  const double ghosts = 2 * Grid::ghost_width;
+  has("hematocrit: 0.19635");   // 2 pi/4 / 8
+  const double ghosts = 2 * 3;  // of the paper's method
   char memory[64];  // 16 fields: u, v now and predicted, p, D, dp; phi, label, 3 of B; phi and B being computed
   std::snprintf(memory, sizeof memory, "%.4g GB per rank; this", 8e-9 * 16 * (16 + ghosts) * (4 + ghosts));
   EXPECT_NE(report.find(memory), std::string::npos) << report;
@@ -39,7 +39,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
   const std::string two =
       "-time_end 1 -grid_cells 16,16,16 -grid_length 8,8,8 -species cell -cell_shape sphere "
       "-cell_radius 1 -cell_shear_modulus 1 -cell_placement lattice -cell_count 2,1,1 ";
-  std::snprintf(memory, sizeof memory, "near: %.4g GB more per rank", 8e-9 * 8 * std::pow(16 + ghosts, 3));
+  std::snprintf(memory, sizeof memory, "near: %.4g GB more per rank", 8e-9 * 8 * std::pow(16 + 2 * 5, 3));
   EXPECT_NE(check_report(parse_line(two).config, 1).find(memory), std::string::npos);
   EXPECT_EQ(check_report(parse_line(two + "-cell_contact merge").config, 1).find("come near"), std::string::npos);
   EXPECT_EQ(report.find("come near"), std::string::npos);

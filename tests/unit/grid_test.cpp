@@ -100,7 +100,7 @@ TEST(GridGeometry, SpacingVolumeAndWalls) {
   EXPECT_EQ(grid.cell_volume(), .1875);
   EXPECT_FALSE(grid.is_wall(2) || grid.touches_low(2) || grid.touches_high(2));
   EXPECT_EQ(grid.points_end(2, true), 1);
-  EXPECT_EQ(grid.layout().ghosts, (Int3{Grid::ghost_width, Grid::ghost_width, 0}));
+  EXPECT_EQ(grid.layout().ghosts, (Int3{5, 5, 0}));
 }
 
 TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
