@@ -1,5 +1,6 @@
 #include "io/hdf5_file.hpp"
 
+#include "io/deadline.hpp"
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
@@ -21,7 +22,8 @@ Hdf5Property parallel_access(MPI_Comm comm) {
   return access;
 }
 
-// MPI-IO does not say why it cannot open a file; the system does.
+// MPI-IO does not say why it cannot open a file; the system does. Every rank tries: one that alone does not see the
+// directory would wait inside MPI-IO, and the others elsewhere.
 std::string try_to_open(const std::string &path, int flags) {
   const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return "cannot open " + path + ": " + std::strerror(errno);
@@ -57,7 +59,9 @@ PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
   const std::string target = temporary_name(path);
   PetscCall(fail_together(comm, mpi_rank_ == 0 ? try_to_open(target, O_WRONLY | O_CREAT | O_TRUNC) : std::string()));
   writing_ = true;
+  PetscCall(fail_together(comm, try_to_open(target, O_WRONLY)));
   const Hdf5Property access = parallel_access(comm);
+  const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
   PetscCall(check(bool(file_), "cannot create this HDF5 file"));
   PetscFunctionReturn(0);
@@ -68,8 +72,9 @@ PetscErrorCode Hdf5File::open(MPI_Comm comm, const std::string &path) {
   PetscCallMPI(MPI_Comm_rank(comm, &mpi_rank_));
   comm_ = comm;
   path_ = path;
-  PetscCall(fail_together(comm, mpi_rank_ == 0 ? try_to_open(path, O_RDONLY) : std::string()));
+  PetscCall(fail_together(comm, try_to_open(path, O_RDONLY)));
   const Hdf5Property access = parallel_access(comm);
+  const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
   PetscCall(check(bool(file_), "not an HDF5 file, or a damaged or truncated one"));
   PetscFunctionReturn(0);

@@ -59,6 +59,20 @@ class Faults(Restart):
             with self.subTest(rank):
                 self.assertEqual(len(self.fails("flush", "EulWrite", rank)), 1)
 
+    def test_opening_on_one_rank(self):
+        for kind, rank in (("size", 0), ("bcast", 1)):  # both ranks wait inside HDF5
+            with self.subTest(kind):
+                lines = self.fails(kind, "EulWrite", rank)
+                self.assertEqual(len(lines), 1, lines)
+                self.assertIn("not open after", lines[0])
+
+    def test_directory_that_one_rank_does_not_see(self):
+        for rank in (0, 1):
+            with self.subTest(rank):
+                lines = self.fails("absent", "EulWrite", rank)
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], "cannot open .*: No such file")
+
     def test_disk_of_one_rank(self):
         for which in (0, 1):
             with self.subTest(which):

@@ -2,15 +2,23 @@
 // COUNT-th time RANK begins VERB (a name of base/events.cpp)
 //   memory   an allocation fails
 //   error    its next MPI call returns an error
+//   size     it cannot tell HDF5 the size of the next file that is opened
+//   bcast    it does not hear what another rank tells while HDF5 opens the next file
+//   absent   it cannot open files that are being written
 //   flush    its next H5Fflush fails, and it alone does not take part
 //   crash    it meets SIGSEGV
 //   exit     it leaves without a word
+// Deadline (io/deadline.hpp) waits two seconds, not five minutes.
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <hdf5.h>
 #include <petscsys.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -26,7 +34,7 @@ namespace {
 
 char kind[16], verb[32];
 int wanted_rank = -1, left = 0;
-bool next_call_fails = false, next_flush_fails = false;
+bool next_call_fails = false, met = false;
 
 PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscObject, PetscObject) {
   if (left <= 0 || std::strcmp(petsc_stageLog->eventLog->eventInfo[event].name, verb) != 0) return 0;
@@ -37,8 +45,15 @@ PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscOb
   if (!std::strcmp(kind, "memory")) throw std::bad_alloc();
   if (!std::strcmp(kind, "crash")) std::raise(SIGSEGV);
   if (!std::strcmp(kind, "exit")) _exit(0);
-  (std::strcmp(kind, "flush") ? next_call_fails : next_flush_fails) = true;
+  (std::strcmp(kind, "error") ? met : next_call_fails) = true;
   return 0;
+}
+
+bool meets(const char *fault) { return met && !std::strcmp(kind, fault); }
+
+template <class Function>
+Function *next(const char *name) {
+  return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
 }
 
 int fails() {
@@ -77,10 +92,30 @@ int MPI_Bcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm com
   return failed ? failed : PMPI_Bcast(buffer, count, type, root, comm);
 }
 
+int MPI_File_open(MPI_Comm comm, const char *name, int mode, MPI_Info info, MPI_File *file) {
+  next_call_fails = meets("bcast");
+  return PMPI_File_open(comm, name, mode, info, file);
+}
+
+int MPI_File_get_size(MPI_File file, MPI_Offset *size) {
+  return meets("size") ? MPI_ERR_IO : PMPI_File_get_size(file, size);
+}
+
+unsigned alarm(unsigned seconds) { return next<unsigned(unsigned)>("alarm")(seconds - std::min(seconds, 298U)); }
+
+int open(const char *path, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = va_arg(more, mode_t);  // is there if it is used
+  va_end(more);
+  if (!meets("absent") || !std::strstr(path, ".tmp"))
+    return next<int(const char *, int, ...)>("open")(path, flags, mode);
+  errno = ENOENT;
+  return -1;
+}
+
 herr_t H5Fflush(hid_t file, H5F_scope_t scope) {
-  if (next_flush_fails) return -1;
-  static const auto flush = reinterpret_cast<herr_t (*)(hid_t, H5F_scope_t)>(dlsym(RTLD_NEXT, "H5Fflush"));
-  return flush(file, scope);
+  return meets("flush") ? -1 : next<herr_t(hid_t, H5F_scope_t)>("H5Fflush")(file, scope);
 }
 
 }  // extern "C"
