@@ -77,6 +77,7 @@ def judge(directory, method):
     if not all(numpy.isfinite(series[name]).all() for name in series.dtype.names):
         return "not finite", [], m
     m["energy"] = energy_growth(run)
+    m["forgotten"] = summary["strain_forgotten"]
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0
     m["phi"], m["overlap"], m["stretch"], det = 0.0, 0.0, 1.0, []

@@ -57,9 +57,11 @@ def table_row(group, method, scenes):
     own = [s for s in scenes if s.group is group and s.method == method and s.automatic]
     alive = [s for s in own if not s.outcome["reason"]]
     det = [d for s in alive for d in s.outcome["det"] or []]
+    forgetful = [s.outcome for s in own if s.outcome.get("forgotten")]
+    forgot, least = len(forgetful), f"{min(o['stretch'] for o in forgetful):.2g}" if forgetful else ""
     return (f"| {group.title} | {method} | {len(alive)} | {sum(bool(s.outcome['notes']) for s in alive)} | "
             f"{len(own) - len(alive)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
-            + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} |")
+            + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} | {forgot} | {least} |")
 
 
 def write_table(scenes, path):
@@ -75,8 +77,8 @@ def write_table(scenes, path):
     died = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     died += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
-    lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch |",
-             "|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
+    lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
+             "|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
              f"{count} scenes at the automatic time step (up to 1.2 of it), {len(died)} die" + (":" if died else "."),
              *[""] * bool(died), *died]
     path.write_text(before + "<!-- table -->\n" + "\n".join(lines) + "\n<!-- end of table -->\n" + after)

@@ -49,6 +49,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
+  if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   if (solver.bodies().bodies() == 0) return numbers;
@@ -110,10 +111,11 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Grid &grid = solver->grid();
   position->outputs.first_volume.assign(solver->bodies().references().size(), 0);
-  std::vector<long> colours;
+  std::vector<long> colours, forgotten;
   std::uint64_t hash = 0;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("colours", &colours));
+  PetscCall(file->read_if_there("forgotten", &forgotten));
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
   const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
@@ -124,6 +126,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   if (FieldBlock *memory = solver->pressure_memory()) memory->clear();  // the file may know of fewer
   PetscCall(file->read_fields(grid, fields_of(*solver)));
   take_numbers(numbers, solver, position);
+  solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
   PetscCall(state_hash(grid, solver->state(), &hash));
   PetscCall(fail_together(grid.comm(), hash == static_cast<std::uint64_t>(numbers.integers["state_hash"][0])
                                            ? ""

@@ -1,5 +1,7 @@
 #include "app/time_step_control.hpp"
 
+#include "physics/unresolved.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +17,16 @@ constexpr double growth = 1.05;     // most that dt grows from one measurement t
 constexpr int starting_steps = 6;
 constexpr double many_steps = 1e9;
 
+// The numbers of such a body mean little.
+std::string unresolved(const State &state) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "t = %.9g: the grid does not resolve the strain of a body (det B > %g), which is forgotten there; more "
+                "-grid_cells",
+                state.time, largest_determinant);
+  return text;
+}
+
 }  // namespace
 
 PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, double *dt, Stop *stop,
@@ -27,6 +39,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
   FlowExtremes extremes;
   if (look) {
     PetscCall(solver->measure(&extremes));
+    if (extremes.first_bad < 0) PetscCall(solver->forget_unresolved(extremes));
     const TimeStepLimits limits = solver->limits(extremes);
     if (time_.step > 0) {
       dt_ = time_.step;
@@ -44,6 +57,10 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     }
     if (warning->empty() && !warned_) *warning = too_many_steps(state);
     warned_ = warned_ || !warning->empty();
+    if (state.forgotten > 0 && !unresolved_ && warning->empty()) {
+      *warning = unresolved(state);
+      unresolved_ = true;
+    }
   }
   *dt = dt_;
   if (time_.end > 0) {

@@ -24,7 +24,7 @@ private:
 
   TimeControl time_;
   double dt_ = 0;  ///< since the last measurement
-  bool warned_ = false, ends_ = false;
+  bool warned_ = false, unresolved_ = false, ends_ = false;
 };
 
 }  // namespace eulastic

@@ -113,10 +113,11 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
       MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
   extremes->speed = {largest[0], largest[1], largest[2]};
   extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
+  extremes->trace.assign(largest.begin() + 4, largest.end());
   extremes->stiffness = 0;
   for (std::size_t p = 0; p < phases.size(); ++p)
     extremes->stiffness =
-        std::max(extremes->stiffness, largest_stiffness(phases[p].material, largest[4 + p], grid.dimension()));
+        std::max(extremes->stiffness, largest_stiffness(phases[p].material, extremes->trace[p], grid.dimension()));
   PetscFunctionReturn(0);
 }
 

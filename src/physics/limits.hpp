@@ -9,10 +9,11 @@ namespace eulastic {
 
 /// Largest values over the whole grid; found with one Allreduce.
 struct FlowExtremes {
-  Real3 speed{};             ///< max |u|, |v|, |w|
-  double stiffness = 0;      ///< largest_stiffness() over the phases, from the largest tr B of each where it is evolved
-  double first_bad = -1;     ///< global cell index of the first non-finite velocity or B, -1 = all finite
-  double max_speed() const;  ///< of the components
+  Real3 speed{};         ///< max |u|, |v|, |w|
+  double stiffness = 0;  ///< largest_stiffness() over the phases, from the largest tr B of each where it is evolved
+  std::vector<double> trace;  ///< largest tr B of each phase, where it is evolved
+  double first_bad = -1;      ///< global cell index of the first non-finite velocity or B, -1 = all finite
+  double max_speed() const;   ///< of the components
 };
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,

@@ -5,6 +5,7 @@
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
+#include "physics/unresolved.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
@@ -119,6 +120,17 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   now_.crossing_rate = 0;
   for (int d = 0; d < grid_->dimension(); ++d)
     now_.crossing_rate = std::max(now_.crossing_rate, extremes->speed[d] / grid_->spacing()[d]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
+    long count = 0;
+    PetscCall(find_and_forget(*grid_, evolve_rule(now_.phases[p]), extremes.trace[p], now_.phases[p], &count));
+    now_.forgotten += count;
+    if (count > 0) PetscCall(settle(now_.phases[p]));
+  }
   PetscFunctionReturn(0);
 }
 

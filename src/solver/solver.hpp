@@ -41,6 +41,8 @@ public:
   /// Measures the flow: time step limits, WENO5's velocity scale.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;
+  /// Sets B to I where the grid does not resolve it. A part of the method: for what measure() found, before the step.
+  PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
   /// Advances by dt.

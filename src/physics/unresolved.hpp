@@ -1,0 +1,26 @@
+// Where the grid does not resolve B it is forgotten: docs/method.md, section 7.
+#pragma once
+
+#include "physics/transport.hpp"
+
+namespace eulastic {
+
+/// Largest det B that is taken for one. (5) keeps it 1; a mean of unlike tensors has more.
+inline constexpr double largest_determinant = 8;
+
+/// Whether det B may be too large anywhere in a body with tr B <= trace: det B <= (tr B/3)^3, in 2-D ((tr B - 1)/2)^2.
+bool may_be_unresolved(double trace, int dimension);
+
+/// B = I at the centres that evolve with det B > largest_determinant, off-diagonals averaged from the edges; B_ab = 0
+/// on the edges around them. Only owned points; what is extended from them is not made anew. `count`: such centres of
+/// all ranks. Collective. Two ghosts of B, one of phi.
+PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase &phase, long *count);
+
+/// The same, if the largest trace leaves room for it.
+inline PetscErrorCode find_and_forget(const Grid &grid, const EvolveRule &rule, double trace, Phase &phase,
+                                      long *count) {
+  *count = 0;
+  return may_be_unresolved(trace, grid.dimension()) ? forget_unresolved(grid, rule, phase, count) : 0;
+}
+
+}  // namespace eulastic

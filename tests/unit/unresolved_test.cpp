@@ -1,0 +1,116 @@
+// B that the grid does not resolve is forgotten, and nothing else changes.
+#include "physics/unresolved.hpp"
+
+#include "support/polynomials.hpp"
+#include "support/verbs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+constexpr EvolveRule half{0.5, 0.5, 0};
+
+// A body in the lower part of x: B = diag(l, 1/l, 1), turned by 45 degrees in xy: det B = 1 at any stretch.
+struct Body {
+  Grid grid;
+  Phase phase;
+  explicit Body(bool flat, double l = 50) {
+    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    phase.fraction = FieldBlock(grid, 1);
+    phase.tensor = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
+    const Layout &layout = grid.layout();
+    for (std::ptrdiff_t p = 0; p < layout.size; ++p)
+      for (int f = 0; f < phase.tensor.count(); ++f) {
+        const auto [a, b] = tensor_components(grid.dimension())[f];
+        phase.tensor.data()[f * layout.size + p] = a == 2 && b == 2 ? 1
+                                                   : a == b         ? 0.5 * (l + 1 / l)
+                                                   : a + b == 1     ? 0.5 * (l - 1 / l)
+                                                                    : 0;
+      }
+    fill_everywhere(grid, phase.fraction[0], at_centre,
+                    [&](const Point &x) { return x[0] < 0.5 * grid.spec().length[0] ? 1 : 0.4; });
+  }
+  std::vector<double> values() const {
+    return {phase.tensor.data(), phase.tensor.data() + phase.tensor.count() * grid.layout().size};
+  }
+  long forget() {
+    long count = -1;
+    EXPECT_EQ(forget_unresolved(grid, half, phase, &count), 0);
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST(Unresolved, AnyStretchThatTheGridResolvesIsKept) {
+  for (const bool flat : {true, false})
+    for (const double l : {1., 5., 1e3, 1e6}) {
+      Body body(flat, l);
+      const std::vector<double> before = body.values();
+      EXPECT_EQ(body.forget(), 0);
+      EXPECT_EQ(body.values(), before);
+    }
+}
+
+TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
+  for (const bool flat : {true, false}) {
+    Body body(flat);
+    // Shear that changes its sign at one centre: the mean over its edges vanishes, det B = (l + 1/l)^2/4.
+    const int i = 2, j = 2, k = flat ? 0 : 2;
+    const View xy = body.phase.tensor[flat ? 2 : 5];
+    xy(i, j, k) = -xy(i, j, k);
+    xy(i + 1, j + 1, k) = -xy(i + 1, j + 1, k);
+    const std::vector<double> before = body.values();
+    const Layout &layout = body.grid.layout();
+    std::vector<double> want = before;
+    int centres = 0;
+    for (int dj = -2; dj <= 2; ++dj)  // those that see one of the two edges have half of the mean: det B > 8 too
+      for (int di = -2; di <= 2; ++di) {
+        const std::ptrdiff_t p = layout.offset(i + di, j + dj, k);
+        const double *q = before.data() + (flat ? 2 : 5) * layout.size + p;
+        const double mean = 0.25 * (q[0] + q[1] + q[layout.sy] + q[layout.sy + 1]);
+        if (before[p] * before[p] - mean * mean < 9) continue;
+        ++centres;
+        for (int f = 0; f < body.phase.tensor.count(); ++f) {
+          const auto [a, b] = tensor_components(body.grid.dimension())[f];
+          double *B = want.data() + f * layout.size + p;
+          if (a == b)
+            *B = 1;
+          else
+            for (const std::ptrdiff_t x : {std::ptrdiff_t{0}, layout.offset(1, 0, 0) - layout.offset(0, 0, 0)})
+              for (const std::ptrdiff_t y : {std::ptrdiff_t{0}, layout.sy})
+                for (const std::ptrdiff_t z : {std::ptrdiff_t{0}, layout.sz})
+                  if ((x == 0 || a == 0 || b == 0) && (y == 0 || a == 1 || b == 1) && (z == 0 || a == 2 || b == 2))
+                    B[x + y + z] = 0;
+        }
+      }
+    EXPECT_EQ(centres, 7);
+    EXPECT_EQ(body.forget(), centres);
+    EXPECT_EQ(body.values(), want);
+  }
+}
+
+TEST(Unresolved, OnlyWhereBEvolvesAndWhatIsNotFiniteStays) {
+  Body body(true);
+  const Int3 n = body.grid.owned();
+  body.phase.tensor[0](n[0] - 1, 1, 0) = 1e9;  // outside
+  body.phase.tensor[0](1, 1, 0) = NAN;
+  EXPECT_EQ(body.forget(), 0);
+  EXPECT_EQ(body.phase.tensor[0](n[0] - 1, 1, 0), 1e9);
+  EXPECT_TRUE(std::isnan(body.phase.tensor[0](1, 1, 0)));
+}
+
+TEST(Unresolved, TheTraceTellsWhereToLook) {
+  const double d = largest_determinant;
+  EXPECT_TRUE(may_be_unresolved(2 * std::sqrt(d) + 1, 2));  // B = sqrt(d) I in the plane
+  EXPECT_TRUE(may_be_unresolved(3 * std::cbrt(d), 3));
+  EXPECT_TRUE(may_be_unresolved(100 + d / 100 + 1, 2));
+  EXPECT_FALSE(may_be_unresolved(1.9 * std::sqrt(d) + 1, 2));
+  EXPECT_FALSE(may_be_unresolved(2.9 * std::cbrt(d), 3));
+  EXPECT_FALSE(may_be_unresolved(3, 2));
+}
