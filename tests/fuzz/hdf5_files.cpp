@@ -30,7 +30,8 @@ const std::vector<std::string> odd_names{"x", "solid_fraction_", "velocity_w", "
 double usual(const std::string &name, Dice &dice) {
   if (name.rfind("solid", 0) == 0) return dice.below(2) ? 1 : 0.25;
   if (name.rfind("body", 0) == 0) return 1;
-  if (name.rfind("left", 0) == 0) return name.find("xx") + name.find("yy") + name.find("zz") < 60 ? 1 : 1;
+  const auto has = [&](const char *part) { return name.find(part) != std::string::npos; };
+  if (has("left")) return has("xx") || has("yy") || has("zz") ? 1 : 0;
   return 0.01 * static_cast<double>(dice.below(100));
 }
 

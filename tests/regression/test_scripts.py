@@ -74,6 +74,7 @@ class Shell(WithFolder):
         return done.returncode, done.stdout.splitlines()[-1], done.stdout
 
     TOY = """
+add_custom_target(quick)
 add_test(NAME a COMMAND true)
 add_test(NAME b COMMAND true)
 add_test(NAME c COMMAND {})
@@ -102,6 +103,7 @@ set_tests_properties(d PROPERTIES LABELS "full")
     def test_a_broken_build_is_a_failure(self):
         broken = self.TOY.format("true") + "add_custom_target(broken ALL COMMAND false)\n"
         self.assertEqual(self.count(broken)[:2], (1, "0 passed, 1 failed"))
+        self.assertEqual(self.count(broken, "--quick")[:2], (0, "2 passed, 0 failed"))  # builds only what it runs
 
 
 class Reader(WithFolder):

@@ -2,7 +2,7 @@
 // leave much behind when they go, are still there. tests/support/leaks.txt names what is not ours.
 #pragma once
 
-extern "C" void __lsan_do_leak_check() __attribute__((weak));
+extern "C" void __lsan_do_leak_check() __attribute__((weak));  // NOLINT(bugprone-reserved-identifier): its name
 
 namespace eulastic::test {
 

@@ -153,7 +153,7 @@ TEST(FieldBlockLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
   EXPECT_EQ(b[1](-3, -3, -3), 7);
   const FieldBlock c = std::move(b);
   EXPECT_TRUE(c && a);
-  EXPECT_FALSE(b || FieldBlock());  // a block that was moved away is empty
+  EXPECT_FALSE(b || FieldBlock());  // a block that was moved away is empty NOLINT(bugprone-use-after-move)
 }
 
 }  // namespace

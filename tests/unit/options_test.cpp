@@ -166,10 +166,11 @@ TEST(Options, TextReadsBackTheSame) {
                      scene + " -wall_ymax_velocity 1,0,0 -wall_ymax_phase 2 -initial_velocity random -time_steps_max 7",
                      scene + " -cell_placement list -cell_positions " + list.path() + " -cell_orientation 10,20,30",
                      "-time_end 1 -grid_cells 8,8,1 -pressure_solver acm -snapshot_precision double",
-                     scene + " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
-                             "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
-                     "-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
-                     "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1",
+                     scene +
+                         " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
+                         "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
+                     ("-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
+                      "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1"),
                      "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c3 .6"};
   for (const std::string &line : scenes) {
     const ParseResult first = parse_line(line);
@@ -190,8 +191,8 @@ TEST(Options, TextReadsBackTheSame) {
 }
 
 TEST(Options, MooneyRivlinHasItsModulus) {
-  const ParseResult result = parse_line(
-      "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c2 2 -a_c3 .6");
+  const ParseResult result =
+      parse_line("-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c2 2 -a_c3 .6");
   ASSERT_EQ(result.error, "");
   const Material m = result.config.species[0].material();
   EXPECT_EQ(m.law, Law::mooney_rivlin);
