@@ -8,7 +8,7 @@ from matplotlib.patches import Patch  # noqa: E402
 
 SHEETS = {"flows": ["cavity", "random", "shear", "extension"],
           "bodies": ["cells", "thin", "contact", "stretched", "flat_cells", "solid"],
-          "times": ["time_step", "reversing", "layers", "nothing", "long"]}
+          "times": ["time_step", "reversing", "layers", "nothing", "long", "corner"]}
 COLOURS = {"lives": "#7fbf7b", "reported": "#fee08b", "energy": "#d73027", "nonfinite": "#67001f", "guard": "#f46d43",
            "volume": "#b2182b", "phi": "#d6604d", "det B": "#c51b7d", "other": "#542788"}
 
@@ -48,9 +48,9 @@ def draw(scenes, directory):
         plt.close(figure)
 
 
-def worst(scenes, name, of=max):
+def worst(scenes, name, of=max, digits=2):
     values = [s.outcome[name] for s in scenes if not s.outcome["reason"] and s.outcome.get(name) is not None]
-    return f"{of(values):.2g}" if values else ""
+    return f"{of(values):.{digits}g}" if values else ""
 
 
 def table_row(group, method, scenes):
@@ -60,7 +60,7 @@ def table_row(group, method, scenes):
     forgetful = [s.outcome for s in own if s.outcome.get("forgotten")]
     forgot, least = len(forgetful), f"{min(o['stretch'] for o in forgetful):.2g}" if forgetful else ""
     return (f"| {group.title} | {method} | {len(alive)} | {sum(bool(s.outcome['notes']) for s in alive)} | "
-            f"{len(own) - len(alive)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
+            f"{len(own) - len(alive)} | {worst(own, 'energy', digits=3)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
             + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} | {forgot} | {least} |")
 
 
@@ -77,8 +77,8 @@ def write_table(scenes, path):
     died = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     died += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
-    lines = ["| scenes | method | live | of them reported | die | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
-             "|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
+    lines = ["| scenes | method | live | of them reported | die | energy | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
+             "|---|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
              f"{count} scenes at the automatic time step (up to 1.2 of it), {len(died)} die" + (":" if died else "."),
              *[""] * bool(died), *died]
     path.write_text(before + "<!-- table -->\n" + "\n".join(lines) + "\n<!-- end of table -->\n" + after)

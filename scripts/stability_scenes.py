@@ -199,6 +199,11 @@ def long(kind, G):
     return scene | {"series_interval": 0.5}
 
 
+def corner(cells, G):
+    """A disc that the lid drags into the corner at its end and holds there."""
+    return cavity(G, 100, cells, end=60, steps=100000) | {"series_interval": 0.1}
+
+
 MODULI = [1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000]
 REYNOLDS = [0.1, 1, 10, 100, 1000, 10000]
 THREE = [0.01, 1, 100]
@@ -233,5 +238,7 @@ GROUPS = [
           "G/(ρU²)", [(4, 1)]),
     Group("solid", "3-D", solid, SOLIDS, [0.01, 1, 100], "", "G/(ρU²)", [("cavity", 1), ("lattice, touching", 0.01)]),
     Group("long", "a hundred thousand steps", long, ["rest", "shear", "cavity", "reversing"], [0.01, 1, 100], "", "G/(ρU²)"),
+    Group("corner", "a disc held in a corner to t = 60", corner, [16, 24], MODULI[1:-1], "cells of the box", "G/(ρU²)",
+          [(16, 0.01)]),
 ]
 METHODS = ["fast", "classic"]

@@ -169,6 +169,11 @@ def marked_line(run):
 SECOND_LAYER = {"fast": lambda n: 2 * (2 / n)**2, "classic": lambda n: 2 / n}
 WHY_LAYER = ("fast: half a cell at both walls of the parabola, (h/L_s)^2, twice; classic: first order in the width of the "
              "interface, h/L_s")
+# classic, steady: B_xy on the edge of the surface rests only where du/dy = 0, so the first cell of fluid rests, at h/2
+# above the surface. What the parabola should have there, 4 (h/2) (L_f - h/2)/L_f^2 of its maximum, is the error.
+FIRST_CELL = {"fast": SECOND_LAYER["fast"], "classic": lambda n: 1.01 * (4 / n) * (1 - 1 / n)}
+WHY_FIRST_CELL = ("fast: half a cell at both walls of the parabola, (h/L_s)^2, twice; classic: the first cell of fluid rests, "
+                  "2 h/L_f (1 - h/(2 L_f)), and a hundredth of it")
 CASES = (
     Case("S1", "Fluid over a solid layer, oscillating wall", "sheared_layers",
          lambda n, _: {**column(n), "time_step": 0, "snapshot_interval": 0.5, **WHOLE},
@@ -184,7 +189,7 @@ CASES = (
                        "wall_ymax_frequency": 0, "wall_ymax_phase": 0, "body_force": "0.5,0,0", "fluid_viscosity": 0.1,
                        "layer_shear_modulus": 1, "snapshot_interval": 30, "profile_interval": 0, **WHOLE},
          every((32, 64)), every((16, 32), methods=("fast",), solvers=("acm",)),
-         (Measure("largest error of u, of its maximum", resting_error, SECOND_LAYER, WHY_LAYER, order={"fast": 1.9}),
+         (Measure("largest error of u, of its maximum", resting_error, FIRST_CELL, WHY_FIRST_CELL, order={"fast": 1.9}),
           Measure("B_xy on the wall", resting_shear(0), SECOND_LAYER, WHY_LAYER, 0.375, True),
           Measure("B_xy at the interface", resting_shear(0.5), SECOND_LAYER, WHY_LAYER, 0.125, True)),
          resting_line, ("y", "u at t = 30")),
