@@ -11,7 +11,8 @@ namespace eulastic {
 /// first + stride I; there are two of them, or one (stride 1, or a last cell that stays alone), or three.
 struct LineTransfer {
   int first = 0, stride = 1;
-  std::vector<double> weight[3];       ///< [child][I]: its share of the volume of I, 0 where there is no such child
+  /// [child][I]: its share of the volume of I, 0 where there is no such child
+  std::array<std::vector<double>, 3> weight;
   std::vector<int> parent, neighbour;  ///< of fine cell i: its coarse cell and the one on its own side of the centre
   std::vector<double> share;           ///< of the neighbour, in linear interpolation; 0 at walls
   std::vector<double> share_low, share_high;  ///< [I + 1]: the same for the two halves of I, -1 <= I <= cells
