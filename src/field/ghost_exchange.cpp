@@ -74,7 +74,7 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::end(FieldBlock &block, int width) {
+PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscSF sf;
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
@@ -91,6 +91,7 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width) {
     for (int f = 0; f < block.count(); ++f)
       for (int k = k_begin; k < k_end; ++k)
         for (int j = j_begin; j < j_end; ++j) {
+          if (rows && rows->idle(j, k)) continue;
           double *row = block[f].row(j, k);
           for (int m = 1; m <= width; ++m) {
             row[-m] = row[n - m];
@@ -101,10 +102,10 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::update(FieldBlock &block, int width) {
+PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   PetscCall(begin(block, width));
-  PetscCall(end(block, width));
+  PetscCall(end(block, width, rows));
   PetscFunctionReturn(0);
 }
 

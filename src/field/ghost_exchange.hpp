@@ -5,6 +5,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/occupied_rows.hpp"
 
 #include <map>
 
@@ -17,10 +18,11 @@ public:
   /// Starts filling `width` ghost layers of every field of `block`. One exchange per block at a time; several
   /// blocks may be under way together.
   PetscErrorCode begin(FieldBlock &block, int width);
-  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not.
-  PetscErrorCode end(FieldBlock &block, int width);
+  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not. In idle
+  /// rows of `rows`, where it is given, what lies across a periodic x is taken to be valid already.
+  PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both.
-  PetscErrorCode update(FieldBlock &block, int width);
+  PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
 
 private:
   struct Key {

@@ -16,6 +16,7 @@ struct Phase {
   int colour = 0;           ///< 0: the first phase of the species; the others come after the first ones of all species
   bool separate = false;    ///< bodies that come near get phases of their own; needs labels
   FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
+  OccupiedRows rows;        ///< of phi
   FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
   FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
   ActiveSegments solid;     ///< points where B may evolve

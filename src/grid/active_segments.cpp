@@ -34,8 +34,8 @@ void ActiveSegments::build_all(const Grid &grid) {
     }
 }
 
-// Runs of vectors of row (j, k) of which a point is marked. Whole ones: the last points of a run that ends within a
-// vector would be done one by one.
+// Runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last points of a
+// run that ends within a vector would be done one by one.
 void ActiveSegments::append_row(const unsigned char *marked, int j, int k) {
 #ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
   segments_.push_back({begin_[0], begin_[0] + points_x_, j, k});
@@ -43,7 +43,7 @@ void ActiveSegments::append_row(const unsigned char *marked, int j, int k) {
   return;
 #endif
   const std::size_t row_begin = segments_.size();
-  for (int i = 0; i < points_x_; i += vector_length) {
+  for (int i = 0; marked && i < points_x_; i += vector_length) {
     const int count = std::min(vector_length, points_x_ - i);
     if (std::memchr(marked + i, 1, count) == nullptr) continue;
     const int begin = begin_[0] + i, end = begin + count;
@@ -55,18 +55,27 @@ void ActiveSegments::append_row(const unsigned char *marked, int j, int k) {
   first_.push_back(static_cast<int>(segments_.size()));
 }
 
-// Points where the flags of all centres within reach together give `wanted`. Reach by reach: along x, y and z.
+// Points where the flags of all centres within reach together give `wanted`, which idle rows alone do not. Reach by
+// reach: along x, y and z.
 template <class Flag>
-void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, int wanted, int low, int high) {
-  const bool flat = grid.dimension() == 2;
+void ActiveSegments::build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted,
+                                int low, int high) {
+  const bool flat = grid.dimension() == 2, skip = flag(0.0) != wanted;
   const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low;
   const std::size_t width = points_x_, plane = width * rows_y_;
   std::vector<unsigned char> flags(width + reach), marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
-  mask_.assign(plane * (rows_z_ + reach_z),
-               0);  // what is within reach along x and y; `marked`: rows that are not all 0
+  mask_.resize(plane * (rows_z_ + reach_z));  // what is within reach along x and y, on the rows that are `marked`
+  const auto touch = [&](int row, int k) {
+    unsigned char *mask = mask_.data() + k * plane + row * width, &known = marked[k * std::size_t(rows_y_) + row];
+    if (!known) std::fill_n(mask, width, 0);
+    known = 1;
+    return mask;
+  };
   for (int k = 0; k < rows_z_ + reach_z; ++k)
     for (int j = 0; j < rows_y_ + reach; ++j) {
-      const double *q = value.row(begin_[1] + j - low, begin_[2] + k - low_z) + begin_[0] - low;
+      const int from_j = begin_[1] + j - low, from_k = begin_[2] + k - low_z;
+      if (skip && rows.idle(from_j, from_k)) continue;
+      const double *q = value.row(from_j, from_k) + begin_[0] - low;
       unsigned char any = 0;
 #pragma omp simd reduction(| : any)
       for (std::size_t i = 0; i < flags.size(); ++i) any |= flags[i] = flag(q[i]);
@@ -76,37 +85,39 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, Flag flag, in
         for (std::size_t i = 0; i + step < flags.size(); ++i) flags[i] |= flags[i + step];
       }
       for (int row = std::max(0, j - reach); row <= std::min(j, rows_y_ - 1); ++row) {
-        unsigned char *mask = mask_.data() + k * plane + row * width;
+        unsigned char *mask = touch(row, k);
         for (std::size_t i = 0; i < width; ++i) mask[i] |= flags[i];
-        marked[k * static_cast<std::size_t>(rows_y_) + row] = 1;
       }
     }
   for (int k = 0; k < rows_z_; ++k)
     for (int j = 0; j < rows_y_; ++j) {
-      unsigned char *mask = mask_.data() + k * plane + j * width, *own = &marked[k * std::size_t(rows_y_) + j];
       for (int d = 1; d <= reach_z; ++d) {
-        if (!own[d * static_cast<std::size_t>(rows_y_)]) continue;
+        if (!marked[(k + d) * std::size_t(rows_y_) + j]) continue;
+        unsigned char *mask = touch(j, k);
         for (std::size_t i = 0; i < width; ++i) mask[i] |= mask[i + d * plane];
-        *own = 1;
       }
-      if (*own)
+      unsigned char *mask = nullptr;
+      if (marked[k * std::size_t(rows_y_) + j]) {
+        mask = touch(j, k);
         for (std::size_t i = 0; i < width; ++i) mask[i] = mask[i] == wanted;
+      }
       append_row(mask, begin_[1] + j, begin_[2] + k);
     }
 }
 
-void ActiveSegments::build(const Grid &grid, ConstView value, double threshold, int low, int high) {
+void ActiveSegments::build(const Grid &grid, ConstView value, const OccupiedRows &rows, double threshold, int low,
+                           int high) {
   start({0, 0, 0}, {grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)});
   build_rows(
-      grid, value, [threshold](double q) { return q >= threshold; }, 1, low, high);
+      grid, value, rows, [threshold](double q) { return static_cast<unsigned char>(q >= threshold); }, 1, low, high);
 }
 
-void ActiveSegments::build_band(const Grid &grid, ConstView value, int margin) {
+void ActiveSegments::build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin) {
   const Int3 &n = grid.owned();
   const int margin_z = grid.dimension() == 3 ? margin : 0;
   start({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
   build_rows(
-      grid, value, [](double q) { return (q != 0) | (q != 1) << 1; }, 3, 1, 1);
+      grid, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
 }
 
 void ActiveSegments::build_faces(const ActiveSegments &cells) {

@@ -1,7 +1,7 @@
 // The runs of cells, row by row, on which something has to be computed.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/occupied_rows.hpp"
 
 namespace eulastic {
 
@@ -17,11 +17,11 @@ public:
 
   /// Points (i,j,k) for which one of the centres (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has
   /// value >= threshold. In whole vectors of 8 points, where the row has them, so a superset; `value` needs that
-  /// many ghosts.
-  void build(const Grid &grid, ConstView value, double threshold, int low, int high);
+  /// many ghosts. Idle rows of `rows` are not read.
+  void build(const Grid &grid, ConstView value, const OccupiedRows &rows, double threshold, int low, int high);
   /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
   /// and some more. `value` needs margin + 1 ghosts.
-  void build_band(const Grid &grid, ConstView value, int margin);
+  void build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin);
   /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
   void build_faces(const ActiveSegments &cells);
   /// Everything.
@@ -40,7 +40,8 @@ public:
 private:
   void start(const Int3 &begin, const Int3 &end);
   template <class Flag>
-  void build_rows(const Grid &grid, ConstView value, Flag flag, int wanted, int low, int high);
+  void build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low,
+                  int high);
   void append_row(const unsigned char *marked, int j, int k);
 
   Int3 begin_{};  ///< first point

@@ -105,7 +105,8 @@ std::array<Box, 3> cells_of_sweeps(const Grid &grid, const Int3 &order) {
 
 }  // namespace
 
-PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity, long step, FieldBlock &fraction) {
+PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity, long step, const OccupiedRows &rows,
+                                           FieldBlock &fraction) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const int dimension = grid_->dimension();
@@ -113,7 +114,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
   const View phi = fraction[0], solid = work_[2];
   reflect_at_walls(*grid_, phi);
-  cells_.build_band(*grid_, phi, dimension);
+  cells_.build_band(*grid_, phi, rows, dimension);
   faces_.build_faces(cells_);
   for (const Segment &s : cells_.all())
     for (int i = s.i_begin; i < s.i_end; ++i) solid(i, s.j, s.k) = phi(i, s.j, s.k) > 0.5;

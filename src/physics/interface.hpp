@@ -17,10 +17,11 @@ public:
   /// `work`: three fields that nobody else needs during `advance`.
   InterfaceTransport(const Grid &grid, FieldBlock work) : grid_(&grid), work_(std::move(work)) {}
 
-  /// Moves `fraction` over dt with face velocities. The order of directions follows from `step`: all of them in turn,
-  /// each after its mirror image. Nothing is communicated: ghosts are moved along and are stale afterwards; those
-  /// behind walls need not be set.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, long step, FieldBlock &fraction);
+  /// Moves `fraction`, of which `rows` are occupied, over dt with face velocities. The order of directions follows from
+  /// `step`: all of them in turn, each after its mirror image. Nothing is communicated: ghosts are moved along and are
+  /// stale afterwards; those behind walls need not be set.
+  PetscErrorCode advance(double dt, const FieldBlock &velocity, long step, const OccupiedRows &rows,
+                         FieldBlock &fraction);
   /// Cells of the interface band in the last `advance`, ghosts included.
   double band_cells() const { return cells_.points(); }
   std::size_t bytes() const { return work_.bytes(); }

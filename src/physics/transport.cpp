@@ -25,28 +25,42 @@ struct TransportTerms {
 };
 
 template <int Dim>
-EULASTIC_INLINE void advect_rows(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &scratch) {
+EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
+                                 FieldBlock &out, RowScratch &scratch) {
   const Int3 n = t.grid->owned();
+  const ConstView phi = phase.fraction[0];
+  const double dt = t.dt;
+  const int ghosts = t.grid->layout().ghosts[0];
   double *rate = scratch.row(0);
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Segment row{0, n[0], j, k};
+      double *next = out[0].row(j, k);
+      if (phase.rows.idle(j, k)) {
+        if (!next_rows.idle(j, k))
+          for (int i = -ghosts; i < n[0] + ghosts; ++i) next[i] = 0;
+        continue;
+      }
       for (int d = 0; d < Dim; ++d)
         kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
-      kernels::advection_rate<Dim>(row, phi[0], carried, t.inverse.data(), epsilon, rate);
-      const double *now = phi[0].row(j, k);
-      double *next = out[0].row(j, k);
+      kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
+      const double *now = phi.row(j, k);
 #pragma omp simd
-      for (int i = 0; i < n[0]; ++i) next[i] = kernels::fma(t.dt, rate[i], now[i]);
+      for (int i = 0; i < n[0]; ++i) {
+        const double moved = kernels::fma(dt, rate[i], now[i]);
+        next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
+      }
     }
 }
 
-EULASTIC_CLONES void advect_2d(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &s) {
-  advect_rows<2>(t, phi, out, s);
+EULASTIC_CLONES void advect_2d(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
+                               FieldBlock &out, RowScratch &s) {
+  advect_rows<2>(t, phase, next_rows, out, s);
 }
-EULASTIC_CLONES void advect_3d(const TransportTerms &t, const FieldBlock &phi, FieldBlock &out, RowScratch &s) {
-  advect_rows<3>(t, phi, out, s);
+EULASTIC_CLONES void advect_3d(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
+                               FieldBlock &out, RowScratch &s) {
+  advect_rows<3>(t, phase, next_rows, out, s);
 }
 
 // Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
@@ -138,7 +152,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     }
     leave_to(end);
   }
-  advance(batch);
+  if (batch.count > 0) advance(batch);
 }
 
 template <int Dim, bool SecondOfHeun>
@@ -165,29 +179,30 @@ TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocit
 
 }  // namespace
 
-PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const FieldBlock &fraction,
-                               FieldBlock &next) {
+PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+                               const OccupiedRows &next_rows, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   RowScratch scratch(grid, 4);
   const TransportTerms terms = make_terms(grid, dt, velocity);
   if (grid.dimension() == 2)
-    advect_2d(terms, fraction, next, scratch);
+    advect_2d(terms, phase, next_rows, next, scratch);
   else
-    advect_3d(terms, fraction, next, scratch);
-  scope.flops(grid.owned_count() * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
+    advect_3d(terms, phase, next_rows, next, scratch);
+  scope.flops(double(phase.rows.busy()) * grid.owned()[0] * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  phase.solid.build(grid, phase.fraction[0], rule.centre, 1, 0);
+  const ConstView phi = phase.fraction[0];
+  phase.solid.build(grid, phi, phase.rows, rule.centre, 1, 0);
   if (rule.layers > 0)
-    phase.strained.build(grid, phase.fraction[0], rule.centre, rule.layers + 1, rule.layers);
+    phase.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
   else
     phase.strained = phase.solid;
-  phase.stressed.build(grid, phase.fraction[0], rule.stressed, 2, 2);  // one more: also where it was a step ago
+  phase.stressed.build(grid, phi, phase.rows, rule.stressed, 2, 2);  // one more: also where it was a step ago
   PetscFunctionReturn(0);
 }
 

@@ -15,19 +15,23 @@ struct EvolveRule {
 /// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
 inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
 
-/// next = phi - dt v.grad phi at centres. Three ghosts of both.
-PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const FieldBlock &fraction,
-                               FieldBlock &next);
+/// WENO5 makes tails without end. Below this they are cut off: round-off of phi = 1, and rows without solid stay empty.
+inline constexpr double negligible_fraction = 1e-16;
 
-/// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of phi, or one more
-/// than there are layers.
+/// next = phi - dt v.grad phi at centres; idle rows are set to 0, where `next_rows` does not know that they are. Three
+/// ghosts of both.
+PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+                               const OccupiedRows &next_rows, FieldBlock &next);
+
+/// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of
+/// phi, or one more than there are layers.
 PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase);
 
 /// One Runge-Kutta stage of B.
 struct TensorStage {
   EvolveRule rule;
   double dt;
-  bool second_of_heun;  ///< next = (next + B + dt rate)/2, else next = B + dt rate
+  bool second_of_heun;                    ///< next = (next + B + dt rate)/2, else next = B + dt rate
   const ActiveSegments *stale = nullptr;  ///< where `next` is set to I if B does not evolve there; null: everywhere
 };
 

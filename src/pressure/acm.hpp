@@ -11,8 +11,8 @@ namespace eulastic {
 /// kappa = beta^2 dt^2 and g = beta^2 dt^2 gamma: delta p = -(kappa D* + g p)/dt.
 struct AcmCoefficients {
   double kappa = 0, g = 0;
-  double sound_speed(double dt) const;   ///< beta
-  double relaxation() const;             ///< gamma
+  double sound_speed(double dt) const;  ///< beta
+  double relaxation() const;            ///< gamma
 };
 
 /// The sums of (13): A1 = -<D lap D>, A2 = <(lap D)^2>, A3 = <(lap p)^2>, B1 = <D lap p>, B2 = <lap D lap p>.

@@ -76,6 +76,7 @@ PetscErrorCode Solver::prepare() {
 PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
   PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
+  phase.rows.find(*grid_, phase.fraction[0]);
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
@@ -91,6 +92,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
+    phase.rows.find(*grid_, phase.fraction[0]);
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
     PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
   }
@@ -231,12 +233,14 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
 PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
   if (spec_.interface == InterfaceScheme::thinc) {
-    PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.fraction));
+    PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
   } else {
-    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase.fraction, next_fraction_));  // (4)
+    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows_, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
+    next_rows_ = phase.rows;
   }
-  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
+  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts, &phase.rows));  // it has moved less than a reach
+  phase.rows.follow(*grid_, phase.fraction[0]);
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
@@ -270,11 +274,11 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
 PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor) {
   PetscFunctionBeginUser;
   if (spec_.exterior == SolidExterior::extrapolate) {
-    PetscCall(exchange_->update(tensor, ExteriorLayers::layers));
+    PetscCall(exchange_->update(tensor, ExteriorLayers::layers, &phase.rows));
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
   }
-  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width));
+  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
 
@@ -293,6 +297,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     copy.colour = phase.colour;
     copy.fraction.copy_from(phase.fraction);
     copy.tensor.copy_from(phase.tensor);
+    copy.rows = phase.rows;
     copy.strained = phase.strained;
     if (phase.label) copy.label.copy_from(phase.label);
   }
@@ -333,16 +338,16 @@ PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
+PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(field, width));
+  PetscCall(exchange_->update(field, width, rows));
   fill_wall_ghosts_even(*grid_, at_centre, field[0], width);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width) {
+PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, width));
+  PetscCall(exchange_->update(tensor, width, rows));
   fill_wall_ghosts_tensor(*grid_, tensor, width);
   PetscFunctionReturn(0);
 }

@@ -62,8 +62,8 @@ public:
 
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
-  PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
-  PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width);
+  PetscErrorCode update_centre_ghosts(FieldBlock &field, int width, const OccupiedRows *rows = nullptr);
+  PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows = nullptr);
   double speed_scale(double dt) const;
   EvolveRule evolve_rule(const Phase &phase) const;
   PetscErrorCode transport_to_middle(double dt);
@@ -84,6 +84,7 @@ private:
   State now_;
   BodyTracker bodies_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
+  OccupiedRows next_rows_;     ///< of next_fraction_
   ActiveSegments stale_;       ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
   FieldBlock work_;            ///< shared by what the verbs need one after the other
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time

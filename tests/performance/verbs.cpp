@@ -67,7 +67,7 @@ EULASTIC_VERB(correction, 8 + 4 * 16,
               correct_velocity(s.grid, 1, s.box.dt, 0, s.increment, s.scalar, s.velocity, s.now.pressure));
 // v, phi -> phi
 EULASTIC_VERB(fraction, 4 * 8 + 16,
-              advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0].fraction, s.scalar));
+              advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
 // phi
 EULASTIC_VERB(segments, 8, find_solid(s.grid, reset_below_one_per_cent, s.now.phases[0]));
 // v, phi, B -> B

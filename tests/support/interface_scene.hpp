@@ -126,7 +126,7 @@ public:
   PetscErrorCode advance(double dt) {
     PetscFunctionBeginUser;
     PetscCall(exchange_->update(fraction, InterfaceTransport::ghosts));
-    PetscCall(transport_->advance(dt, velocity, step++, fraction));
+    PetscCall(transport_->advance(dt, velocity, step++, {}, fraction));
     PetscFunctionReturn(0);
   }
 

@@ -28,7 +28,7 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
   FieldBlock value(grid, 1);
   fill_everywhere(grid, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
   ActiveSegments segments;
-  segments.build(grid, value[0], 0.5, low, high);
+  segments.build(grid, value[0], {}, 0.5, low, high);
   EXPECT_EQ(segments.points_x(), grid.points_end(0, true));
   EXPECT_EQ(segments.rows_y(), grid.points_end(1, true));
   EXPECT_EQ(segments.rows_z(), grid.points_end(2, true));
@@ -107,7 +107,7 @@ TEST(ActiveSegments, BandAndItsFaces) {
           fill_everywhere(grid, value[0], at_centre,
                           [&](const Point &) { return std::fabs(random()) < share ? 0.5 : rest; });
           ActiveSegments band, faces;
-          band.build_band(grid, value[0], margin);
+          band.build_band(grid, value[0], {}, margin);
           faces.build_faces(band);
           int idle = 0, points = 0;
           const int mz = flat ? 0 : margin;
