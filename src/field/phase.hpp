@@ -22,6 +22,9 @@ struct Phase {
   ActiveSegments solid;     ///< points where B may evolve
   ActiveSegments strained;  ///< points where B may differ from I: those and the layers it is extended over
   ActiveSegments stressed;  ///< faces that feel the elastic stress
+
+  /// What transport() needs to go on from there.
+  void copy_from(const Phase &other);
 };
 
 }  // namespace eulastic

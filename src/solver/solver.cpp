@@ -289,18 +289,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   *phases = &phases_now_;
   if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
   phases_now_.resize(now_.phases.size());
-  for (std::size_t p = 0; p < phases_now_.size(); ++p) {
-    Phase &copy = phases_now_[p];
-    const Phase &phase = now_.phases[p];
-    copy.species = phase.species;
-    copy.material = phase.material;
-    copy.colour = phase.colour;
-    copy.fraction.copy_from(phase.fraction);
-    copy.tensor.copy_from(phase.tensor);
-    copy.rows = phase.rows;
-    copy.strained = phase.strained;
-    if (phase.label) copy.label.copy_from(phase.label);
-  }
+  for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
   PetscCall(transport(phases_now_, 0.5 * now_.dt));
   for (Phase &copy : phases_now_)
     if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
