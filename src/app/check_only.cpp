@@ -61,8 +61,9 @@ public:
     for (std::size_t s = 0; s < config_.species.size(); ++s)
       crowded = crowded || (config_.separates(config_.species[s]) && config_.places[s].size() > 1);
     if (crowded)
-      report.line("memory where bodies come near", "%.4g GB more per rank for each phase that keeps them separate",
-                  1e-9 * bytes_per_phase(config_, parts));
+      report.line("phases (estimate)",
+                  "%d, %zu for the species, %.4g GB per rank for each more that keeps bodies apart",
+                  expected_phases(config_), config_.species.size(), 1e-9 * bytes_per_phase(config_, parts));
   }
 
   void bodies(Report &report) const {

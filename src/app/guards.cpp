@@ -45,6 +45,11 @@ Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
                                    : std::string("within all known limits; lower -time_step, more -grid_cells"))};
 }
 
+Stop crowded(const Solver &solver) {
+  const State &state = solver.state();
+  return {"guard", text("step %lld, t = %.9g: ", static_cast<long long>(state.step), state.time) + solver.crowded()};
+}
+
 }  // namespace
 
 Guards::Guards(const Config &config) : control_(config.guard) {
@@ -62,6 +67,10 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
   const State &state = solver.state();
   if (extremes.first_bad >= 0) {
     *stop = not_finite(solver, extremes);
+    PetscFunctionReturn(0);
+  }
+  if (!solver.crowded().empty()) {
+    *stop = crowded(solver);
     PetscFunctionReturn(0);
   }
   double courant = 0;
@@ -130,6 +139,8 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
 
 PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   PetscFunctionBeginUser;
+  if (!solver.crowded().empty()) *stop = crowded(solver);
+  if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
   PetscCall(measure_extremes(solver.grid(), solver.state().velocity, solver.state().phases, &extremes));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);

@@ -35,7 +35,7 @@ public:
 
   /// Collective. Before a step of `dt`, from freshly measured extremes.
   PetscErrorCode before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const;
-  /// Collective. Velocity and B of any state.
+  /// Collective. Velocity and B of any state, and whether bodies near each other are separate.
   PetscErrorCode check_finite(const Solver &solver, Stop *stop) const;
   /// Collective. A measured state. The first one is what energy is compared with; it passes.
   PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop);

@@ -1,5 +1,6 @@
 #include "app/memory.hpp"
 
+#include "bodies/expected_colours.hpp"
 #include "io/fail_together.hpp"
 
 #include <unistd.h>
@@ -21,11 +22,11 @@ int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 
 double phase_fields(const Config &config) { return 1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6); }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
-/// of the method add; a phase per species.
+/// of the method add; the phases.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
-  const double tensor = dimension == 2 ? 3 : 6, phases = double(config.species.size());
+  const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
   const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
              thinc = method.interface == InterfaceScheme::thinc;
   double sum = 2 * dimension + 3;
@@ -72,6 +73,14 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 }
 
 }  // namespace
+
+int expected_phases(const Config &config) {
+  int phases = static_cast<int>(config.species.size());
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    if (config.separates(config.species[s]))
+      phases += expected_colours(config.species[s], config.grid, config.places[s]) - 1;
+  return phases;
+}
 
 double bytes_per_rank(const Config &config, const Int3 &parts) {
   return sizeof(double) * fields(config) * ghosted_cells(config, parts);

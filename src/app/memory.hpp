@@ -6,9 +6,11 @@
 
 namespace eulastic {
 
-/// Estimate of the bytes in fields of the largest of `parts` ranks, with one phase per species.
+/// Phases that a run will have: one per species, and more where bodies of a species are kept apart, by their places.
+int expected_phases(const Config &config);
+/// Estimate of the bytes in fields of the largest of `parts` ranks, with expected_phases().
 double bytes_per_rank(const Config &config, const Int3 &parts);
-/// Of one more phase: species whose bodies come near each other need a few.
+/// Of one more phase.
 double bytes_per_phase(const Config &config, const Int3 &parts);
 
 /// Bytes this machine lets the program use: its memory, or less where a control group says so. `root` is put before

@@ -246,6 +246,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
     (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
         sweeps;
   }
+  summary.phases = static_cast<long>(state.phases.size());
   summary.strain_forgotten = static_cast<long>(state.forgotten);
   summary.divergence_rms = measured_.flow.divergence_rms;
   summary.divergence_max = measured_.flow.divergence_max;

@@ -29,8 +29,10 @@ PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const 
   PetscFunctionBeginUser;
   std::vector<int> colour(places.size(), 0);
   std::vector<BodyMove> moves;
+  std::string crowded;
   for (int round = 0; round < most_colours; ++round) {
-    PetscCall(separate_bodies(grid, exchange, colours, &moves));
+    PetscCall(separate_bodies(grid, exchange, colours, &moves, &crowded));
+    PetscCall(fail_together(grid.comm(), crowded));
     if (moves.empty() || !refill) PetscFunctionReturn(0);
     for (const BodyMove &move : moves) colour[move.label - first_label] = move.to;
     refill_phases(grid, species, places, first_label, colour, colours);  // whole bodies may be near others

@@ -1,9 +1,9 @@
 #include "bodies/colours.hpp"
 
+#include "bodies/near_bodies.hpp"
 #include "field/walls.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace eulastic {
 namespace {
@@ -28,21 +28,30 @@ private:
   std::vector<BodyMove> ways_;  // by label
 };
 
-void copy_component(const Grid &grid, const Ways &ways, ConstView label, const TensorComponent &c, int f, int from,
-                    std::vector<Phase> *phases) {
+// `tensor`: the component in the phase that `ways` lead away from, before any body has moved.
+void copy_component(const Grid &grid, const Ways &ways, const BodyCells &cells, const TensorComponent &c, int f,
+                    ConstView tensor, std::vector<Phase> *phases) {
   const Staggering at = c.staggering();
   const bool edge = c.a != c.b;
-  const std::ptrdiff_t a = edge ? label.stride(c.a) : 0, b = edge ? label.stride(c.b) : 0;
-  const ConstView tensor = (*phases)[from].tensor[f];
+  const std::ptrdiff_t a = edge ? cells.label.stride(c.a) : 0, b = edge ? cells.label.stride(c.b) : 0;
   for (int k = 0; k < grid.points_end(2, at[2]); ++k)
     for (int j = 0; j < grid.points_end(1, at[1]); ++j)
       for (int i = 0; i < grid.points_end(0, at[0]); ++i) {
-        const double *q = &label.row(j, k)[i];
-        for (const double name : {q[0], q[-a], q[-b], q[-a - b]}) {
-          const int to = name > 0 ? ways.of(name) : -1;
+        const double *name = &cells.label.row(j, k)[i], *phi = &cells.fraction.row(j, k)[i];
+        for (const std::ptrdiff_t cell : {std::ptrdiff_t(0), -a, -b, -a - b}) {
+          const int to = phi[cell] > BodyCells::threshold && name[cell] > 0 ? ways.of(name[cell]) : -1;
           if (to >= 0) (*phases)[to].tensor[f](i, j, k) = tensor(i, j, k);
         }
       }
+}
+
+// Copies of one field of every phase that bodies leave, taken by `field(phase)`.
+template <class Field>
+std::vector<FieldBlock> copies(const std::vector<Ways> &ways, std::vector<Phase> *phases, Field field) {
+  std::vector<FieldBlock> result(phases->size());
+  for (std::size_t p = 0; p < phases->size(); ++p)
+    if (!ways[p].empty()) result[p].copy_from(field((*phases)[p]));
+  return result;
 }
 
 }  // namespace
@@ -84,28 +93,35 @@ bool set_colours(const Grid &grid, const std::vector<long> &first, std::vector<P
   return true;
 }
 
+// Bodies may change places: every field is copied before it is written.
 void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vector<Phase> *phases) {
   const auto &components = tensor_components(grid.dimension());
-  for (int from = 0; from < static_cast<int>(phases->size()); ++from) {
-    const Ways ways(moves, from);
-    if (ways.empty()) continue;
-    Phase &phase = (*phases)[from];
-    for (std::size_t c = 0; c < components.size(); ++c)
-      copy_component(grid, ways, phase.label[0], components[c], static_cast<int>(c), from, phases);
+  const int count = static_cast<int>(phases->size());
+  std::vector<Ways> ways;
+  for (int from = 0; from < count; ++from) ways.emplace_back(moves, from);
+  const auto label = copies(ways, phases, [](Phase &phase) { return phase.label.part(0, 1); });
+  const auto fraction = copies(ways, phases, [](Phase &phase) { return phase.fraction.part(0, 1); });
+  for (int c = 0; c < static_cast<int>(components.size()); ++c) {
+    const auto tensor = copies(ways, phases, [c](Phase &phase) { return phase.tensor.part(c, 1); });
+    for (int from = 0; from < count; ++from)
+      if (!ways[from].empty())
+        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, components[c], c, tensor[from][0],
+                       phases);
   }
-  for (int from = 0; from < static_cast<int>(phases->size()); ++from) {
-    const Ways ways(moves, from);
-    if (ways.empty()) continue;
-    const View fraction = (*phases)[from].fraction[0], label = (*phases)[from].label[0];
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        double &name = label(i, row.j, row.k);
-        const int to = name > 0 ? ways.of(name) : -1;
-        if (to < 0) continue;
-        (*phases)[to].fraction[0](i, row.j, row.k) = std::exchange(fraction(i, row.j, row.k), 0);
-        (*phases)[to].label[0](i, row.j, row.k) = std::exchange(name, 0);
-      }
-  }
+  for (const bool arrive : {false, true})
+    for (int from = 0; from < count; ++from) {
+      if (ways[from].empty()) continue;
+      for (const Segment &row : grid.rows())
+        for (int i = row.i_begin; i < row.i_end; ++i) {
+          const double name = label[from][0](i, row.j, row.k), phi = fraction[from][0](i, row.j, row.k);
+          const int to = name > 0 ? ways[from].of(name) : -1;
+          if (to < 0) continue;
+          Phase &phase = (*phases)[arrive ? to : from];
+          double &there = phase.fraction[0](i, row.j, row.k);
+          if (!arrive || phi >= there) phase.label[0](i, row.j, row.k) = arrive ? name : 0;
+          there = arrive ? std::min(there + phi, 1.0) : 0;
+        }
+    }
 }
 
 }  // namespace eulastic

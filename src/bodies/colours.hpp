@@ -13,9 +13,10 @@ std::vector<long> species_of_colours(const std::vector<Phase> &phases);
 /// Adds empty phases or removes some until species_of_colours(phases) is `first`. False if that is impossible.
 bool set_colours(const Grid &grid, const std::vector<long> &first, std::vector<Phase> *phases);
 
-/// phi, label and B of the owned cells of each body, and B of all edges that touch one, go to its new phase; there B of
-/// nobody is overwritten. B stays where it was, too: it means nothing any more where phi is gone. One ghost of the
-/// label.
+/// phi and label of the owned cells of each body, and B of all points that a cell of BodyCells touches, go to its new
+/// phase; there B of nobody is overwritten. Where remains of two bodies share a cell their phi adds up and the label of
+/// the larger stays. B stays where it was, too: it means nothing any more where phi is gone. One ghost of label and
+/// phi.
 void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vector<Phase> *phases);
 
 }  // namespace eulastic

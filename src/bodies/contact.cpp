@@ -1,21 +1,71 @@
 #include "bodies/contact.hpp"
 
 #include "base/events.hpp"
+#include "bodies/colouring.hpp"
 #include "bodies/colours.hpp"
 #include "bodies/near_bodies.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <map>
 #include <set>
 
 namespace eulastic {
 namespace {
 
-// Positions of the phases of one species.
-std::vector<int> colours_of(const std::vector<Phase> &phases, const std::string &species) {
-  std::vector<int> colours;
-  for (std::size_t p = 0; p < phases.size(); ++p)
-    if (phases[p].species == species) colours.push_back(static_cast<int>(p));
+BodyCells cells_of(const Phase &phase) { return {phase.label[0], phase.fraction[0]}; }
+
+// Positions of the phases of each species with `separate`, by its first.
+std::map<int, std::vector<int>> colours_of(const std::vector<Phase> &phases) {
+  std::map<int, std::vector<int>> colours;
+  for (int p = 0; p < static_cast<int>(phases.size()); ++p) {
+    if (!phases[p].separate) continue;
+    int first = 0;
+    while (phases[first].species != phases[p].species) ++first;
+    colours[first].push_back(p);
+  }
   return colours;
+}
+
+PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vector<int> &colours,
+                             std::vector<Phase> *phases) {
+  PetscFunctionBeginUser;
+  for (const int p : colours) {
+    PetscCall(exchange.update((*phases)[p].label, reach));
+    PetscCall(exchange.update((*phases)[p].fraction, reach));
+  }
+  PetscFunctionReturn(0);
+}
+
+// The phase of every body in `colours`, of all ranks.
+PetscErrorCode find_homes(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
+                          std::map<int, int> *homes) {
+  PetscFunctionBeginUser;
+  std::vector<NearBodies> found;
+  for (const int p : colours)
+    for (const int label : labels_in(grid, phases[p].label[0])) found.push_back({label, 0, p});
+  PetscCall(gather_near(grid.comm(), &found));
+  homes->clear();
+  for (const NearBodies &home : found) homes->emplace(home.body, home.phase);
+  PetscFunctionReturn(0);
+}
+
+// Removes phases without a body from the end of a species' colours. One Allreduce a phase, and most often one only.
+PetscErrorCode remove_empty_colours(const Grid &grid, std::vector<Phase> *phases) {
+  PetscFunctionBeginUser;
+  for (bool removed = true; removed;) {
+    removed = false;
+    for (const auto &[first, colours] : colours_of(*phases)) {
+      if (colours.size() == 1) continue;
+      int bodies = static_cast<int>(labels_in(grid, (*phases)[colours.back()].label[0]).size());
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_INT, MPI_MAX, grid.comm()));
+      if (bodies > 0) continue;
+      phases->erase(phases->begin() + colours.back());
+      removed = true;
+      break;  // positions have changed
+    }
+  }
+  PetscFunctionReturn(0);
 }
 
 // Of every pair in one phase the higher label, unless the other one goes already. `pairs` are ascending.
@@ -27,26 +77,25 @@ std::vector<BodyMove> choose_bodies(const std::vector<NearBodies> &pairs) {
   return moves;
 }
 
-// All that is near the bodies that move, in any phase of their species.
-PetscErrorCode find_neighbours(const Grid &grid, const std::vector<Phase> &phases, const std::vector<BodyMove> &moves,
-                               std::vector<NearBodies> *pairs) {
+// All that is near the bodies that move, in the other phases of their species.
+PetscErrorCode find_neighbours(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
+                               const std::vector<BodyMove> &moves, int reach, std::vector<NearBodies> *pairs) {
   PetscFunctionBeginUser;
-  for (int p = 0; p < static_cast<int>(phases.size()); ++p) {
+  for (const int p : colours) {
     std::vector<int> labels;
     for (const BodyMove &move : moves)
       if (move.from == p) labels.push_back(move.label);
-    if (labels.empty()) continue;
-    for (const int q : colours_of(phases, phases[p].species))
-      if (q != p) find_near_others(grid, phases[p].label[0], labels, phases[q].label[0], q, contact_reach, pairs);
+    for (const int q : colours)
+      if (q != p && !labels.empty())
+        find_near_others(grid, cells_of(phases[p]), labels, cells_of(phases[q]), q, reach, pairs);
   }
   PetscCall(gather_near(grid.comm(), pairs));
   PetscFunctionReturn(0);
 }
 
-// The first phase of the species that nobody near a body is in, before the moves or after them.
-PetscErrorCode choose_colours(const Grid &grid, const std::vector<NearBodies> &pairs, std::vector<Phase> *phases,
-                              std::vector<BodyMove> *moves) {
-  PetscFunctionBeginUser;
+// The first phase of the species that nobody near a body is in, before the moves or after them. False if one has none.
+bool choose_colours(const std::vector<int> &colours, const std::vector<NearBodies> &pairs,
+                    std::vector<BodyMove> *moves) {
   for (BodyMove &move : *moves) {
     std::set<int> taken{move.from};
     const auto first = std::lower_bound(pairs.begin(), pairs.end(), NearBodies{move.label, 0, 0});
@@ -56,44 +105,94 @@ PetscErrorCode choose_colours(const Grid &grid, const std::vector<NearBodies> &p
                                           [](const BodyMove &m, int label) { return m.label < label; });
       if (other != moves->end() && other->label == pair->other) taken.insert(other->to);
     }
-    const std::string species = (*phases)[move.from].species;
-    const std::vector<int> colours = colours_of(*phases, species);
-    for (const int colour : colours)
-      if (move.to < 0 && taken.count(colour) == 0) move.to = colour;
-    if (move.to >= 0) continue;
-    if (colours.size() >= most_colours)
-      SETERRQ(grid.comm(), PETSC_ERR_USER_INPUT,
-              "-%s_contact: more than %d bodies within %d cells of each other; accepted: more cells, or merge",
-              species.c_str(), most_colours, contact_reach);
-    move.to = static_cast<int>(phases->size());
-    add_colour(grid, move.from, phases);
+    const auto free = std::find_if(colours.begin(), colours.end(), [&](int c) { return taken.count(c) == 0; });
+    if (free == colours.end()) return false;
+    move.to = *free;
   }
+  return true;
+}
+
+// Colours for all bodies of a species anew, in place of `moves`.
+PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, std::vector<Phase> *phases,
+                        std::vector<BodyMove> *moves, std::string *crowded) {
+  PetscFunctionBeginUser;
+  std::map<int, int> homes;
+  PetscCall(find_homes(grid, *phases, colours, &homes));
+  std::vector<NearBodies> pairs;
+  std::vector<int> bodies;
+  moves->clear();
+  for (const auto &[label, phase] : homes) {
+    bodies.push_back(label);
+    moves->push_back({label, phase, -1});
+  }
+  for (const int p : colours) find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
+  PetscCall(find_neighbours(grid, *phases, colours, *moves, contact_reach, &pairs));
+  const std::vector<int> chosen = colour_bodies(bodies, pairs);
+  const int needed = 1 + *std::max_element(chosen.begin(), chosen.end());
+  if (needed > most_colours) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "-%s_contact: more than %d bodies within %d cells of each other; accepted: more cells, or merge",
+                  (*phases)[colours[0]].species.c_str(), most_colours, contact_reach);
+    *crowded = text;
+    PetscFunctionReturn(0);
+  }
+  while (static_cast<int>(colours.size()) < needed) {
+    colours.push_back(static_cast<int>(phases->size()));
+    add_colour(grid, colours[0], phases);
+  }
+  for (std::size_t b = 0; b < chosen.size(); ++b) (*moves)[b].to = colours[chosen[b]];
+  const auto stays = [](const BodyMove &move) { return move.from == move.to; };
+  moves->erase(std::remove_if(moves->begin(), moves->end(), stays), moves->end());
+  PetscFunctionReturn(0);
+}
+
+// Moves of all bodies of the last phase of a species to others, none if one cannot. From one cell further than the
+// distance that would send them away again.
+PetscErrorCode empty_last_colour(const Grid &grid, GhostExchange &exchange, const std::vector<int> &colours,
+                                 std::vector<Phase> *phases, std::vector<BodyMove> *moves) {
+  PetscFunctionBeginUser;
+  moves->clear();
+  if (colours.size() == 1) PetscFunctionReturn(0);
+  const std::vector<int> last{colours.back()}, others(colours.begin(), colours.end() - 1);
+  std::map<int, int> homes;
+  PetscCall(find_homes(grid, *phases, last, &homes));
+  for (const auto &[label, phase] : homes) moves->push_back({label, phase, -1});
+  PetscCall(update_ghosts(exchange, contact_reach + 1, colours, phases));
+  std::vector<NearBodies> pairs;
+  PetscCall(find_neighbours(grid, *phases, colours, *moves, contact_reach + 1, &pairs));
+  if (!choose_colours(others, pairs, moves)) moves->clear();
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
 PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
-                               std::vector<BodyMove> *moves) {
+                               std::vector<BodyMove> *moves, std::string *crowded) {
   PetscFunctionBeginUser;
   moves->clear();
+  crowded->clear();
   VerbScope scope(Verb::contact);
-  std::vector<NearBodies> pairs;
-  bool any = false;
-  for (std::size_t p = 0; p < phases->size(); ++p) {
-    Phase &phase = (*phases)[p];
-    if (!phase.separate) continue;
-    any = true;
-    PetscCall(exchange.update(phase.label, contact_reach));
-    find_near_in_phase(grid, phase.label[0], static_cast<int>(p), contact_reach, &pairs);
+  PetscCall(remove_empty_colours(grid, phases));
+  for (const auto &[first, colours] : colours_of(*phases)) {
+    std::vector<NearBodies> pairs;
+    std::vector<BodyMove> own;
+    PetscCall(update_ghosts(exchange, contact_reach, colours, phases));
+    for (const int p : colours) find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
+    PetscCall(gather_near(grid.comm(), &pairs));
+    if (pairs.empty()) {
+      PetscCall(empty_last_colour(grid, exchange, colours, phases, &own));
+    } else {
+      own = choose_bodies(pairs);
+      PetscCall(find_neighbours(grid, *phases, colours, own, contact_reach, &pairs));
+      if (!choose_colours(colours, pairs, &own)) PetscCall(recolour(grid, colours, phases, &own, crowded));
+    }
+    moves->insert(moves->end(), own.begin(), own.end());
+    if (!crowded->empty()) moves->clear();
+    if (!crowded->empty()) break;
   }
-  if (!any) PetscFunctionReturn(0);
-  PetscCall(gather_near(grid.comm(), &pairs));
-  if (pairs.empty()) PetscFunctionReturn(0);
-  *moves = choose_bodies(pairs);
-  PetscCall(find_neighbours(grid, *phases, *moves, &pairs));
-  PetscCall(choose_colours(grid, pairs, phases, moves));
-  move_bodies(grid, *moves, phases);
+  std::sort(moves->begin(), moves->end(), [](const BodyMove &a, const BodyMove &b) { return a.label < b.label; });
+  if (!moves->empty()) move_bodies(grid, *moves, phases);
   PetscFunctionReturn(0);
 }
 

@@ -10,9 +10,9 @@
 
 namespace eulastic {
 
-/// Two bodies are near if a labelled cell of one lies within so many cells of one of the other in every direction. The
-/// next look comes before either has reached more than one cell further: until then no stencil of the interface and no
-/// layer of labels sees both, nor WENO5 the other's B.
+/// Two bodies are near if a cell of one lies within so many cells of one of the other in every direction
+/// (bodies/near_bodies.hpp). The next look comes before either has reached more than one cell further: until then no
+/// stencil of the interface and no layer of labels sees both, nor WENO5 the other's B.
 inline constexpr int contact_reach = 3;
 inline constexpr int most_colours = 64;  ///< of a species
 
@@ -22,10 +22,13 @@ struct BodyMove {
 };
 
 /// Collective. Of every two near bodies in a phase with `separate` the one with the higher label moves to the first
-/// phase of its species without a body near it; if there is none, one is appended. Every rank gets the same `moves`,
-/// by label. phi, B and label of a body go as they are, edges of B with them; points of B around it and all ghosts are
-/// the caller's. Needs owned labels. An error of PETSC_ERR_USER_INPUT beyond most_colours.
+/// phase of its species without a body near it. If there is none, all bodies of the species get colours anew, as few
+/// as colour_bodies() needs, and phases are appended if they are more than there are. If no two are near, the bodies of
+/// a species' last phase move to others if all of them can; one that is empty is removed, before anything else.
+/// Every rank gets the same `moves`, by label. phi, B and label of a body go as they are, edges of B with them; points
+/// of B around it and all ghosts are the caller's. Needs owned labels and phi. `crowded`: one line if most_colours are
+/// too few; then nothing moves.
 PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
-                               std::vector<BodyMove> *moves);
+                               std::vector<BodyMove> *moves, std::string *crowded);
 
 }  // namespace eulastic

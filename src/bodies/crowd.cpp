@@ -72,7 +72,8 @@ bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
   return true;
 }
 
-bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
+template <class Stop>
+bool Crowd::any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const {
   Int3 list[3], count{1, 1, 1};  // bins of each direction, none twice
   for (int d = 0; d < 3; ++d) {
     list[d] = {0, 1, 2};
@@ -94,10 +95,23 @@ bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
         const std::size_t at = list[0][i] + std::size_t(bins_[0]) * (list[1][j] + std::size_t(bins_[1]) * list[2][k]);
         for (int b = first_[at]; b >= 0; b = links_[b].next) {
           if (static_cast<std::size_t>(b) == except || is_far(body.centre, links_[b].centre, reach)) continue;
-          if (!clear(body, bodies_[b])) return false;
+          if (!clear(body, bodies_[b]) && stop(b)) return true;
         }
       }
-  return true;
+  return false;
+}
+
+bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
+  return !any_touching(body, except, [](int) { return true; });
+}
+
+std::vector<int> Crowd::touching(std::size_t b) const {
+  std::vector<int> found;
+  any_touching(bodies_[b], b, [&](int other) {
+    found.push_back(other);
+    return false;
+  });
+  return found;
 }
 
 }  // namespace eulastic

@@ -16,6 +16,8 @@ public:
   const PlacedConvex &operator[](std::size_t b) const { return bodies_[b]; }
   void add(const PlacedConvex &body);
   void move(std::size_t b, const PlacedConvex &to);
+  /// Those that touch body b, periodic images included.
+  std::vector<int> touching(std::size_t b) const;
   /// Whether `body`, its centre in the box, touches none but body `except`, periodic images included.
   bool has_room_for(const PlacedConvex &body, std::size_t except) const;
 
@@ -29,6 +31,9 @@ private:
   std::size_t bin(const Real3 &x) const;
   bool is_far(const Real3 &a, const Real3 &b, double reach) const;
   bool clear(const PlacedConvex &a, const PlacedConvex &b) const;
+  // Whether `stop`(index) says so of any body that touches this one.
+  template <class Stop>
+  bool any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const;
 
   GridSpec grid_;
   int dimension_;

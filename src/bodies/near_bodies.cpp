@@ -35,7 +35,7 @@ struct Blocks {
   Int3 count{};
   std::vector<double> low, high;
 
-  Blocks(const Box &cells, ConstView label, int block_size) : size(block_size), box(cells) {
+  Blocks(const Box &cells, const BodyCells &bodies, int block_size) : size(block_size), box(cells) {
     for (int d = 0; d < 3; ++d) count[d] = (box.end[d] - box.begin[d] + size - 1) / size;
     low.assign(std::size_t(count[0]) * count[1] * count[2], nobody);
     high.assign(low.size(), 0);
@@ -47,13 +47,13 @@ struct Blocks {
         std::fill(row_high.begin(), row_high.end(), 0);
         for (int k = first(2, bk); k < last(2, bk); ++k)
           for (int j = first(1, bj); j < last(1, bj); ++j) {
-            const double *q = label.row(j, k) + box.begin[0];
+            const double *q = bodies.label.row(j, k) + box.begin[0], *phi = bodies.fraction.row(j, k) + box.begin[0];
             double *const least = row_low.data(), *const most = row_high.data();
 #pragma omp simd
             for (int i = 0; i < width; ++i) {
-              const double own = q[i] > 0 ? q[i] : nobody;
-              least[i] = own < least[i] ? own : least[i];
-              most[i] = q[i] > most[i] ? q[i] : most[i];
+              const double own = phi[i] > BodyCells::threshold ? q[i] : 0, low_one = own > 0 ? own : nobody;
+              least[i] = low_one < least[i] ? low_one : least[i];
+              most[i] = own > most[i] ? own : most[i];
             }
           }
         const std::size_t row = std::size_t(count[0]) * (bj + std::size_t(count[1]) * bk);
@@ -80,27 +80,27 @@ struct Blocks {
 };
 
 // On the skin of its body, where the cell of it that is nearest to anything is.
-bool is_skin(const Grid &grid, ConstView label, const Int3 &c) {
-  const double *q = &label.row(c[1], c[2])[c[0]];
+bool is_skin(const Grid &grid, const BodyCells &cells, const Int3 &c) {
+  const double own = cells(c[0], c[1], c[2]);
   for (int d = 0; d < grid.dimension(); ++d)
-    if (q[-label.stride(d)] != *q || q[label.stride(d)] != *q) return true;
+    for (const int side : {-1, 1}) {
+      Int3 next = c;
+      next[d] += side;
+      if (cells(next[0], next[1], next[2]) != own) return true;
+    }
   return false;
 }
 
 // Adds the pairs of body `own` of a cell with the other labels in a box around it.
-void look_around(ConstView label, const Box &window, double own, int phase, std::vector<NearBodies> *found) {
-  const int n = window.end[0] - window.begin[0];
+void look_around(const BodyCells &cells, const Box &window, double own, int phase, std::vector<NearBodies> *found) {
   for (int k = window.begin[2]; k < window.end[2]; ++k)
-    for (int j = window.begin[1]; j < window.end[1]; ++j) {
-      const double *q = label.row(j, k) + window.begin[0];
-      int others = 0;
-      for (int i = 0; i < n; ++i) others += (q[i] > 0) & (q[i] != own);
-      for (int i = 0; others > 0 && i < n; ++i) {
-        if (q[i] <= 0 || q[i] == own) continue;
-        const NearBodies pair{static_cast<int>(own), static_cast<int>(q[i]), phase};
+    for (int j = window.begin[1]; j < window.end[1]; ++j)
+      for (int i = window.begin[0]; i < window.end[0]; ++i) {
+        const double label = cells.label(i, j, k);
+        if (label <= 0 || label == own || cells(i, j, k) <= 0) continue;
+        const NearBodies pair{static_cast<int>(own), static_cast<int>(label), phase};
         if (found->empty() || !(found->back() == pair)) found->push_back(pair);
       }
-    }
 }
 
 void sort_out(std::vector<NearBodies> *found) {
@@ -110,9 +110,33 @@ void sort_out(std::vector<NearBodies> *found) {
 
 }  // namespace
 
-void find_near_in_phase(const Grid &grid, ConstView label, int phase, int reach, std::vector<NearBodies> *found) {
+std::vector<int> labels_in(const Grid &grid, ConstView label) {
+  std::vector<int> labels;
+  double last = 0;
+  std::size_t sorted = 64;
+  const auto sort = [&] {
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  };
+  for (const Segment &row : grid.rows()) {
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const double name = label(i, row.j, row.k);
+      if (name > 0 && name != last) labels.push_back(static_cast<int>(name));
+      last = name;
+    }
+    if (labels.size() > 2 * sorted) {
+      sort();
+      sorted = std::max(labels.size(), sorted);
+    }
+  }
+  sort();
+  return labels;
+}
+
+void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int reach,
+                        std::vector<NearBodies> *found) {
   const Box all(grid, reach), owned(grid, 0);
-  const Blocks blocks(all, label, reach);
+  const Blocks blocks(all, cells, reach);
   std::vector<NearBodies> pairs;
   for (int bk = 0; bk < blocks.count[2]; ++bk)
     for (int bj = 0; bj < blocks.count[1]; ++bj)
@@ -121,8 +145,8 @@ void find_near_in_phase(const Grid &grid, ConstView label, int phase, int reach,
         for (int k = std::max(blocks.first(2, bk), 0); k < std::min(blocks.last(2, bk), owned.end[2]); ++k)
           for (int j = std::max(blocks.first(1, bj), 0); j < std::min(blocks.last(1, bj), owned.end[1]); ++j)
             for (int i = std::max(blocks.first(0, bi), 0); i < std::min(blocks.last(0, bi), owned.end[0]); ++i)
-              if (label(i, j, k) > 0 && is_skin(grid, label, {i, j, k}))
-                look_around(label, all.around({i, j, k}, reach), label(i, j, k), phase, &pairs);
+              if (cells(i, j, k) > 0 && is_skin(grid, cells, {i, j, k}))
+                look_around(cells, all.around({i, j, k}, reach), cells(i, j, k), phase, &pairs);
         sort_out(&pairs);
       }
   for (NearBodies &pair : pairs)
@@ -131,8 +155,8 @@ void find_near_in_phase(const Grid &grid, ConstView label, int phase, int reach,
   found->insert(found->end(), pairs.begin(), pairs.end());
 }
 
-void find_near_others(const Grid &grid, ConstView own, const std::vector<int> &labels, ConstView others, int phase,
-                      int reach, std::vector<NearBodies> *found) {
+void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
+                      int phase, int reach, std::vector<NearBodies> *found) {
   const Box all(grid, reach);
   std::vector<NearBodies> pairs;
   for (const Segment &row : grid.rows()) {

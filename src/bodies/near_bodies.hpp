@@ -14,14 +14,25 @@ struct NearBodies {
   bool operator==(const NearBodies &b) const noexcept { return body == b.body && other == b.other && phase == b.phase; }
 };
 
-/// Local: pairs in one phase, body > other, found from owned cells. `reach` ghosts of the label. One pass over the
-/// cells, and a closer look only where blocks of reach^3 cells see several labels.
-void find_near_in_phase(const Grid &grid, ConstView label, int phase, int reach, std::vector<NearBodies> *found);
+/// The cells of bodies in one phase: those with a label and more than `threshold` of phi.
+struct BodyCells {
+  static constexpr double threshold = 1e-5;  ///< THINC moves cells with less without a tail: kernels::nearly_pure
+  ConstView label, fraction;
+  /// The label, 0 where no body is.
+  double operator()(int i, int j, int k) const noexcept { return fraction(i, j, k) > threshold ? label(i, j, k) : 0; }
+};
 
-/// Local: pairs of a body of `labels` (ascending), whose owned cells `own` holds, and any body that `others`, the
-/// label of another phase, has. `reach` ghosts of both.
-void find_near_others(const Grid &grid, ConstView own, const std::vector<int> &labels, ConstView others, int phase,
-                      int reach, std::vector<NearBodies> *found);
+/// Local: the labels of owned cells, ascending, each once.
+std::vector<int> labels_in(const Grid &grid, ConstView label);
+
+/// Local: pairs in one phase, body > other, found from owned cells. `reach` ghosts. One pass over the cells, and a
+/// closer look only where blocks of reach^3 cells see several labels.
+void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int reach, std::vector<NearBodies> *found);
+
+/// Local: pairs of a body of `labels` (ascending), whose owned cells `own` holds, and any body that `others`, those of
+/// another phase, has. `reach` ghosts of both.
+void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
+                      int phase, int reach, std::vector<NearBodies> *found);
 
 /// Collective: the pairs of all ranks, each once, ascending.
 PetscErrorCode gather_near(MPI_Comm comm, std::vector<NearBodies> *found);

@@ -313,7 +313,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
 PetscErrorCode Solver::separate_bodies() {
   PetscFunctionBeginUser;
   std::vector<BodyMove> moves;
-  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves));
+  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves, &crowded_));
   std::set<int> changed;
   for (const BodyMove &move : moves) changed.insert({move.from, move.to});
   for (const int p : changed) PetscCall(settle(now_.phases[p]));

@@ -53,6 +53,8 @@ public:
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
+  /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp).
+  const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
   long sweeps() const { return sweeps_before_ + pressure_solver_->sweeps(); }
@@ -83,6 +85,7 @@ private:
   std::unique_ptr<PressureSolver> pressure_solver_;
   State now_;
   BodyTracker bodies_;
+  std::string crowded_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
   OccupiedRows next_rows_;     ///< of next_fraction_
   ActiveSegments stale_;       ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase

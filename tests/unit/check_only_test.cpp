@@ -38,11 +38,12 @@ TEST(CheckOnly, NumbersOfAChannel) {
   // One phase more: phi, label, 6 of B.
   const std::string two =
       "-time_end 1 -grid_cells 16,16,16 -grid_length 8,8,8 -species cell -cell_shape sphere "
-      "-cell_radius 1 -cell_shear_modulus 1 -cell_placement lattice -cell_count 2,1,1 ";
-  std::snprintf(memory, sizeof memory, "near: %.4g GB more per rank", 8e-9 * 8 * std::pow(16 + 2 * 5, 3));
+      "-cell_radius .8 -cell_shear_modulus 1 -cell_placement lattice -cell_count 2,1,1 ";
+  std::snprintf(memory, sizeof memory, "2, 1 for the species, %.4g GB per rank", 8e-9 * 8 * std::pow(16 + 2 * 5, 3));
   EXPECT_NE(check_report(parse_line(two).config, 1).find(memory), std::string::npos);
-  EXPECT_EQ(check_report(parse_line(two + "-cell_contact merge").config, 1).find("come near"), std::string::npos);
-  EXPECT_EQ(report.find("come near"), std::string::npos);
+  EXPECT_EQ(check_report(parse_line(two + "-cell_contact merge").config, 1).find("phases (estimate)"),
+            std::string::npos);
+  EXPECT_EQ(report.find("phases (estimate)"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
   EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");

@@ -59,3 +59,18 @@ TEST(Memory, RefusedWithBothNumbers) {
   EXPECT_NE(off.find("a field of 13060694016 numbers"), std::string::npos) << off;
   EXPECT_NE(refusal(scene + " -guard_memory 1e-9").find("1e-09 now"), std::string::npos);
 }
+
+TEST(Memory, PhasesThatKeepBodiesApartCount) {
+  // Spheres two apart, of radius 0.3: seven cells between surfaces are 0.875 here, 1.75 with half as many cells.
+  const std::string line =
+      "-time_end 1 -grid_length 8,8,8 -species vessel,ball -vessel_shape slab -vessel_axis y -vessel_interval 0,.1 "
+      "-vessel_shear_modulus 1 -ball_shape sphere -ball_radius .3 -ball_shear_modulus 1 -ball_placement lattice "
+      "-ball_count 4,4,4 -grid_cells ";
+  EXPECT_EQ(expected_phases(parse_line(line + "64,64,64").config), 2);
+  EXPECT_EQ(expected_phases(parse_line(line + "32,32,32").config), 3);  // as on a chessboard
+  EXPECT_EQ(expected_phases(parse_line(line + "32,32,32 -ball_contact merge").config), 2);
+  const Config apart = parse_line(line + "32,32,32").config,
+               merged = parse_line(line + "32,32,32 -ball_contact merge").config;
+  EXPECT_DOUBLE_EQ(bytes_per_rank(apart, {1, 1, 1}),
+                   bytes_per_rank(merged, {1, 1, 1}) + bytes_per_phase(apart, {1, 1, 1}));
+}
