@@ -65,9 +65,10 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::begin(FieldBlock &block, int width) {
+PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscSF sf;
   PetscFunctionBeginUser;
+  if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
   PetscCall(forest({block.count(), width}, &sf));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
@@ -78,8 +79,10 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
   PetscSF sf;
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
-  PetscCall(forest({block.count(), width}, &sf));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+  if (!rows || !rows->inside()) {
+    PetscCall(forest({block.count(), width}, &sf));
+    PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+  }
   if (wraps_x()) {
     const Layout &own = block.layout();
     // Rows behind walls are left alone: what is there must not depend on whether x is split.
@@ -104,7 +107,7 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
 
 PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(begin(block, width));
+  PetscCall(begin(block, width, rows));
   PetscCall(end(block, width, rows));
   PetscFunctionReturn(0);
 }

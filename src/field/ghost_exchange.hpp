@@ -17,7 +17,8 @@ public:
 
   /// Starts filling `width` ghost layers of every field of `block`. One exchange per block at a time; several
   /// blocks may be under way together.
-  PetscErrorCode begin(FieldBlock &block, int width);
+  /// Where `rows` is given and all lies inside(), ghosts are taken to be valid already.
+  PetscErrorCode begin(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not. In idle
   /// rows of `rows`, where it is given, what lies across a periodic x is taken to be valid already.
   PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);

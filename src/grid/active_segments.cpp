@@ -75,10 +75,14 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, const Occupie
     for (int j = 0; j < rows_y_ + reach; ++j) {
       const int from_j = begin_[1] + j - low, from_k = begin_[2] + k - low_z;
       if (skip && rows.idle(from_j, from_k)) continue;
-      const double *q = value.row(from_j, from_k) + begin_[0] - low;
+      const int first = begin_[0] - low, end = first + static_cast<int>(flags.size());
+      const OccupiedRows::Span span = skip ? rows.span(from_j, from_k) : OccupiedRows::Span{first, end};
+      const double *q = value.row(from_j, from_k) + first;
       unsigned char any = 0;
+      std::fill(flags.begin(), flags.end(), 0);
 #pragma omp simd reduction(| : any)
-      for (std::size_t i = 0; i < flags.size(); ++i) any |= flags[i] = flag(q[i]);
+      for (int i = std::max(span.begin, first) - first; i < std::min(span.end, end) - first; ++i)
+        any |= flags[i] = flag(q[i]);
       if (any == 0) continue;
       for (int done = 1, step; done <= reach; done += step) {  // of reach + 1 flags
         step = std::min(done, reach + 1 - done);

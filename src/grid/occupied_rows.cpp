@@ -5,44 +5,88 @@
 namespace eulastic {
 namespace {
 
-bool occupied(const double *row, int begin, int end) {
-  constexpr int piece = 64;
-  for (int i = begin; i < end; i += piece) {
-    const int stop = i + piece < end ? i + piece : end;
-    bool any = false;
-#pragma omp simd reduction(| : any)
-    for (int m = i; m < stop; ++m) any |= row[m] != 0;
-    if (any) return true;
-  }
-  return false;
+using Span = OccupiedRows::Span;
+
+bool any(const double *row, int begin, int end) {
+  bool found = false;
+#pragma omp simd reduction(| : found)
+  for (int i = begin; i < end; ++i) found |= row[i] != 0;
+  return found;
+}
+
+// From the first to the last piece of the row with a value that is not zero.
+Span occupied(const double *row, Span within) {
+  constexpr int piece = 16;
+  while (within.begin < within.end && !any(row, within.begin, std::min(within.begin + piece, within.end)))
+    within.begin += piece;
+  while (within.begin < within.end && !any(row, std::max(within.end - piece, within.begin), within.end))
+    within.end -= piece;
+  return within;
+}
+
+bool empty(const Span &s) { return s.begin >= s.end; }
+
+void join(const Span &more, Span *sum) {
+  if (empty(more)) return;
+  *sum = empty(*sum) ? more : Span{std::min(sum->begin, more.begin), std::max(sum->end, more.end)};
 }
 
 }  // namespace
 
-void OccupiedRows::find(const Grid &grid, ConstView value) { read(grid, value, {}); }
-
-void OccupiedRows::follow(const Grid &grid, ConstView value) {
-  const OccupiedRows before = std::move(*this);
-  read(grid, value, before);
+PetscErrorCode OccupiedRows::find(const Grid &grid, ConstView value) {
+  PetscFunctionBeginUser;
+  PetscCall(read(grid, value, {}));
+  PetscFunctionReturn(0);
 }
 
-void OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &before) {
+PetscErrorCode OccupiedRows::follow(const Grid &grid, ConstView value) {
+  PetscFunctionBeginUser;
+  const OccupiedRows before = std::move(*this);
+  PetscCall(read(grid, value, before));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &before) {
+  PetscFunctionBeginUser;
   const Int3 &n = grid.owned(), &ghosts = grid.layout().ghosts;
-  const int reach = ghosts[1] + 2, reach_z = ghosts[2] > 0 ? reach : 0;
+  const int reach = ghosts[0] + 2, reach_z = ghosts[2] > 0 ? reach : 0;
+  const bool split_x = grid.processors(0) > 1;
   rows_y_ = n[1];
   rows_z_ = n[2];
-  near_.assign(static_cast<std::size_t>(n[1]) * n[2], 0);
-#ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
-  near_.assign(near_.size(), 1);
-  return;
-#endif
+  whole_ = {-ghosts[0], n[0] + ghosts[0]};
+  spans_.assign(static_cast<std::size_t>(n[1]) * n[2], {0, 0});
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
     for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
-      if (before.idle(j, k) || !occupied(value.row(j, k), -ghosts[0], n[0] + ghosts[0])) continue;
+      const bool was_idle = before.idle(j, k);
+      if (was_idle && !split_x) continue;
+      const double *row = value.row(j, k);
+      const Span old = before.span(j, k);
+      Span found = was_idle ? old : occupied(row, {std::max(old.begin, 0), std::min(old.end, n[0])});
+      join(occupied(row, {whole_.begin, 0}), &found);  // what comes from beyond
+      join(occupied(row, {n[0], whole_.end}), &found);
+      if (empty(found)) continue;
+      found = {std::max(found.begin - reach, whole_.begin), std::min(found.end + reach, whole_.end)};
       for (int z = std::max(k - reach_z, 0); z < std::min(k + reach_z + 1, n[2]); ++z)
         for (int y = std::max(j - reach, 0); y < std::min(j + reach + 1, n[1]); ++y)
-          near_[y + static_cast<std::size_t>(n[1]) * z] = 1;
+          join(found, &spans_[y + static_cast<std::size_t>(n[1]) * z]);
     }
+#ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
+  spans_.assign(spans_.size(), whole_);
+#endif
+  int crossing = 0;
+  cells_ = 0;
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const Span s = span(j, k);
+      if (empty(s)) continue;
+      cells_ += std::min(s.end, n[0]) - std::max(s.begin, 0);
+      const bool inner[3] = {!split_x || (s.begin >= ghosts[0] && s.end <= n[0] - ghosts[0]),
+                             j >= ghosts[1] && j < n[1] - ghosts[1], k >= ghosts[2] && k < n[2] - ghosts[2]};
+      if (!(inner[0] && inner[1] && inner[2])) crossing = 1;
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &crossing, 1, MPI_INT, MPI_MAX, grid.comm()));
+  inside_ = crossing == 0;
+  PetscFunctionReturn(0);
 }
 
 }  // namespace eulastic

@@ -1,32 +1,50 @@
-// Which rows of a field hold anything but zeros: what there is to do in the others is known without reading them.
+// Where rows of a field hold anything but zeros: what there is to do elsewhere is known without reading it.
 #pragma once
 
 #include "grid/grid.hpp"
 
-#include <algorithm>
+#include <limits>
+#include <vector>
 
 namespace eulastic {
 
 class OccupiedRows {
 public:
-  /// Reads all of `value`, ghosts included. Before that every row counts as occupied.
-  void find(const Grid &grid, ConstView value);
-  /// The same after a transport by less than a reach: what was idle is still empty and is not read.
-  void follow(const Grid &grid, ConstView value);
-  /// Whether row (j, k) and all rows that stencils join to it in y and z are zero, ghosts in x included: as many as
-  /// there are ghosts, one as edges belong to the centres below them too, one for what moves within a step. Never for
-  /// ghost rows: what comes to them from beyond is not known.
-  bool idle(int j, int k) const noexcept {
-    return j >= 0 && k >= 0 && j < rows_y_ && k < rows_z_ && !near_[j + static_cast<std::size_t>(rows_y_) * k];
+  /// Cells of a row, ghosts included: begin <= i < end.
+  struct Span {
+    int begin, end;
+  };
+
+  /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
+  PetscErrorCode find(const Grid &grid, ConstView value);
+  /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read.
+  PetscErrorCode follow(const Grid &grid, ConstView value);
+
+  /// Outside it row (j, k) and all that stencils join to it are zero: as far as there are ghosts, one as edges belong
+  /// to the centres below them too, one for what moves within a step. All of a ghost row: what comes to it from beyond
+  /// is not known.
+  Span span(int j, int k) const noexcept {
+    const bool known = j >= 0 && k >= 0 && j < rows_y_ && k < rows_z_;
+    return known ? spans_[j + static_cast<std::size_t>(rows_y_) * k] : whole_;
   }
-  /// Owned rows that are not idle.
-  std::ptrdiff_t busy() const noexcept { return std::count(near_.begin(), near_.end(), 1); }
+  bool idle(int j, int k) const noexcept {
+    const Span s = span(j, k);
+    return s.begin >= s.end;
+  }
+  /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
+  /// exchange.
+  bool inside() const noexcept { return inside_; }
+  /// Owned cells in spans.
+  std::ptrdiff_t cells() const noexcept { return cells_; }
 
 private:
-  void read(const Grid &grid, ConstView value, const OccupiedRows &before);
+  PetscErrorCode read(const Grid &grid, ConstView value, const OccupiedRows &before);
 
   int rows_y_ = 0, rows_z_ = 0;
-  std::vector<unsigned char> near_;
+  Span whole_{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+  std::vector<Span> spans_;
+  bool inside_ = false;
+  std::ptrdiff_t cells_ = 0;
 };
 
 }  // namespace eulastic

@@ -35,19 +35,19 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
-      const Segment row{0, n[0], j, k};
+      const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
+      const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
       double *next = out[0].row(j, k);
-      if (phase.rows.idle(j, k)) {
-        if (!next_rows.idle(j, k))
-          for (int i = -ghosts; i < n[0] + ghosts; ++i) next[i] = 0;
-        continue;
-      }
+      for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
+      for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
+      const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
+      if (row.size() <= 0) continue;
       for (int d = 0; d < Dim; ++d)
         kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
       kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
       const double *now = phi.row(j, k);
 #pragma omp simd
-      for (int i = 0; i < n[0]; ++i) {
+      for (int i = row.i_begin; i < row.i_end; ++i) {
         const double moved = kernels::fma(dt, rate[i], now[i]);
         next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
       }
@@ -189,7 +189,7 @@ PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &ve
     advect_2d(terms, phase, next_rows, next, scratch);
   else
     advect_3d(terms, phase, next_rows, next, scratch);
-  scope.flops(double(phase.rows.busy()) * grid.owned()[0] * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
+  scope.flops(double(phase.rows.cells()) * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
   PetscFunctionReturn(0);
 }
 

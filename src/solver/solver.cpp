@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace eulastic {
 
@@ -76,11 +77,11 @@ PetscErrorCode Solver::prepare() {
 PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
   PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
-  phase.rows.find(*grid_, phase.fraction[0]);
+  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(complete_exterior(phase, phase.tensor));
+  PetscCall(complete_exterior(phase, phase.tensor, nullptr));
   PetscFunctionReturn(0);
 }
 
@@ -92,7 +93,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
-    phase.rows.find(*grid_, phase.fraction[0]);
+    PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
     PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
   }
@@ -232,38 +233,41 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
 
 PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
+  const OccupiedRows next_rows = std::exchange(next_rows_, phase.rows);
+  // Ghosts need an exchange if they needed one in what is swapped in: that may be of another phase.
+  const auto rows = [&] { return phase.rows.inside() && !next_rows.inside() ? nullptr : &phase.rows; };
   if (spec_.interface == InterfaceScheme::thinc) {
     PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
   } else {
-    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows_, next_fraction_));  // (4)
+    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
-    next_rows_ = phase.rows;
   }
-  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts, &phase.rows));  // it has moved less than a reach
-  phase.rows.follow(*grid_, phase.fraction[0]);
+  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts, rows()));  // it has moved less than a cell
+  PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(transport_left_cauchy_green(phase, before, dt));  // (5)
+  PetscCall(transport_left_cauchy_green(phase, before, dt, rows()));  // (5)
   PetscFunctionReturn(0);
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 // `before` is where the B of the phase differed from I; what lies outside it stays I untouched. The first stage is read
 // no further than that of now: the rest of it may be anything.
-PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt) {
+PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
+                                                   const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
   if (spec_.staggered()) {
     PetscCall(
         transport_tensor(*grid_, {rule, dt, false, &phase.strained}, now_.velocity, phase, phase.tensor, next_tensor_));
-    PetscCall(complete_exterior(phase, next_tensor_));
+    PetscCall(complete_exterior(phase, next_tensor_, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next_tensor_, phase.tensor));
-    PetscCall(complete_exterior(phase, phase.tensor));
+    PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     const ActiveSegments *stale = stale_.rows_y() > 0 ? &stale_ : nullptr;
     PetscCall(transport_tensor(*grid_, {rule, dt, false, stale}, now_.velocity, phase, phase.tensor, next_tensor_));
-    PetscCall(complete_exterior(phase, next_tensor_));
+    PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
   }
@@ -271,14 +275,14 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
 }
 
 // Ghosts of B, after its extension outside the body where that is wanted.
-PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor) {
+PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   if (spec_.exterior == SolidExterior::extrapolate) {
-    PetscCall(exchange_->update(tensor, ExteriorLayers::layers, &phase.rows));
+    PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
   }
-  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, &phase.rows));
+  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, rows));
   PetscFunctionReturn(0);
 }
 

@@ -73,8 +73,9 @@ private:
   PetscErrorCode project(double dt);
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport(Phase &phase, double dt);
-  PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt);
-  PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor);
+  PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
+                                             const OccupiedRows *rows);
+  PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
@@ -87,7 +88,7 @@ private:
   BodyTracker bodies_;
   std::string crowded_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
-  OccupiedRows next_rows_;     ///< of next_fraction_
+  OccupiedRows next_rows_;     ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;       ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
   FieldBlock work_;            ///< shared by what the verbs need one after the other
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time

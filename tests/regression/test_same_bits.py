@@ -80,6 +80,17 @@ class SameBits(unittest.TestCase):
                 self.assertEqual(run(program="EULASTIC_WHOLE")["state_hash"], one["state_hash"])
                 self.assertEqual(run(ranks=2)["state_hash"], one["state_hash"])
 
+    def test_body_that_crosses_ranks_along_x(self):
+        # x is cut at a multiple of 256 cells only: whoever receives the body has seen nothing but empty rows before.
+        scene = ("-grid_cells 512,16,1 -grid_length 32,1,1 -fluid_viscosity 1e-2 -initial_velocity_mean -1,.2,0 "
+                 "-species a -a_shape sphere -a_radius .3 -a_centre 16.9,.5,0 -a_shear_modulus .05 -time_end .9").split()
+        for method in ("classic", "fast"):
+            with self.subTest(method):
+                one = self.run_program(*scene, "-method", method)
+                for split in (("-da_processors_x", "2"), ("-da_processors_x", "2", "-da_processors_y", "2")):
+                    cut = self.run_program(*scene, "-method", method, *split, ranks=2 * (len(split) // 2))
+                    self.assertEqual(cut["state_hash"], one["state_hash"])
+
 
 if __name__ == "__main__":
     unittest.main()
