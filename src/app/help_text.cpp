@@ -32,6 +32,12 @@ std::string remarks(const Option &option) {
   return option.doc + (option.only_with.empty() ? "" : "; only with " + option.only_with);
 }
 
+// A cell of a table.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
+  return text;
+}
+
 std::string petsc_names() {
   std::string text;
   for (const std::string &name : petsc_option_names())
@@ -72,7 +78,7 @@ std::string help_markdown() {
     if (option.group != group)
       text += "\n## " + (group = option.group) +
               "\n\n| option | default | meaning | unit | accepted |\n|---|---|---|---|---|\n";
-    text += "| `-" + option.name + "` | " + default_text(option) + " | " + remarks(option) + " | " + option.unit +
+    text += "| `-" + option.name + "` | " + default_text(option) + " | " + cell(remarks(option)) + " | " + option.unit +
             " | " + option.accepted + " |\n";
   }
   return text + "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";

@@ -60,6 +60,17 @@ int act(ParseResult &parsed) {
   return code;
 }
 
+// Whether it failed: -log_view and its like write here, to files that may not be there.
+bool finalize() {
+  int rank = 0;
+  std::string kept;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  (void)PetscPushErrorHandler(keep_message, &kept);
+  if (!PetscFinalize()) return false;
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", kept.c_str());
+  return true;
+}
+
 int program(int argc, char **argv) {
   const char *environment = std::getenv("PETSC_OPTIONS");
   ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
@@ -76,8 +87,7 @@ int program(int argc, char **argv) {
   catch_faults();
   const int code = act(parsed);
   if (Hdf5File::left_open()) MPI_Abort(PETSC_COMM_WORLD, code);
-  if (PetscFinalize() && code == exit_fine) return exit_failed;
-  return code;
+  return finalize() && code == exit_fine ? exit_failed : code;
 }
 
 // What no verb expects, memory that is not there above all. The other ranks must not wait for this one.

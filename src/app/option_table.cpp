@@ -11,7 +11,6 @@ namespace {
 
 const Names boundary_names{"periodic", "wall"};
 const Names method_names{"fast", "classic"};
-const char *const by_method = "set by -method";
 
 void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
@@ -84,12 +83,24 @@ void add_bodies(Rows &rows, Config &config) {
     for (const SpeciesSpec &spec : config.species) names.push_back(spec.name);
     return join(names, ",");
   };
-  rows.boolean("body_series", config.body_series,
-               "name, follow and measure every body; false: no labels, no bodies.h5, no body in snapshots, and no cost");
+  rows.boolean(
+      "body_series", config.body_series,
+      "name, follow and measure every body; false: no labels, no bodies.h5, no body in snapshots, and no cost");
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
     add_species_rows(rows, spec, !config.initial_state.empty());
   }
+}
+
+// What the two presets say; the default of a row that they set.
+std::string by_method(const Option &row, Method &method) {
+  const Method present = method;
+  method = method_preset(MethodKind::fast);
+  const std::string fast = row.text();
+  method = method_preset(MethodKind::classic);
+  const std::string classic = row.text();
+  method = present;
+  return fast == classic ? fast : fast + "; " + classic + " with -method classic";
 }
 
 void add_method(Rows &rows, Config &config) {
@@ -97,21 +108,17 @@ void add_method(Rows &rows, Config &config) {
   Method &method = config.method;
   const Names integrator_names{"staggered", "euler"};
   rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
+  const std::size_t parts = rows.rows.size();
   rows.choice("time_integrator", method.integrator, integrator_names,
-              "second order with solids at half steps, or explicit Euler")
-      .default_note = by_method;
-  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage")
-      .default_note = by_method;
+              "second order with solids at half steps, or explicit Euler");
+  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage");
   rows.choice("interface_scheme", method.interface, {"thinc", "weno5"},
-              "solid fraction: sharp and conservative, or WENO5")
-      .default_note = by_method;
+              "solid fraction: sharp and conservative, or WENO5");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
-              "B outside bodies: extended, or reset to I")
-      .default_note = by_method;
+              "B outside bodies: extended, or reset to I");
   const std::size_t force = rows.rows.size();
   rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
-              "elastic force within a step: linear in time, or that of its middle")
-      .default_note = by_method;
+              "elastic force within a step: linear in time, or that of its middle");
   rows.restrict(force, "time_integrator", method.integrator, integrator_names, {TimeIntegrator::staggered});
   const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
@@ -119,14 +126,13 @@ void add_method(Rows &rows, Config &config) {
               "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
               "-pressure_pc_type");
   const std::size_t first = rows.rows.size();
-  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step").default_note =
-      by_method;
+  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step");
   rows.real("acm_tolerance", method.acm_tolerance, positive, "", "sweep until rms(div v) h/U is below");
-  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4}, "increments of earlier steps used as directions")
-      .default_note = by_method;
-  rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids").default_note = by_method;
+  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4}, "increments of earlier steps used as directions");
+  rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids");
   rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
   rows.allow_change(pressure);
+  for (std::size_t r = parts; r < rows.rows.size(); ++r) rows.rows[r].default_note = by_method(rows.rows[r], method);
 }
 
 // `mean`, or where the line cuts the plane of the other two directions.

@@ -5,39 +5,16 @@
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
 #include "app/petsc_options.hpp"
+#include "app/unknown_option.hpp"
 #include "app/validate.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace eulastic {
 namespace {
-
-// Levenshtein.
-std::size_t edit_distance(const std::string &a, const std::string &b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
-std::string unknown(const std::string &name, const std::vector<Option> &table) {
-  const std::string plain = name.substr(0, name.find('='));
-  const auto nearest = std::min_element(table.begin(), table.end(), [&](const Option &a, const Option &b) {
-    return edit_distance(plain, a.name) < edit_distance(plain, b.name);
-  });
-  return "unknown option -" + name + "; nearest known: -" + nearest->name + " (" + nearest->accepted + "); see -help";
-}
 
 // What the highest source says of an option, or null.
 const Entry *last_given(const std::vector<Source> &sources, const std::string &name) {
@@ -82,7 +59,7 @@ public:
     for (const Entry &entry : source) {
       if (is_petsc_option(entry.name)) continue;
       const auto found = index_.find(entry.name);
-      if (found == index_.end()) return unknown(entry.name, table_) + entry.where;
+      if (found == index_.end()) return unknown_option(entry.name, table_) + entry.where;
       const Option &option = *found->second;
       const std::string &name = option.alias_of.empty() ? option.name : option.alias_of;
       const auto refuse = [&](const std::string &what) {
@@ -135,11 +112,13 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   for (const Source &source : sources)
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
-  if (config->method.pressure != PressureKind::ksp)
-    for (const Source &source : sources)
-      for (const Entry &entry : source)
-        if (is_pressure_ksp_option(entry.name))
-          return "-" + entry.name + ": has a meaning only with -pressure_solver ksp" + entry.where;
+  for (const Source &source : sources)
+    for (const Entry &entry : source) {
+      if (is_pressure_ksp_option(entry.name) && config->method.pressure != PressureKind::ksp)
+        return "-" + entry.name + ": has a meaning only with -pressure_solver ksp" + entry.where;
+      if (const std::string wrong = check_petsc_value(entry.name, entry.value); !wrong.empty())
+        return wrong + entry.where;
+    }
   for (SpeciesSpec &spec : config->species) {
     spec.centre_given = reader.given(spec.name + "_centre");
     const Real3 &length = config->grid.length;
@@ -217,9 +196,12 @@ std::string options_text(const ParseResult &result) {
     if (option.group != group) text += "\n# " + (group = option.group) + "\n";
     line(option.name, value);
   }
-  const PetscOptionValues petsc = pressure_ksp_options(result.petsc_arguments);
-  if (!petsc.empty()) text += "\n# PETSc's part of the pressure solver\n";
-  for (const auto &[name, value] : petsc) line(name, value);
+  group.clear();
+  for (const auto &[name, value] : petsc_option_values(result.petsc_arguments)) {
+    if (!is_pressure_ksp_option(name)) continue;
+    if (group.empty()) text += "\n# " + (group = "PETSc's part of the pressure solver") + "\n";
+    line(name, value);
+  }
   return text;
 }
 

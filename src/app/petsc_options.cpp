@@ -8,9 +8,12 @@ namespace eulastic {
 
 // -options_file is not among them: it is ours.
 const std::vector<std::string> &petsc_option_names() {
-  static const std::vector<std::string> names{"log_",
-                                              "ksp_",
-                                              "pc_",
+  static const std::vector<std::string> names{"log_view",
+                                              "log_view_memory",
+                                              "log_all",
+                                              "log_trace",
+                                              "log_sync",
+                                              "log_exclude",
                                               "mat_",
                                               "vec_",
                                               "sf_",
@@ -51,17 +54,22 @@ bool is_pressure_ksp_option(const std::string &name) {
   return name.rfind("pressure_", 0) == 0 && is_petsc_option(name);
 }
 
-PetscOptionValues pressure_ksp_options(const std::vector<std::string> &petsc_arguments) {
+// PETSc looks at it after the run only, when it is too late.
+std::string check_petsc_value(const std::string &name, const std::string &value) {
+  if (name != "log_view" || value.empty() || value[0] == ':' || value.rfind("ascii", 0) == 0) return {};
+  return "-log_view: \"" + value +
+         "\" is no viewer; accepted: nothing, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";
+}
+
+PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments) {
   const auto name_at = [&](std::size_t a) {
     const std::string &word = petsc_arguments[a];
     return word[0] == '-' && is_petsc_option(word.substr(1)) ? word.substr(1) : std::string();
   };
   PetscOptionValues options;
-  for (std::size_t a = 0; a < petsc_arguments.size(); ++a) {
-    const std::string name = name_at(a);
-    if (!is_pressure_ksp_option(name)) continue;
-    options[name] = a + 1 < petsc_arguments.size() && name_at(a + 1).empty() ? petsc_arguments[a + 1] : "";
-  }
+  for (std::size_t a = 0; a < petsc_arguments.size(); ++a)
+    if (const std::string name = name_at(a); !name.empty())
+      options[name] = a + 1 < petsc_arguments.size() && name_at(a + 1).empty() ? petsc_arguments[a + 1] : "";
   return options;
 }
 
@@ -69,11 +77,13 @@ PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string 
   PetscFunctionBeginUser;
   for (const auto &[name, value] : options) {
     PetscBool read;
-    if (name.find("_view") != std::string::npos || name.find("_converged_reason") != std::string::npos) continue;
+    const auto has = [name = name](const char *part) { return name.find(part) != std::string::npos; };
+    if (has("_view") || has("_converged_reason") || has("options_") || name == "citations") continue;
     PetscCall(PetscOptionsUsed(nullptr, name.c_str(), &read));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &read, 1, MPIU_BOOL, MPI_LOR, PETSC_COMM_WORLD));  // some on one rank only
-    if (!read && refusal->empty())
-      *refusal = "-" + name + ": unknown to PETSc, or to the KSP and PC chosen; -pressure_ksp_view shows them";
+    if (read || !refusal->empty()) continue;
+    *refusal = "-" + name + ": unknown to PETSc, or to what it does here";
+    if (is_pressure_ksp_option(name)) *refusal += " (KSP and PC as chosen); -pressure_ksp_view shows them";
   }
   PetscFunctionReturn(0);
 }

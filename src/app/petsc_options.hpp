@@ -17,11 +17,14 @@ const std::vector<std::string> &petsc_option_names();
 /// Whether it belongs to the KSP of -pressure_solver ksp.
 bool is_pressure_ksp_option(const std::string &name);
 
+/// What is wrong with the value of that option, in one line, or nothing.
+std::string check_petsc_value(const std::string &name, const std::string &value);
+
 using PetscOptionValues = std::map<std::string, std::string>;
-/// Those of the KSP among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.
-PetscOptionValues pressure_ksp_options(const std::vector<std::string> &petsc_arguments);
-/// Collective; after the KSP has been set up. `refusal`: one line about an option that no rank's PETSc has read. What
-/// shows things is exempt: PETSc reads that when it solves.
+/// Those among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.
+PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments);
+/// Collective; after everything has been set up. `refusal`: one line about an option that no rank's PETSc has read.
+/// What shows things is exempt: PETSc reads that when it solves, or at the end.
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal);
 
 }  // namespace eulastic

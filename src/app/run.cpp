@@ -105,7 +105,7 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   const bool in_place = !source.empty() && restarts_in_place(config);
   std::string restarted_from;
   PetscCall(build_scene(config, grid, &run->solver, refusal));
-  if (refusal->empty()) PetscCall(find_unread_option(pressure_ksp_options(parsed.petsc_arguments), refusal));
+  if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
   if (refusal->empty() && in_place) PetscCall(directory->reopen(grid.comm(), path, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
@@ -114,7 +114,8 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   ParseResult whole = parsed;
   if (in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
   PetscCall(write_text_file(grid.comm(), directory->file("options.txt"), options_text(whole)));
-  PetscCall(run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, &run->guards, restarted_from));
+  PetscCall(
+      run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, &run->guards, restarted_from));
   PetscCall(run->outputs.resume(config, grid, &run->solver, directory->path(), run->position.outputs, in_place));
   if (source.empty()) PetscCall(run->outputs.write_due(false));
   PetscCall(run->outputs.measure());

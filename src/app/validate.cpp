@@ -24,7 +24,7 @@ bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 std::string check_grid(const Config &config) {
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
-  if (const std::string reason = Grid::why_not(serial, 1); !reason.empty()) return "-grid_cells: " + reason;
+  if (const std::string reason = Grid::why_not(serial, 1); !reason.empty()) return reason;
   if (flat(config) && config.grid.boundary[2] == Boundary::wall)
     return "-boundary_z: wall needs more than one cell in z; accepted in 2-D: periodic";
   double cells = 1;
@@ -99,6 +99,11 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
+  const bool random = spec.placement == Placement::random;
+  if (spec.placement == Placement::lattice && spec.number >= 0)
+    return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
+  if (random && spec.count != Int3{1, 1, 1})
+    return "-" + spec.name + "_count: with random placement accepted: an integer >= 0";
   if (flat(config) && spec.count[2] != 1) return "-" + spec.name + "_count: must be 1 along z in 2-D";
   const Int3 &n = config.grid.cells;
   const double bodies = double(spec.count[0]) * spec.count[1] * spec.count[2];
@@ -106,11 +111,6 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (bodies > most)
     return "-" + spec.name + "_count: " + to_text(bodies) + " bodies; accepted: at most " + to_text(most) +
            (most < most_bodies ? ", one per cell" : "");
-  const bool random = spec.placement == Placement::random;
-  if (spec.placement == Placement::lattice && spec.number >= 0)
-    return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
-  if (random && spec.count != Int3{1, 1, 1})
-    return "-" + spec.name + "_count: with random placement accepted: an integer >= 0";
   if (random && (spec.number >= 0) == (spec.hematocrit >= 0))
     return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
            "_hematocrit";

@@ -68,17 +68,20 @@ Int3 Grid::decompose(const GridSpec &spec, int ranks) {
 std::string Grid::why_not(const GridSpec &spec, int ranks) {
   for (int d = 0; d < (spec.cells[2] == 1 ? 2 : 3); ++d)
     if (spec.cells[d] < stencil_width)
-      return std::to_string(spec.cells[d]) + " cells in direction " + "xyz"[d] + ", at least 3 are needed";
+      return "-grid_cells: " + std::to_string(spec.cells[d]) + " in " + "xyz"[d] +
+             "; accepted: at least 3 in x and y, 1 (2-D) or at least 3 in z";
   if (decompose(spec, ranks)[0]) return {};
-  std::string text = std::to_string(ranks) + " ranks cannot share " + std::to_string(spec.cells[0]) + " x " +
-                     std::to_string(spec.cells[1]) + " x " + std::to_string(spec.cells[2]) + " cells";
-  std::string rule = ": ";
+  std::string text = std::to_string(ranks) + (ranks > 1 ? " ranks" : " rank") + " cannot share " +
+                     std::to_string(spec.cells[0]) + " x " + std::to_string(spec.cells[1]) + " x " +
+                     std::to_string(spec.cells[2]) + " cells";
+  std::string option = "-grid_cells: ", rule = "; accepted: ";
   if (spec.processors[0] || spec.processors[1] || spec.processors[2]) {
     text += " as " + std::to_string(spec.processors[0]) + " x " + std::to_string(spec.processors[1]) + " x " +
             std::to_string(spec.processors[2]) + " ranks (0 = free)";
-    rule += "the product must be " + std::to_string(ranks) + " and ";
+    option = "-da_processors_x, _y, _z: ";
+    rule += "a product of " + std::to_string(ranks) + ", and ";
   }
-  return text + rule + "each rank needs at least 3 cells in every direction";
+  return option + text + rule + "at least 3 cells per rank in every direction";
 }
 
 Layout Grid::make_layout(const Int3 &position) const {

@@ -80,6 +80,21 @@ class CommandLine(unittest.TestCase):
     def test_petsc_output_stays_away_from_errors(self):
         self.refused(*SCENE, "-log_view", "-nonsense", says=["-nonsense"])
 
+    def test_petsc_options_that_nobody_reads(self):
+        for added, says in [("-mat_foo 1", ["-mat_foo", "unknown to PETSc"]), ("-log_vew", ["-log_vew", "-log_view"]),
+                            ("-log_view no.txt", ["-log_view", "no.txt", ":FILE"]),
+                            ("-ksp_type cg", ["-ksp_type", "-pressure_ksp_type"])]:
+            with self.subTest(added):
+                self.refused(*SCENE, *added.split(), says=says)
+
+    def test_log_that_cannot_be_written(self):
+        for ranks in (0, 2):
+            result = self.run_program(*SCENE, "-log_view", ":/nowhere/log", "-output_dir", f"run{ranks}", ranks=ranks)
+            self.assertRegex(result.stderr, r"\Aeulastic: error: at the end: [^\n]*/nowhere/log")
+            self.assertNotIn("PETSC ERROR", result.stderr)
+            self.assertEqual(result.returncode, 1)
+            self.assertTrue((self.room / f"run{ranks}/summary.json").exists())
+
     def test_errors_on_several_ranks_are_printed_once(self):
         result = self.run_program(*SCENE, "-nonsense", ranks=3)
         self.assertEqual(result.returncode, 2)

@@ -68,14 +68,17 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
 
 TEST(GridDecomposition, SaysWhyNot) {
   EXPECT_EQ(Grid::why_not(box({64, 64, 64}), 4), "");
-  EXPECT_EQ(Grid::why_not(box({8, 2, 8}), 1), "2 cells in direction y, at least 3 are needed");
-  EXPECT_EQ(Grid::why_not(box({8, 8, 2}), 1), "2 cells in direction z, at least 3 are needed");
-  EXPECT_EQ(Grid::why_not(box({0, 8, 1}), 1), "0 cells in direction x, at least 3 are needed");
-  EXPECT_EQ(Grid::why_not(box({5, 5, 5}), 2),
-            "2 ranks cannot share 5 x 5 x 5 cells: each rank needs at least 3 cells in every direction");
-  EXPECT_EQ(Grid::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
-            "3 ranks cannot share 64 x 64 x 64 cells as 2 x 2 x 0 ranks (0 = free): the product must be 3 and each "
-            "rank needs at least 3 cells in every direction");
+  const std::string few = "; accepted: at least 3 in x and y, 1 (2-D) or at least 3 in z";
+  EXPECT_EQ(Grid::why_not(box({8, 2, 8}), 1), "-grid_cells: 2 in y" + few);
+  EXPECT_EQ(Grid::why_not(box({8, 8, 2}), 1), "-grid_cells: 2 in z" + few);
+  EXPECT_EQ(Grid::why_not(box({0, 8, 1}), 1), "-grid_cells: 0 in x" + few);
+  EXPECT_EQ(
+      Grid::why_not(box({5, 5, 5}), 2),
+      "-grid_cells: 2 ranks cannot share 5 x 5 x 5 cells; accepted: at least 3 cells per rank in every direction");
+  EXPECT_EQ(
+      Grid::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
+      "-da_processors_x, _y, _z: 3 ranks cannot share 64 x 64 x 64 cells as 2 x 2 x 0 ranks (0 = free); accepted: "
+      "a product of 3, and at least 3 cells per rank in every direction");
 }
 
 TEST(GridGeometry, SpacingVolumeAndWalls) {

@@ -23,17 +23,24 @@ void expect_refusals(const std::vector<Refusal> &refusals, const std::string &ba
 }  // namespace
 
 TEST(OptionRefusals, UnknownNames) {
-  expect_refusals({{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "3 integers >= 1"}},
-                   {"-cell_raduis 1", {"nearest known: -cell_radius"}},
-                   {"-time_ned 1", {"nearest known: -time_end"}},
-                   {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
-                   {"--time_step 1", {"--time_step", "nearest known: -time_step"}},
-                   {"-Time_step 1", {"-Time_step", "nearest known: -time_step"}},
-                   {"-other_radius 1", {"-other_radius"}},
-                   {"-options_file x", {"-options_file"}},
-                   {"-log", {"unknown option -log"}},
-                   {"-log_", {"unknown option -log_"}},
-                   {"-NAME_radius 1", {"unknown option -NAME_radius"}}});
+  expect_refusals(
+      {{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "3 integers >= 1"}},
+       {"-cell_raduis 1", {"nearest known: -cell_radius"}},
+       {"-time_ned 1", {"nearest known: -time_end"}},
+       {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
+       {"--time_step 1", {"--time_step", "nearest known: -time_step"}},
+       {"-Time_step 1", {"-Time_step", "nearest known: -time_step"}},
+       {"-other_radius 1", {"unknown option -other_radius: -species names no other; see -help"}},
+       {"-end_time 1", {"nearest known: -time_end"}},
+       {"-viscosity 1", {"nearest known: -fluid_viscosity"}},
+       {"-dt 1", {"unknown option -dt; see -help"}},
+       {"-ksp_type cg", {"unknown option -ksp_type; accepted with -pressure_solver ksp: -pressure_ksp_type"}},
+       {"-log_vew", {"nearest known: -log_view"}},
+       {"-log_view log.txt", {"-log_view: \"log.txt\" is no viewer", ":FILE"}},
+       {"-options_file x", {"-options_file"}},
+       {"-log", {"unknown option -log"}},
+       {"-log_", {"unknown option -log_"}},
+       {"-NAME_radius 1", {"unknown option -NAME_radius"}}});
 }
 
 TEST(OptionRefusals, PetscIsSilentAfterAnError) {
@@ -138,9 +145,9 @@ TEST(OptionRefusals, StrayWords) {
 
 TEST(OptionRefusals, SpeciesNames) {
   for (const char *name :
-       {"wall",   "fluid",   "body",   "time",     "grid",   "boundary", "initial", "output", "snapshot",
-        "series", "species", "method", "pressure", "check",  "help",     "version", "da",     "log",
-        "ksp",    "mat",     "vec",    "info",     "malloc", "options",  "grid_a",  "Wall"}) {
+       {"wall",   "fluid",   "body",   "time",     "grid",    "boundary", "initial", "output", "snapshot",
+        "series", "species", "method", "pressure", "check",   "help",     "version", "da",     "log",
+        "mat",    "vec",     "info",   "malloc",   "options", "grid_a",   "Wall"}) {
     const ParseResult result = parse_line(std::string("-time_end 1 -species ") + name);
     EXPECT_NE(result.error.find(std::string("-species: \"") + name + "\" collides"), std::string::npos)
         << name << ": " << result.error;
@@ -220,7 +227,9 @@ TEST(OptionRefusals, TwoDimensions) {
                    {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
                     {"-a_initial_stretch", "2-D"}},
                    {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
-                    {"-a_count", "2-D"}}},
+                    {"-a_count", "2-D"}},
+                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
+                    {"-a_count", "random", "an integer"}}},
                   flat);
 }
 
