@@ -75,13 +75,17 @@ PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_argu
 
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal) {
   PetscFunctionBeginUser;
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  PetscCall(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  const std::vector<std::string> left(names, names + count);
+  PetscCall(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   for (const auto &[name, value] : options) {
-    PetscBool read;
     const auto has = [name = name](const char *part) { return name.find(part) != std::string::npos; };
     if (has("_view") || has("_converged_reason") || has("options_") || name == "citations") continue;
-    PetscCall(PetscOptionsUsed(nullptr, name.c_str(), &read));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &read, 1, MPIU_BOOL, MPI_LOR, PETSC_COMM_WORLD));  // some on one rank only
-    if (read || !refusal->empty()) continue;
+    int unread = static_cast<int>(std::count(left.begin(), left.end(), name));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &unread, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));  // some on one rank only
+    if (!unread || !refusal->empty()) continue;
     *refusal = "-" + name + ": unknown to PETSc, or to what it does here";
     if (is_pressure_ksp_option(name)) *refusal += " (KSP and PC as chosen); -pressure_ksp_view shows them";
   }
