@@ -3,7 +3,6 @@
 
 #include "grid/grid.hpp"
 
-#include <limits>
 #include <vector>
 
 namespace eulastic {
@@ -40,8 +39,9 @@ public:
 private:
   PetscErrorCode read(const Grid &grid, ConstView value, const OccupiedRows &before);
 
+  static constexpr int far = 1 << 30;
   int rows_y_ = 0, rows_z_ = 0;
-  Span whole_{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+  Span whole_{-far, far};
   std::vector<Span> spans_;
   bool inside_ = false;
   std::ptrdiff_t cells_ = 0;
