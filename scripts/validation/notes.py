@@ -4,26 +4,22 @@ NOTES = {
     "F1": "classic: explicit Euler at a step that does not depend on the grid, .1 of 2 nu/U^2: its error, .003, does not fall.",
     "F6": "At Re = 1000 the errors fall at second order, .037, .0085, .0021 of the profiles at 64^2, 128^2, 256^2: 256^2 is needed.",
     "S1": "classic: B_xy at the interface does not converge (order 0, 47 % too large). The edge on the surface has the solid "
-          "fraction 1/2 and takes the shear rate of both sides. Velocity and B_xy on the wall converge at first order. ACM "
-          "and SMAC agree with `-acm_tolerance` 1e-7; with 1e-6 the order of u was lower with ACM.",
+          "fraction 1/2 and takes the shear rate of both sides. Velocity and B_xy on the wall converge at first order.",
     "S3": "classic: in a steady state B_xy on the surface's edge can only be steady where du/dy = 0, so the first cell of "
           "fluid rests: the error there is 2 h/L_f (1 - h/(2 L_f)) = .0615 at 64 cells, which is what is measured, at first "
           "order, .98. The stress on that edge carries phi = 1/2, so that B_xy becomes twice the exact one: 100 %, order 0: the "
           "two rows that fail. fast does not evolve B on such an edge.",
     "S4": "classic: the step, .0015, is set by the inertial limit whatever the grid, and its error, .4 to .8 %, does not fall.",
-    "S6": "With density 1, that is rho gd R^2/mu = .05, inertia raises D and turns the disc by more than the errors "
-          "asked for; the runs have density .1. Images 16 R away lower D by more than a per cent: the runs have a "
-          "period of 32 R.",
-    "S7": "The reference is the sum over the periodic box (scripts/validation/exact.py): 1.3783, 1.2877, 1.1689 in 20 R, and in a box "
-          "of 10 R 1.3856, 1.2985, 1.1809, where 160^2 cells give 1.3855, 1.2985, 1.1810. Without inertia the flow "
-          "should balance the stress from the start; a forced step delays the disc by about 1.4 of it, once. The automatic "
-          "step therefore begins small and doubles (docs/method.md, section 8).",
-    "S8": "Extrapolated with (R/L)^3 and h^2 from 8 to 12 or 16 cells per radius. With 6 cells per radius among them "
-          "more than 1 % was left: they are too coarse for h^2 alone. Without extrapolation in h the error is (h/R)^2 "
+    "S6": "The reference knows neither inertia nor images: the runs have density .1, rho gd R^2/mu = .005, and a period "
+          "of 32 R.",
+    "S7": "The reference is the sum over the periodic box (scripts/validation/exact.py), 1.3783, 1.2877, 1.1689 in 20 R. Without "
+          "inertia the flow should balance the stress from the start; a forced step delays the disc by about a step, once. "
+          "The automatic step therefore begins small and doubles (docs/method.md, section 8).",
+    "S8": "Extrapolated with (R/L)^3 and h^2 from 8 to 12 or 16 cells per radius. Without extrapolation in h the error is (h/R)^2 "
           "times the coefficient in the table, so that 1 % needs 16 to 18 cells per radius.",
     "S9": "Beside the mode s = -1.441313 +- 7.313910 i a disc that is let go excites the continuous spectrum of the "
-          "viscous fluid: the same fit to the exact transient gives -1.47356 +- 7.34469 i, .6 % away. That is the "
-          "reference. Our error is of first order or a little less.",
+          "viscous fluid: the same fit to the exact transient (tests/reference/ringing_disc.csv) gives the rate that is "
+          "the reference in the table, .6 % away. Our error is of first order or a little less.",
     "R1": "Marching cubes of exact cell fractions do not converge: some tenths of a per cent of surface are left on any "
           "grid.",
     "S12": "48 cells are halved to 3: levels with odd numbers of cells are not symmetric, so mirrored scenes agree to the "

@@ -12,7 +12,6 @@ from .notes import NOTES  # noqa: E402
 
 HEADER = ["case", "measure", "method, solver", "at", "reference", "ours", "error", "tolerance", "tolerance from",
           "errors, coarse to fine (order)", "verdict"]
-MISSING = "missing"
 WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 
 
@@ -22,12 +21,6 @@ def name_of(key):
 
 def failed(case, setting, text):
     return dict(zip(HEADER, [case.name, text.replace("|", "/"), setting.label, "", "", "", "", "", "", "", WORDS[False]]))
-
-
-def unfinished(case, setting, keys):
-    text = f"{case.title}: not run yet"
-    row = failed(case, setting, text)
-    return {**row, "at": " ".join(map(name_of, keys)), "verdict": MISSING}
 
 
 def judge(case, setting, runs, measure):
@@ -106,13 +99,12 @@ runs are kept in build/validation, a killed one goes on.
     scripts/validate              # everything: hours
     scripts/validate --quick      # a short form of every reference, part of scripts/test
     scripts/validate --only S6
-    scripts/validate --finished   # run nothing: the page of what is there
 
 "at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
 coarser grids stand in front of it, with the observed order. Errors in % are relative. A tolerance follows from theory
 (the formula stands beside it, "twice" is a factor for what it leaves out), from the error of the reference, or it is
 "asked for": set without a theory. Those that depend on the grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
-of the fast one. "missing" marks runs that were not made. The cases, with their options, formulas and sources, are in
+of the fast one. The cases, with their options, formulas and sources, are in
 scripts/validation.
 
 {counts}
@@ -127,7 +119,7 @@ scripts/validation.
 
 def write_page(rows, titles, pictures, path):
     counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
-                       ((WORDS[True], "passed"), (WORDS[False], "failed"), (WORDS[None], "reported"), (MISSING, "missing")))
+                       ((WORDS[True], "passed"), (WORDS[False], "failed"), (WORDS[None], "reported")))
     plots = "".join(f"\n![{titles[name]}](images/{picture.name})\n\n*{name}: {titles[name]}*\n"
                     for name, picture in pictures.items())
     notes = "\n".join(f"- {name}: {text}" for name, text in NOTES.items() if name in titles)

@@ -54,13 +54,10 @@ class Runner:
             checkpoint.unlink()
         return Run(directory)
 
-    def chain(self, case, setting, more, finished=False):
-        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there.
-        With `finished` only those that have been run, up to the first that has not."""
+    def chain(self, case, setting, more):
+        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there."""
         runs, directories = {}, {}
         for key in setting.keys:
             words, directories[key] = self.command(case, setting, key, directories.__getitem__, more)
-            if finished and not self.is_done(directories[key]):
-                break
             runs[key] = self.run(words, directories[key])
         return runs

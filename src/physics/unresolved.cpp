@@ -36,20 +36,23 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
   const int dimension = grid.dimension(), deep = dimension == 3 ? 1 : 0;
   const ConstView phi = phase.fraction[0];
   // With one layer of ghosts: an edge looks at the four centres around it.
-  std::vector<unsigned char> forgotten(static_cast<std::size_t>(layout.size), 0);
+  std::vector<unsigned char> forgotten;  // empty while there is none
   long found = 0;
   for (int k = -deep; k < n[2] + deep; ++k)
-    for (int j = -1; j <= n[1]; ++j)
+    for (int j = -1; j <= n[1]; ++j) {
+      if (phase.rows.idle(j, k)) continue;
       for (int i = -1; i <= n[0]; ++i) {
         if (!(phi(i, j, k) >= rule.centre)) continue;
         const std::ptrdiff_t p = layout.offset(i, j, k);
         if (!(determinant(phase.tensor.data() + p, layout.size, layout.sy, layout.sz, dimension) > largest_determinant))
           continue;
+        forgotten.resize(static_cast<std::size_t>(layout.size));
         forgotten[p] = 1;
         found += i >= 0 && i < n[0] && j >= 0 && j < n[1] && k >= 0 && k < n[2];
       }
+    }
   const auto &components = tensor_components(dimension);
-  for (int f = 0; f < phase.tensor.count(); ++f) {
+  for (int f = 0; !forgotten.empty() && f < phase.tensor.count(); ++f) {
     const auto [a, b] = components[f];
     const View B = phase.tensor[f];
     const std::ptrdiff_t low_a = a == b ? 0 : B.stride(a), low_b = a == b ? 0 : B.stride(b);

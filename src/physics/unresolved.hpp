@@ -5,8 +5,9 @@
 
 namespace eulastic {
 
-/// Largest det B that is taken for one. (5) keeps it 1; a mean of unlike tensors has more.
-inline constexpr double largest_determinant = 8;
+/// Largest det B that is taken for one. (5) keeps it 1; a mean of unlike tensors has more. Stays below 4 with what a
+/// step and the edges of forgotten neighbours add to it.
+inline constexpr double largest_determinant = 3.5;
 
 /// Whether det B may be too large anywhere in a body with tr B <= trace: det B <= (tr B/3)^3, in 2-D ((tr B - 1)/2)^2.
 bool may_be_unresolved(double trace, int dimension);
