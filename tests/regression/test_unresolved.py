@@ -23,8 +23,8 @@ COARSE = "-grid_cells 16,16,1".split()
 LONG = COARSE + "-time_end 100".split()
 CAVITY = DISC + "-boundary_x wall -boundary_y wall -wall_ymax_velocity 1,0,0 -a_centre .6,.5,0".split()
 SHEAR = DISC + "-boundary_y wall -wall_ymax_velocity 1,0,0 -wall_ymin_velocity -1,0,0 -a_centre .5,.5,0".split()
-SCENES = {"fast": (CAVITY + LONG + ["-a_shear_modulus", ".01"], 330),
-          "classic": (SHEAR + LONG + ["-a_shear_modulus", "1"], 4300)}
+SCENES = {"fast": (CAVITY + LONG + ["-a_shear_modulus", ".01"], 280),
+          "classic": (SHEAR + LONG + ["-a_shear_modulus", "1"], 3300)}
 WARNING = r"\Aeulastic: warning: t = [^\n]* does not resolve the strain of a body [^\n]*\n\Z"
 
 
@@ -37,7 +37,7 @@ class Unresolved(unittest.TestCase):
     def run_scene(self, *options, ranks=1, program="EULASTIC", directory="run"):
         command = [os.environ.get("EULASTIC_MPIEXEC", "mpiexec"), "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
         done = subprocess.run([*command, os.environ[program], *map(str, options), "-output_dir", self.room / directory],
-                              capture_output=True, text=True, timeout=300,
+                              capture_output=True, text=True,
                               env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((self.room / directory / "summary.json").read_text()), done.stderr
