@@ -50,6 +50,14 @@ public:
     return text;
   }
 
+  /// Some bits turned; sometimes cut short.
+  std::string damage(std::string bytes) {
+    if (one_in(8)) bytes.resize(below(bytes.size()));
+    for (std::size_t n = 1 + below(3); n > 0 && !bytes.empty(); --n)
+      bytes[below(bytes.size())] ^= static_cast<char>(1 << below(8));
+    return bytes;
+  }
+
 private:
   std::mt19937_64 engine_;
 };

@@ -1,18 +1,21 @@
 // usage: fuzz [CASES [SEED]], or fuzz --lines CASES SEED: prints command lines for run_lines.py.
 // Wrong and nearly right input, CASES of it (default 10000), in one process: command lines, options files, position
-// lists, initial states, voxels, checkpoints. Prints how many of each kind were refused and accepted, and what was
-// found: a refusal of no line or of several, something written by a run that was refused, options that do not survive
-// being written, a case that takes longer than a minute. A crash ends the program and names its case.
+// lists, initial states, volumes (NRRD, STL, HDF5), checkpoints. Prints how many of each kind were refused and
+// accepted, and what was found: a refusal of no line or of several, something written by a run that was refused,
+// options that do not survive being written, a case that takes longer than a minute. A crash ends the program and names
+// its case.
 #include "app/check_only.hpp"
 #include "app/run.hpp"
 #include "base/events.hpp"
 #include "fuzz/command_lines.hpp"
 #include "fuzz/hdf5_files.hpp"
+#include "fuzz/volume_files.hpp"
 #include "io/checkpoint.hpp"
 #include "support/leaks.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -51,16 +54,30 @@ public:
   Outcome options_file(Dice &dice);
   Outcome positions(Dice &dice);
   Outcome initial_state(Dice &dice);
-  Outcome voxels(Dice &dice);
+  Outcome nrrd(Dice &dice) { return voxels(dice, put("volume.nrrd", said(nrrd_volume(dice)))); }
+  Outcome stl(Dice &dice) { return voxels(dice, put("surface.stl", said(stl_surface(dice)))); }
+  Outcome hdf5_volume(Dice &dice);
   Outcome checkpoint(Dice &dice);
 
 private:
   Outcome judge(const Words &words);
+  Outcome voxels(Dice &dice, const std::string &file);
   std::string run_it(const ParseResult &parsed, Outcome *outcome);
   static std::string text_of(const fs::path &path) {
     std::ostringstream text;
     text << std::ifstream(path, std::ios::binary).rdbuf();
     return text.str();
+  }
+  static const std::string &said(const std::string &bytes) {
+    present += bytes;
+    return bytes;
+  }
+  /// `bytes` of a good HDF5 file with bits turned, cut, or objects changed.
+  fs::path put_damaged(Dice &dice, const char *name, const std::string &bytes) const {
+    const bool objects = dice.one_in(3);
+    const fs::path file = put(name, objects ? bytes : dice.damage(bytes));
+    if (objects) change_objects(dice, file);
+    return file;
   }
   fs::path put(const char *name, const std::string &text) const {
     std::ofstream(room_ / name, std::ios::binary) << text;
@@ -68,8 +85,8 @@ private:
   }
 
   fs::path room_;
-  std::vector<std::string> cases_;  ///< texts of options/
-  std::string checkpoint_;          ///< bytes of a good one
+  std::vector<std::string> cases_;              ///< texts of options/
+  std::string checkpoint_, snapshot_, volume_;  ///< bytes of good ones
   Words checkpoint_line_;
 };
 
@@ -178,59 +195,53 @@ Outcome Fuzzer::positions(Dice &dice) {
 Outcome Fuzzer::initial_state(Dice &dice) {
   const int flat[3] = {8, 7, 1}, deep[3] = {6, 5, 4};
   const bool is_flat = dice.one_in(2);
-  const fs::path file = room_ / "state.h5";
-  write_state(dice, file, is_flat ? flat : deep);
-  Words words{"-grid_cells", is_flat ? "8,7,1" : "6,5,4", "-time_end", "1", "-time_steps_max", "1", "-initial_state",
-              file,          "-fluid_viscosity",          ".1"};
+  fs::path file = room_ / "state.h5";
+  const bool snapshot = dice.one_in(3);
+  if (snapshot)
+    file = put_damaged(dice, "state.h5", snapshot_);
+  else
+    write_state(dice, file, is_flat ? flat : deep);
+  const char *cells = snapshot ? "12,10,1" : is_flat ? "8,7,1" : "6,5,4";
+  Words words{"-grid_cells",    cells, "-time_end",        "1", "-time_steps_max", "1",
+              "-initial_state", file,  "-fluid_viscosity", ".1"};
   if (dice.one_in(2)) words.insert(words.end(), {"-boundary_y", "wall"});
   if (!dice.one_in(4)) words.insert(words.end(), {"-species", "cell", "-cell_shear_modulus", "1"});
   if (dice.one_in(6)) words.insert(words.end(), {"-cell_shape", "sphere", "-cell_radius", ".2"});
   return judge(words);
 }
 
-Outcome Fuzzer::voxels(Dice &dice) {
+Outcome Fuzzer::hdf5_volume(Dice &dice) {
   const int cells[3] = {8, 7, 6};
-  std::string bytes, option = "-cell_voxels", value;
-  switch (dice.below(3)) {
-    case 0:
-      bytes = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 3\nspacings: .2 .2 .2\nencoding: raw\n\n";
-      for (int v = 0; v < 48; ++v) bytes += static_cast<char>(dice.below(2));
-      value = room_ / "volume.nrrd";
-      break;
-    case 1: {
-      const float corners[4][3] = {{.2f, .2f, .2f}, {.8f, .2f, .2f}, {.2f, .8f, .2f}, {.2f, .2f, .8f}};
-      const int facets[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-      bytes = std::string(80, ' ') + std::string("\4\0\0\0", 4);
-      for (const auto &facet : facets) {
-        bytes += std::string(12, '\0');
-        for (int corner : facet) bytes.append(reinterpret_cast<const char *>(corners[corner]), 12);
-        bytes += std::string(2, '\0');
-      }
-      value = room_ / "surface.stl";
-      break;
-    }
-    default:
-      value = room_ / "volume.h5";
-      write_state(dice, value, cells);
-  }
-  if (!bytes.empty()) put(fs::path(value).filename().c_str(), dice.one_in(4) ? bytes : dice.spoil(bytes, 3));
-  if (bytes.empty() && !dice.one_in(4)) value += dice.one_in(3) ? ":pressure" : ":solid_fraction";
-  present += bytes;
-  return judge({"-grid_cells", dice.one_in(3) ? "8,7,1" : "8,7,6", "-time_end", "1", "-time_steps_max", "1",
-                "-fluid_viscosity", ".1", "-species", "cell", "-cell_shear_modulus", "1", "-cell_shape", "voxels",
-                option, value});
+  if (dice.one_in(3)) return voxels(dice, put_damaged(dice, "volume.h5", volume_));
+  write_state(dice, room_ / "volume.h5", cells);
+  return voxels(dice, (room_ / "volume.h5").string() + (dice.one_in(3) ? ":pressure" : ":solid_fraction"));
+}
+
+Outcome Fuzzer::voxels(Dice &dice, const std::string &file) {
+  Words words{"-grid_cells",
+              dice.one_in(3) ? "8,7,1" : "8,7,6",
+              "-time_end",
+              "1",
+              "-time_steps_max",
+              "1",
+              "-fluid_viscosity",
+              ".1",
+              "-species",
+              "cell",
+              "-cell_shear_modulus",
+              "1",
+              "-cell_shape",
+              "voxels",
+              "-cell_voxels",
+              file};
+  if (dice.one_in(3)) words.insert(words.end(), {"-cell_voxels_spacing", dice.one_in(3) ? "1,1,1" : ".1,.2,.3"});
+  if (dice.one_in(3)) words.insert(words.end(), {"-cell_voxels_origin", dice.one_in(3) ? "-.5,0,.7" : ".1,.1,.1"});
+  if (dice.one_in(4)) words.insert(words.end(), {"-cell_voxels_invert"});
+  return judge(words);
 }
 
 Outcome Fuzzer::checkpoint(Dice &dice) {
-  std::string bytes = checkpoint_;
-  const bool objects = dice.one_in(3);
-  if (!objects) {
-    if (dice.one_in(8)) bytes.resize(dice.below(bytes.size()));
-    for (std::size_t n = 1 + dice.below(3); n > 0 && !bytes.empty(); --n)
-      bytes[dice.below(bytes.size())] ^= static_cast<char>(1 << dice.below(8));
-  }
-  const fs::path file = put("checkpoint.h5", bytes);
-  if (objects) change_objects(dice, file);
+  const fs::path file = put_damaged(dice, "checkpoint.h5", checkpoint_);
   Words words = checkpoint_line_;
   words.insert(words.end(), {"-restart", file, "-time_steps_max", "3"});
   return judge(words);
@@ -238,19 +249,26 @@ Outcome Fuzzer::checkpoint(Dice &dice) {
 
 PetscErrorCode Fuzzer::prepare() {
   PetscFunctionBeginUser;
-  for (const auto &entry : fs::directory_iterator(EULASTIC_OPTIONS_DIR)) cases_.push_back(text_of(entry.path()));
+  for (const auto &entry : fs::directory_iterator(EULASTIC_OPTIONS_DIR))
+    if (entry.path().extension() == ".opts") cases_.push_back(text_of(entry.path()));
+  std::sort(cases_.begin(), cases_.end());
+  volume_ = text_of(fs::path(EULASTIC_OPTIONS_DIR) / "branched_vessel.h5");
   std::istringstream line(
       "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 "
       "-species cell -cell_shape sphere -cell_radius .3 -cell_shear_modulus 1");
   for (std::string word; line >> word;) checkpoint_line_.push_back(word);
   Words words = checkpoint_line_;
   const fs::path directory = room_ / "good";
-  words.insert(words.end(), {"-time_steps_max", "2", "-checkpoint_interval", "1e-9", "-output_dir", directory});
+  words.insert(words.end(), {"-time_steps_max", "2", "-checkpoint_interval", "1e-9", "-snapshot_interval", "9",
+                             "-output_dir", directory});
   int code = -1;
   std::string refusal;
   PetscCall(run(parse(words), &code, &refusal));
   PetscCheck(code == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s", refusal.c_str());
   checkpoint_ = text_of(list_checkpoints(directory).front());
+  snapshot_ = text_of(directory / "snapshot_000000.h5");
+  PetscCheck(!checkpoint_.empty() && !snapshot_.empty() && !volume_.empty(), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "no file");
   PetscFunctionReturn(0);
 }
 
@@ -267,11 +285,13 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
   PetscCheck(mkdtemp(room.data()), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", room.c_str());
   Fuzzer fuzzer(room);
   PetscCall(fuzzer.prepare());
-  std::vector<Kind> kinds{{"command line", &Fuzzer::command_line, 8},
-                          {"options file", &Fuzzer::options_file, 4},
+  std::vector<Kind> kinds{{"command line", &Fuzzer::command_line, 7},
+                          {"options file", &Fuzzer::options_file, 3},
                           {"positions", &Fuzzer::positions, 2},
                           {"initial state", &Fuzzer::initial_state, 2},
-                          {"voxels", &Fuzzer::voxels, 2},
+                          {"NRRD", &Fuzzer::nrrd, 2},
+                          {"STL", &Fuzzer::stl, 1},
+                          {"HDF5 volume", &Fuzzer::hdf5_volume, 1},
                           {"checkpoint", &Fuzzer::checkpoint, 2}};
   for (Kind &kind : kinds)
     for (long n = 0; n < cases * kind.share / 20; ++n) {
