@@ -110,12 +110,11 @@ PetscErrorCode Outputs::measure() {
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
-  const double few_cells = (grid_->dimension() == 3 ? 8 : 4) * grid_->cell_volume();
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
     m.volume_drift = std::max(m.volume_drift, drift);
-    if (drift <= m.resolved_drift || first_volume_[b] < few_cells) continue;
+    if (drift <= m.resolved_drift || !resolved(first_volume_[b])) continue;
     m.resolved_drift = drift;
     m.drifting_body = static_cast<int>(b);
   }
@@ -125,6 +124,15 @@ PetscErrorCode Outputs::measure() {
   mach_max_ = std::max(mach_max_, m.mach);
   m.time = state.time;
   PetscFunctionReturn(0);
+}
+
+std::string Outputs::unresolved_bodies() const {
+  const auto small = std::count_if(first_volume_.begin(), first_volume_.end(), [&](double v) { return !resolved(v); });
+  if (small == 0) return {};
+  return "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) + " of " +
+         std::to_string(first_volume_.size()) +
+         "; hardly resolved, and -guard_volume_drift does not look at them; more "
+         "-grid_cells";
 }
 
 // Of a state that measure() has seen.
@@ -137,8 +145,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   energy->kinetic = measured_.flow.kinetic_energy;
   energy->elastic = measured_.flow.elastic_energy;
   energy->dissipation = measured_.flow.viscous_dissipation;
-  const EnergyNumbers numbers{fluid.density, fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.walls, state.time,     solver_->evolved_fraction()};
+  const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
+                              &config_.walls, state.time,      solver_->evolved_fraction()};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
   PetscFunctionReturn(0);
 }
@@ -187,11 +195,25 @@ PetscErrorCode Outputs::write_due(bool last) {
     const FlowMeasures &flow = measured_.flow;
     double solid = 0;
     for (const double volume : flow.phase_volume) solid += volume;
-    PetscCall(series_.write({state.time, double(state.step), state.dt, flow.kinetic_energy, flow.elastic_energy,
-                             flow.viscous_dissipation, flow.bulk_velocity[0], flow.bulk_velocity[1],
-                             flow.bulk_velocity[2], flow.speed_max, flow.divergence_rms, flow.divergence_max, solid,
-                             measured_.volume_drift, energy.rates.force_power, energy.rates.wall_power,
-                             energy.rates.elastic_power, energy_.lost(), energy_.lost_elastic(),
+    PetscCall(series_.write({state.time,
+                             double(state.step),
+                             state.dt,
+                             flow.kinetic_energy,
+                             flow.elastic_energy,
+                             flow.viscous_dissipation,
+                             flow.bulk_velocity[0],
+                             flow.bulk_velocity[1],
+                             flow.bulk_velocity[2],
+                             flow.speed_max,
+                             flow.divergence_rms,
+                             flow.divergence_max,
+                             solid,
+                             measured_.volume_drift,
+                             energy.rates.force_power,
+                             energy.rates.wall_power,
+                             energy.rates.elastic_power,
+                             energy_.lost(),
+                             energy_.lost_elastic(),
                              energy_.lost_extended()}));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));

@@ -41,10 +41,14 @@ public:
   PetscErrorCode measure();
   /// As of the last measure(), which every row of series.csv makes.
   const Measured &measured() const { return measured_; }
+  /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing.
+  std::string unresolved_bodies() const;
   /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
   PetscErrorCode write_summary(Summary summary);
 
 private:
+  int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
+  bool resolved(double volume) const { return volume >= few_cells() * grid_->cell_volume(); }
   std::vector<BodyRecord> records() const;
   PetscErrorCode measure_energy(EnergyState *energy);
 

@@ -120,6 +120,7 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   if (source.empty()) PetscCall(run->outputs.write_due(false));
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
+  if (source.empty()) print_warning(grid.comm(), run->outputs.unresolved_bodies());
   if (!source.empty())
     PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                           run->solver.state().time, static_cast<long long>(run->solver.state().step)));

@@ -95,6 +95,13 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(result.returncode, 1)
             self.assertTrue((self.room / f"run{ranks}/summary.json").exists())
 
+    def test_bodies_of_few_cells_are_a_warning(self):
+        for radius, warning in ((".25", ""), (".1", "eulastic: warning: bodies of less than 8 cells: 1 of 1; ")):
+            words = [radius if word == ".25" else word for word in SCENE]
+            done = self.run_program(*words, "-output_dir", radius)
+            self.assertEqual(done.returncode, 0)
+            self.assertEqual(done.stderr[:len(warning)] if warning else done.stderr, warning)
+
     def test_errors_on_several_ranks_are_printed_once(self):
         result = self.run_program(*SCENE, "-nonsense", ranks=3)
         self.assertEqual(result.returncode, 2)
