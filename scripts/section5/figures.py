@@ -37,7 +37,7 @@ class Panel(render.Scene):
         camera.SetFocalPoint(*centre)
         camera.SetPosition(*(centre + size * numpy.array([0.2, 0.4, 1.9])))
         camera.SetViewUp(0, 1, 0)
-        camera.SetViewAngle(15.5)
+        camera.SetViewAngle(16.5)
         renderer.ResetCameraClippingRange()
 
 
@@ -62,7 +62,7 @@ def snapshots(runs, work, path):
             axis.imshow(plt.imread(picture), interpolation="antialiased")
             axis.set(xticks=[], yticks=[])
             axis.spines[:].set_visible(False)
-            if row is axes[0]:
+            if axis in axes[0]:
                 axis.set_title(f"t = {snapshot.time / 1000:.2g} ms", fontsize=10)
         row[0].set_ylabel(f"{percent(runs[case]):.0f} %")
     blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", render.BLUES)

@@ -155,3 +155,13 @@ def radial_rms(run, part=1 / 3):
     square = (radial(run)[1][after(run, part)] ** 2).mean(axis=0)  # of each
     value = numpy.sqrt(square.mean())
     return value, square.std(ddof=1) / numpy.sqrt(len(square)) / (2 * value)
+
+
+def overlap(run):
+    """What cells of the grid hold beyond their volume, bodies of all species together, in parts of all red cells; the
+    largest of all snapshots."""
+    largest = 0
+    for snapshot in run.snapshots:
+        fraction = {name: snapshot["solid_fraction_" + name] for name in run.options["species"].split(",")}
+        largest = max(largest, numpy.maximum(sum(fraction.values()) - 1.0, 0).sum() / fraction["rbc"].sum())
+    return largest

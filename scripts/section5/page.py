@@ -1,12 +1,16 @@
 """docs/capillary.md: checks, a table, the pictures."""
 import math
+import os
 import pathlib
+import re
+import subprocess
 
 from read_run import read_options
 
 from . import measures
 
-CASE = pathlib.Path(__file__).resolve().parents[2] / "options/capillary_plasma.opts"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CASE, PAPER = ROOT / "options/capillary_plasma.opts", ROOT / "options/capillary_paper.opts"
 
 WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 
@@ -24,7 +28,7 @@ The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (t
 times in µs, density 1; they end at {end:g}. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
 same places whatever the hematocrit. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's
 own case, a vessel of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is
-options/capillary_paper.opts: `-check_only` says what it takes, 535 GB of memory and about 155 days of one core.
+options/capillary_paper.opts: `-check_only` says what it takes, {memory} of memory and about {time} of one core.
 
 {unfinished}## Figure 7: the cells
 
@@ -109,6 +113,13 @@ def percent(value, digits=2):
     return f"{100 * value:.{digits}f} %"
 
 
+def estimate(case, line, value):
+    """What -check_only says about an options file."""
+    program = os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
+    report = subprocess.run([program, case, "-check_only"], check=True, capture_output=True, text=True).stdout
+    return re.search(rf"^{line}.*?: ({value})", report, re.MULTILINE)[1]
+
+
 def checks(runs):
     """(name, {case: text}, what is wanted, verdict or None) of every check that the runs allow."""
     wall = {case: measures.wall_shear_stress(run) for case, run in runs.items()}
@@ -131,6 +142,11 @@ def checks(runs):
     yield ("change of the bodies' volume, all together", {c: f"{d:.1e}" for c, d in drift.items()}, "", None)
     own = {case: run.series.volume_drift.max() for case, run in runs.items()}
     yield ("change of a body's volume, the worst", {c: f"{d:.1e}" for c, d in own.items()}, "", None)
+    yield ("overlap of bodies, in parts of the red cells", {c: f"{measures.overlap(run):.1g}" for c, run in cells.items()}, "", None)
+    if all("phases" in run.summary for run in runs.values()):  # not in runs of before
+        phases = {case: estimate(run.directory / "options.txt", "phases", r"\d+") for case, run in runs.items()}
+        yield ("phases as -check_only estimates; at the end",
+               {c: f"{phases[c]}; {run.summary['phases']}" for c, run in runs.items()}, "", None)
     wall = {case: measures.wall_displacement(run) for case, run in runs.items()}
     yield ("largest displacement of the wall at the end, µm", {c: f"{d:.2f}" for c, d in wall.items()}, "", None)
 
@@ -219,6 +235,7 @@ def write(runs, tubes, missing, path):
         end=run.bodies.time[-1], cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
         viscosity=float(run.options["fluid_viscosity"]), platelets=len(measures.of_species(run, "platelet")),
         capillary=wall_stress / measures.shear_modulus(run, "platelet"),
+        memory=estimate(PAPER, "memory", r"[\d.]+ GB"), time=estimate(PAPER, "wall time", r"[\d.]+ \w+"),
         unfinished=other_options(run) + (f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else ""), trend=trend(runs),
         names=" | ".join(runs), columns="---|" * len(runs),
         checks="\n".join(f"| {name} | {' | '.join(values.get(case, '') for case in runs)} | {wanted} | {WORDS[passed]} |"
