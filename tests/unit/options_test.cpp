@@ -78,6 +78,34 @@ TEST(Options, Defaults) {
   EXPECT_TRUE(parse_line(scene + " -cell_centre 4,4,4").config.species[0].centre_given);
 }
 
+// What -help prints, and what a run uses that was not told otherwise.
+TEST(Options, HelpHasTheDefaultsThatAreUsed) {
+  for (const std::string method : {"fast", "classic"}) {
+    ParseResult result = parse_line(
+        "-time_end 1 -species NAME -NAME_shape sphere -NAME_radius .1 -NAME_shear_modulus 1 "
+        "-method " +
+        method);
+    ASSERT_EQ(result.error, "");
+    Config fresh;
+    fresh.species.resize(1);
+    fresh.species[0].name = "NAME";
+    const std::vector<Option> used = option_table(result.config), said = option_table(fresh);
+    ASSERT_EQ(used.size(), said.size());
+    int compared = 0;
+    for (std::size_t r = 0; r < said.size(); ++r) {
+      const std::string &note = said[r].default_note;
+      if (said[r].required || !said[r].text || said[r].name == "method" || said[r].name == "species") continue;
+      if (!note.empty() && said[r].group != "Method") continue;
+      std::string text = note.empty() ? said[r].text() : note;
+      if (const std::size_t at = text.find("; "); at != std::string::npos)
+        text = method == "fast" ? text.substr(0, at) : text.substr(at + 2, text.find(" with") - at - 2);
+      EXPECT_EQ(used[r].text(), text) << said[r].name;
+      ++compared;
+    }
+    EXPECT_GT(compared, 70);
+  }
+}
+
 TEST(Options, Booleans) {
   for (const char *yes : {"", "true", "yes", "1"})
     EXPECT_TRUE(parse_line(scene + " -output_overwrite " + yes + " -check_only false").config.output.overwrite) << yes;
