@@ -34,7 +34,7 @@ bool is_output_file(const std::string &name) {
 }
 
 std::string RunDirectory::open_locally(Old old) {
-  const auto because = [&](const std::string &reason) { return "output directory " + path_ + ": " + reason; };
+  const auto because = [&](const std::string &reason) { return "-output_dir " + path_ + ": " + reason; };
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error)) return because("is not a directory");
   fs::create_directories(path_, error);

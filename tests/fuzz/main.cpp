@@ -10,13 +10,13 @@
 #include "fuzz/command_lines.hpp"
 #include "fuzz/hdf5_files.hpp"
 #include "fuzz/volume_files.hpp"
+#include "fuzz/watchdog.hpp"
 #include "io/checkpoint.hpp"
 #include "support/leaks.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -31,14 +31,6 @@ using namespace eulastic::fuzz;
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string &present = *new std::string;  // the case under way; outlives everything
-
-void say_case(int signal) {
-  (void)!write(2, present.data(), present.size());
-  if (signal == SIGALRM) (void)!write(2, "\nfuzz: more than a minute\n", 26);
-  std::_Exit(1);
-}
 
 struct Outcome {
   bool accepted = false;
@@ -298,7 +290,7 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
       Dice dice(seed_of_case(seed, n));
       present =
           std::string("\nfuzz: ") + kind.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(n) + ":";
-      alarm(60);
+      watch(true);
       const Outcome outcome = (fuzzer.*kind.run)(dice);
       ++kind.tried;
       kind.accepted += outcome.accepted;
@@ -306,7 +298,7 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
       ++kind.found;
       std::fprintf(stderr, "%s\nfuzz: %s\n", present.c_str(), outcome.found.c_str());
     }
-  alarm(0);
+  watch(false);
   std::fprintf(out, "%-14s %8s %8s %8s %8s\n", "input", "tried", "refused", "accepted", "found");
   Kind sum{"all", nullptr, 0};
   for (const Kind &kind : kinds) {
@@ -323,8 +315,6 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
 
 }  // namespace
 
-extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
-
 int main(int argc, char **argv) {
   if (argc == 4 && !std::strcmp(argv[1], "--lines")) return print_lines(std::atol(argv[2]), std::atol(argv[3])), 0;
   const long cases = argc > 1 ? std::atol(argv[1]) : 10000;
@@ -334,9 +324,7 @@ int main(int argc, char **argv) {
   int none = 1;
   PetscCall(PetscInitialize(&none, &argv, nullptr, nullptr));
   PetscCall(register_events());
-  for (int signal : {SIGALRM, SIGABRT, SIGSEGV, SIGFPE, SIGBUS}) (void)std::signal(signal, say_case);
-  if (__sanitizer_set_death_callback)
-    __sanitizer_set_death_callback([] { (void)!write(2, present.data(), present.size()); });
+  say_case_at_death();
   long found = 0;
   PetscCall(fuzz_all(cases, seed, out, &found));
   if (H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) > 0) ++found, std::fprintf(stderr, "fuzz: HDF5 objects left open\n");
