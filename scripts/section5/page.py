@@ -88,8 +88,8 @@ hematocrit is the red cells' share of the volume that flows.*
 {flow}
 
 Where the gap comes from: a cell here is a lump of neo-Hookean solid as viscous as plasma, not a membrane around a fluid,
-and cannot tank-tread; few grid cells span its thickness, and less than a grid cell the plasma between two of them; the
-vessel is three cells wide and two diameters long, so that each cell meets its own image; and {strain:.0f} units of shear at
+and cannot tank-tread; few grid cells span its thickness ([dimple.md](dimple.md)), and less than a grid cell the plasma
+between two of them; the vessel is three cells wide and two diameters long, so that each cell meets its own image; and {strain:.0f} units of shear at
 the wall are few for cells to find the places and orientations of a long tube. With such a cell agreement to
 better than 10 to 30 % would be luck.
 """

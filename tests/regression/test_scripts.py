@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 import matplotlib.colors
@@ -53,7 +54,7 @@ class Shell(WithFolder):
 
     def test_help_from_anywhere(self):
         for script in ("install", "build", "test", "tidy", "sanitize", "fuzz", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
-                       "paper_figure2", "paper_section5", "tutorial"):
+                       "paper_figure2", "paper_section5", "tutorial", "dimple_study"):
             done = start(SCRIPTS / script, "--help", cwd=self.folder)
             self.assertEqual(done.returncode, 0, script)
             self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
@@ -242,6 +243,23 @@ class Performance(WithFolder):
                 ("step/red_cells", "step/pure_flow", "advection")}
         text = load("paper_table1").targets_table({"64/64/64": "64^3"}, *[({"peak": 128}, rows)] * 2)
         self.assertIn("red cells, 64^3 | 0.090 | 0.090 | 0.090 |", text)
+
+    def test_thickness_of_a_dimple(self):
+        """A plate 6 x 1.3 x 6 across the seam of x, askew to nothing: what the integral over phi finds."""
+        spacing, cells = numpy.array([0.5, 0.25, 0.5]), (32, 48, 24)
+        run = types.SimpleNamespace(
+            cells=cells, spacing=spacing, length=spacing * cells, centres=lambda d: (numpy.arange(cells[d]) + 0.5) * spacing[d],
+            bodies=types.SimpleNamespace(time=numpy.array([0.0]), centroid=numpy.array([[[1.0, 5.1, 6.0]]])))
+        part = [numpy.clip((half - abs((run.centres(d) - c + length / 2) % length - length / 2)) / h + 0.5, 0, 1)
+                for d, (half, c, h, length) in enumerate(zip((3, 0.65, 3), (1, 5.1, 6), spacing, run.length))]
+
+        class Snapshot(dict):
+            time = 0.0
+
+        phi = part[2][:, None, None] * part[1][:, None] * part[0]
+        thickness, largest = load("dimple_study").middle(run, Snapshot(solid_fraction=phi))
+        self.assertAlmostEqual(thickness, 1.3, delta=1e-3)
+        self.assertAlmostEqual(largest, 1, delta=1e-12)
 
     def test_cost_of_bodies(self):
         done = start(SCRIPTS / "cost_of_bodies", "--quick", "--only", "share", "memory")
