@@ -142,21 +142,33 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
   const std::string reason = why_not(spec, ranks_);
   PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
   const Int3 ranks = decompose(spec, ranks_);
-  std::array<std::vector<PetscInt>, 3> counts;
-  std::array<DMBoundaryType, 3> type{};
   for (int d = 0; d < 3; ++d) {
     spacing_[d] = spec.length[d] / spec.cells[d];
     starts_[d] = split(spec.cells[d], ranks[d], d == 0);
-    for (int p = 0; p < ranks[d]; ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
-    type[d] = d >= dimension()                         ? DM_BOUNDARY_NONE
-              : spec.boundary[d] == Boundary::periodic ? DM_BOUNDARY_PERIODIC
-                                                       : DM_BOUNDARY_GHOSTED;
   }
   layout_ = make_layout({rank_ % ranks[0], rank_ / ranks[0] % ranks[1], rank_ / ranks[0] / ranks[1]});
-  PetscCall(DMDACreate3d(comm, type[0], type[1], type[2], DMDA_STENCIL_BOX, spec.cells[0], spec.cells[1], spec.cells[2],
-                         ranks[0], ranks[1], ranks[2], 1, stencil_width, counts[0].data(), counts[1].data(),
-                         counts[2].data(), dm_.put()));
-  PetscCall(DMSetUp(dm_.get()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Grid::create_dm(DM *dm) const {
+  PetscFunctionBeginUser;
+  std::array<std::vector<PetscInt>, 3> counts;
+  std::array<DMBoundaryType, 3> type{};
+  for (int d = 0; d < 3; ++d) {
+    for (int p = 0; p < processors(d); ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
+    type[d] = is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
+  }
+  const Int3 &n = cells();
+  PetscCall(DMDACreate(comm_, dm));
+  PetscCall(DMSetDimension(*dm, dimension()));
+  PetscCall(DMDASetSizes(*dm, n[0], n[1], n[2]));
+  PetscCall(DMDASetNumProcs(*dm, processors(0), processors(1), processors(2)));
+  PetscCall(DMDASetOwnershipRanges(*dm, counts[0].data(), counts[1].data(), counts[2].data()));
+  PetscCall(DMDASetBoundaryType(*dm, type[0], type[1], type[2]));
+  PetscCall(DMDASetDof(*dm, 1));
+  PetscCall(DMDASetStencilType(*dm, DMDA_STENCIL_STAR));
+  PetscCall(DMDASetStencilWidth(*dm, 1));
+  PetscCall(DMSetUp(*dm));
   PetscFunctionReturn(0);
 }
 

@@ -107,7 +107,8 @@ PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
   PetscFunctionBeginUser;
   grid_ = &grid;
   exchange_ = &exchange;
-  PetscCall(create_cells());
+  PetscCall(grid.create_dm(cells_.put()));
+  PetscCall(DMDASetInterpolationType(cells_.get(), DMDA_Q0));
   PetscCall(DMCreateGlobalVector(cells_.get(), rhs_.put()));
   PetscCall(VecDuplicate(rhs_.get(), solution_.put()));
   PetscCall(KSPCreate(grid.comm(), ksp_.put()));
@@ -118,32 +119,6 @@ PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
   PetscCall(set_from_options(ksp_.get()));
   PetscCall(KSPSetUp(ksp_.get()));
   PetscCall(KSPSetUpOnBlocks(ksp_.get()));
-  PetscFunctionReturn(0);
-}
-
-// The grid's own DMDA has a wide box stencil: its matrix would have rows of hundreds of entries.
-PetscErrorCode KspSolver::create_cells() {
-  std::array<std::vector<PetscInt>, 3> counts;
-  std::array<DMBoundaryType, 3> type{};
-  PetscFunctionBeginUser;
-  for (int d = 0; d < 3; ++d) {
-    const int stride = d == 0 ? 1 : d == 1 ? grid_->processors(0) : grid_->processors(0) * grid_->processors(1);
-    for (int p = 0; p < grid_->processors(d); ++p) counts[d].push_back(grid_->layout_of(p * stride).cells[d]);
-    type[d] = grid_->is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
-  }
-  const Int3 &n = grid_->cells();
-  PetscCall(DMDACreate(grid_->comm(), cells_.put()));
-  const DM dm = cells_.get();
-  PetscCall(DMSetDimension(dm, grid_->dimension()));
-  PetscCall(DMDASetSizes(dm, n[0], n[1], n[2]));
-  PetscCall(DMDASetNumProcs(dm, grid_->processors(0), grid_->processors(1), grid_->processors(2)));
-  PetscCall(DMDASetOwnershipRanges(dm, counts[0].data(), counts[1].data(), counts[2].data()));
-  PetscCall(DMDASetBoundaryType(dm, type[0], type[1], type[2]));
-  PetscCall(DMDASetDof(dm, 1));
-  PetscCall(DMDASetStencilType(dm, DMDA_STENCIL_STAR));
-  PetscCall(DMDASetStencilWidth(dm, 1));
-  PetscCall(DMDASetInterpolationType(dm, DMDA_Q0));
-  PetscCall(DMSetUp(dm));
   PetscFunctionReturn(0);
 }
 

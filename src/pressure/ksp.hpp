@@ -28,7 +28,6 @@ public:
   KSP ksp() const { return ksp_.get(); }
 
 private:
-  PetscErrorCode create_cells();
   PetscErrorCode set_preset();
   PetscErrorCode iterate();
 

@@ -21,7 +21,9 @@ void check(const GridSpec &spec) {
   const Layout &own = grid.layout();
 
   PetscInt x, y, z, nx, ny, nz;
-  ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
+  DmHandle dm;
+  ASSERT_EQ(grid.create_dm(dm.put()), 0);
+  ASSERT_EQ(DMDAGetCorners(dm.get(), &x, &y, &z, &nx, &ny, &nz), 0);
   EXPECT_EQ(own.begin, (Int3{x, y, z}));
   EXPECT_EQ(own.cells, (Int3{nx, ny, nz}));
 
