@@ -267,7 +267,7 @@ class Performance(WithFolder):
         rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("|")]
         self.assertEqual([row[1] for row in rows[2:5]], ["0.000", "0.562", "1.000"])  # half, and the cells cut
         fields = {row[0]: int(row[1]) for row in rows if "classic" in row[0]}
-        self.assertLess(fields["pure flow, classic"], fields["red cells, classic"])
+        self.assertLess(fields["pure flow, classic, 64^3"], fields["red cells, classic, 64^3"])
 
 
 class RealRun(WithFolder):
