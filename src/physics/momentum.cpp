@@ -169,21 +169,32 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, doub
     }
 }
 
-void run_predictor(const Grid &grid, const Fluid &fluid, PredictorTerms terms, FieldBlock &out) {
+void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+                   const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock *advection, bool rate_only,
+                   FieldBlock &out) {
   VerbScope scope(Verb::momentum);
   const int dim = grid.dimension();
-  for (int d = 0; d < 3; ++d) {
-    terms.inverse[d] = 1 / grid.spacing()[d];
-    terms.inverse_squared[d] = terms.inverse[d] * terms.inverse[d];
-  }
+  const Real3 &h = grid.spacing();
+  const PredictorTerms terms{&grid,
+                             &velocity,
+                             &pressure,
+                             &phases,
+                             fluid.inertia,
+                             step.dt,
+                             fluid.density,
+                             fluid.kinematic_viscosity(),
+                             weno_epsilon(step.speed_scale),
+                             step.weights,
+                             advection,
+                             rate_only,
+                             fluid.body_force.at(step.force_time),
+                             {1 / h[0], 1 / h[1], 1 / h[2]},
+                             {1 / h[0] * (1 / h[0]), 1 / h[1] * (1 / h[1]), 1 / h[2] * (1 / h[2])}};
   RowScratch scratch(grid, 4);
-  if (dim == 2)
-    predict_2d(terms, out, scratch);
-  else
-    predict_3d(terms, out, scratch);
+  (dim == 2 ? predict_2d : predict_3d)(terms, out, scratch);
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
-  scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, *terms.phases)));
+  scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, phases)));
 }
 
 }  // namespace
@@ -192,23 +203,7 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
                                 const FieldBlock &velocity, const FieldBlock &pressure,
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid,
-                {&grid,
-                 &velocity,
-                 &pressure,
-                 &phases,
-                 fluid.inertia,
-                 step.dt,
-                 fluid.density,
-                 fluid.kinematic_viscosity(),
-                 weno_epsilon(step.speed_scale),
-                 step.weights,
-                 nullptr,
-                 false,
-                 fluid.body_force.at(step.force_time),
-                 {},
-                 {}},
-                velocity_star);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, false, velocity_star);
   PetscFunctionReturn(0);
 }
 
@@ -216,23 +211,7 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
                              FieldBlock &rate) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid,
-                {&grid,
-                 &velocity,
-                 &pressure,
-                 &phases,
-                 fluid.inertia,
-                 step.dt,
-                 fluid.density,
-                 fluid.kinematic_viscosity(),
-                 weno_epsilon(step.speed_scale),
-                 step.weights,
-                 advection ? &advection : nullptr,
-                 true,
-                 fluid.body_force.at(step.force_time),
-                 {},
-                 {}},
-                rate);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, true, rate);
   PetscFunctionReturn(0);
 }
 

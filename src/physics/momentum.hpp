@@ -35,7 +35,8 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
                              const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
                              FieldBlock &advection, FieldBlock &rate);
 
-/// force += scale times the elastic force, div(G phi dev B) or that of the law, of all phases, at the faces that feel it. One ghost of phi and B.
+/// force += scale times the elastic force of all phases, div(G phi dev B) or that of the law, at the faces that feel it.
+/// One ghost of phi and B.
 PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force);
 
 /// D* = rho div v* at centres. Needs one ghost of v*.
