@@ -181,6 +181,16 @@ class Pictures(WithFolder):
             for axis, first, place in zip((i, j, k), begin[::-1], synthetic_run.START[body - 1]):
                 self.assertAlmostEqual((piece * (axis + first + 0.5)).sum() / piece.sum() * 0.25, place, delta=0.02)
 
+    def test_the_surface_of_a_body_encloses_its_volume(self):
+        """A box of many cells: 1/2, its corners aside; of one full cell: the surface of its tent of the same volume."""
+        box = numpy.pad(numpy.ones((12, 12, 12)), 2)
+        self.assertAlmostEqual(load("render").enclosing(box), 0.5, delta=0.07)
+        level = load("render").enclosing(numpy.pad(numpy.ones((1, 1, 1)), 2))
+        x = (numpy.arange(200) + 0.5) / 100 - 1
+        tent = 1 - abs(x)
+        volume = ((tent[:, None, None] * tent[:, None] * tent) > level).sum() / 100**3
+        self.assertAlmostEqual(volume, 1, delta=0.3)  # 27 samples per cell, eight alike
+
     def test_render_shows_every_body_in_its_colour(self):
         picture = self.folder / "bodies.png"
         done = start(SCRIPTS / "render", self.directory, "--output", picture, "--size", 400, 320)
@@ -252,12 +262,9 @@ class Performance(WithFolder):
             bodies=types.SimpleNamespace(time=numpy.array([0.0]), centroid=numpy.array([[[1.0, 5.1, 6.0]]])))
         part = [numpy.clip((half - abs((run.centres(d) - c + length / 2) % length - length / 2)) / h + 0.5, 0, 1)
                 for d, (half, c, h, length) in enumerate(zip((3, 0.65, 3), (1, 5.1, 6), spacing, run.length))]
-
-        class Snapshot(dict):
-            time = 0.0
-
+        snapshot = type("Snapshot", (dict,), {"time": 0.0})
         phi = part[2][:, None, None] * part[1][:, None] * part[0]
-        thickness, largest = load("dimple_study").middle(run, Snapshot(solid_fraction=phi))
+        thickness, largest = load("dimple_study").middle(run, snapshot(solid_fraction=phi))
         self.assertAlmostEqual(thickness, 1.3, delta=1e-3)
         self.assertAlmostEqual(largest, 1, delta=1e-12)
 
