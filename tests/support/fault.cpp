@@ -8,11 +8,12 @@
 //   flush    its next H5Fflush fails, and it alone does not take part
 //   crash    it meets SIGSEGV
 //   exit     it leaves without a word
-// Deadline (io/deadline.hpp) waits two seconds, not five minutes.
+// Deadline (io/deadline.hpp) waits three seconds, not five minutes.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <hdf5.h>
 #include <petscsys.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -101,7 +102,10 @@ int MPI_File_get_size(MPI_File file, MPI_Offset *size) {
   return meets("size") ? MPI_ERR_IO : PMPI_File_get_size(file, size);
 }
 
-unsigned alarm(unsigned seconds) { return next<unsigned(unsigned)>("alarm")(seconds - std::min(seconds, 298U)); }
+unsigned alarm(unsigned seconds) {
+  const itimerval soon{{0, 0}, {0, static_cast<suseconds_t>(seconds * 10000)}};
+  return setitimer(ITIMER_REAL, &soon, nullptr) == 0 ? 0 : 1;
+}
 
 int open(const char *path, int flags, ...) {
   va_list more;
