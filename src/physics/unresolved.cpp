@@ -44,8 +44,8 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
       for (int i = -1; i <= n[0]; ++i) {
         if (!(phi(i, j, k) >= rule.centre)) continue;
         const std::ptrdiff_t p = layout.offset(i, j, k);
-        if (!(determinant(phase.tensor.data() + p, layout.size, layout.sy, layout.sz, dimension) > largest_determinant))
-          continue;
+        const double largest = phi(i, j, k) > full_cell ? largest_determinant : largest_at_surface;
+        if (!(determinant(phase.tensor.data() + p, layout.size, layout.sy, layout.sz, dimension) > largest)) continue;
         forgotten.resize(static_cast<std::size_t>(layout.size));
         forgotten[p] = 1;
         found += i >= 0 && i < n[0] && j >= 0 && j < n[1] && k >= 0 && k < n[2];

@@ -5,14 +5,14 @@
 
 namespace eulastic {
 
-/// Largest det B that is taken for one. (5) keeps it 1; a mean of unlike tensors has more. Stays below 4 with what a
-/// step and the edges of forgotten neighbours add to it.
-inline constexpr double largest_determinant = 3.5;
+/// Largest det B that is taken for one, in full cells and at the surface. (5) keeps it 1; a mean of unlike tensors has
+/// more. What a step and the edges of forgotten neighbours add leaves it below 4 in full cells.
+inline constexpr double largest_determinant = 3.5, largest_at_surface = 8, full_cell = 0.999;
 
 /// Whether det B may be too large anywhere in a body with tr B <= trace: det B <= (tr B/3)^3, in 2-D ((tr B - 1)/2)^2.
 bool may_be_unresolved(double trace, int dimension);
 
-/// B = I at the centres that evolve with det B > largest_determinant, off-diagonals averaged from the edges; B_ab = 0
+/// B = I at the centres that evolve with a det B above these limits, off-diagonals averaged from the edges; B_ab = 0
 /// on the edges around them. Only owned points; what is extended from them is not made anew. `count`: such centres of
 /// all ranks. Collective. Two ghosts of B, one of phi.
 PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase &phase, long *count);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 using namespace eulastic;
 using namespace eulastic::test;
@@ -104,6 +105,17 @@ TEST(Unresolved, OnlyWhereBEvolvesAndWhatIsNotFiniteStays) {
   EXPECT_EQ(body.forget(), 0);
   EXPECT_EQ(body.phase.tensor[0](n[0] - 1, 1, 0), 1e9);
   EXPECT_TRUE(std::isnan(body.phase.tensor[0](1, 1, 0)));
+}
+
+TEST(Unresolved, CellsAtTheSurfaceHaveMoreRoom) {
+  Body body(true, 1);
+  const View phi = body.phase.fraction[0], xx = body.phase.tensor[0];
+  for (const auto &[fraction, determinant, count] :
+       {std::tuple{1., 3.4, 0L}, {1., 3.6, 1L}, {0.9, 3.6, 0L}, {0.9, 7.9, 0L}, {0.9, 8.1, 1L}}) {
+    phi(1, 1, 0) = fraction;
+    xx(1, 1, 0) = determinant;
+    EXPECT_EQ(body.forget(), count) << fraction << " " << determinant;
+  }
 }
 
 TEST(Unresolved, TheTraceTellsWhereToLook) {
