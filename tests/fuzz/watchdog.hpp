@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));  // NOLINT: its name
 
 namespace eulastic::fuzz {
 
