@@ -8,23 +8,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace eulastic {
 namespace {
 
 constexpr int most = SweepSums::most;
 
-// The Laplacians of all directions on one row, into rows of `pitch` doubles.
-template <int Dim>
-EULASTIC_INLINE void laplacians(const Segment &s, const ConstView *q, int count, InverseSquares h, double *rows,
-                                std::ptrdiff_t pitch) {
-  for (int f = 0; f < count; ++f) {
-    const double *from = q[f].row(s.j, s.k);
-    double *to = rows + f * pitch;
-    const std::ptrdiff_t sy = q[f].sy, sz = q[f].sz;
-#pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i) to[i] = kernels::laplacian<Dim>(from + i, sy, sz, h);
-  }
+// work(count) with the number of directions as a constant.
+template <class Work>
+EULASTIC_INLINE void for_directions(int count, Work work) {
+  static_assert(most == 4, "one case for every number of directions");
+  if (count == 1) return work(std::integral_constant<int, 1>{});
+  if (count == 2) return work(std::integral_constant<int, 2>{});
+  if (count == 3) return work(std::integral_constant<int, 3>{});
+  work(std::integral_constant<int, 4>{});
 }
 
 // Sums over the owned cells, in the order D D, q_0, (D L_i), (L_i L_j, j <= i).
@@ -34,7 +32,6 @@ struct SumTask {
   const ConstView *q;
   int count;
   InverseSquares h;
-  double *rows;
 };
 
 constexpr int sum_count(int directions) { return 2 + directions + directions * (directions + 1) / 2; }
@@ -43,22 +40,26 @@ template <int Dim, int Directions>
 EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
   const Int3 n = t.grid->owned();
   const std::int64_t begin = t.grid->layout().begin[0];
+  const InverseSquares h = t.h;
+  const std::ptrdiff_t sy = t.residual.sy, sz = t.residual.sz;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
-      laplacians<Dim>({0, n[0], j, k}, t.q, Directions, t.h, t.rows, n[0]);
-      const double *D = t.residual.row(j, k), *q0 = t.q[0].row(j, k);
-      const double *L = t.rows;
-      const std::ptrdiff_t pitch = n[0];
+      const double *D = t.residual.row(j, k), *q[Directions];
+      for (int f = 0; f < Directions; ++f) q[f] = t.q[f].row(j, k);
       const auto products = [=](int i, auto add) EULASTIC_BODY {
+        double L[Directions];
         int s = 0;
         add(s++, D[i], D[i]);
-        add(s++, q0[i], 1);
+        add(s++, q[0][i], 1);
 #pragma GCC unroll 4
-        for (int f = 0; f < Directions; ++f) add(s++, D[i], L[f * pitch + i]);
+        for (int f = 0; f < Directions; ++f) {
+          L[f] = kernels::laplacian<Dim>(q[f] + i, sy, sz, h);
+          add(s++, D[i], L[f]);
+        }
 #pragma GCC unroll 4
         for (int f = 0; f < Directions; ++f)
 #pragma GCC unroll 4
-          for (int g = 0; g <= f; ++g) add(s++, L[f * pitch + i], L[g * pitch + i]);
+          for (int g = 0; g <= f; ++g) add(s++, L[f], L[g]);
       };
       add_row_sums<sum_count(Directions)>(n[0], begin, products, sums);
     }
@@ -66,17 +67,7 @@ EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
 
 template <int Dim>
 EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
-  static_assert(most == 4, "one case for every number of directions");
-  switch (t.count) {
-    case 1:
-      return add_sums<Dim, 1>(t, sums);
-    case 2:
-      return add_sums<Dim, 2>(t, sums);
-    case 3:
-      return add_sums<Dim, 3>(t, sums);
-    default:
-      return add_sums<Dim, 4>(t, sums);
-  }
+  for_directions(t.count, [&](auto count) EULASTIC_BODY { add_sums<Dim, count()>(t, sums); });
 }
 
 EULASTIC_CLONES void add_sums_2d(const SumTask &t, ExactSums &sums) { add_sums<2>(t, sums); }
@@ -93,40 +84,57 @@ struct StepTask {
   bool last;  // leaves D and d alone
   ConstView residual;
   View new_residual, new_direction, increment;
-  double *row;
 };
 
-template <int Dim>
+template <int Dim, int Directions>
 EULASTIC_INLINE void take_step(const StepTask &t) {
   const Int3 n = t.grid->owned();
   const int gz = Dim == 3 ? 1 : 0;
   const InverseSquares h = t.h;
   const double shift = t.shift, scale = t.scale;
+  const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
+  double c[Directions];
+  std::copy_n(t.coefficient, Directions, c);
   for (int k = -gz; k < n[2] + gz; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
-      double *d = t.row + 8;
-      for (int i = -1; i < n[0] + 1; ++i) d[i] = -shift;
-      for (int f = 0; f < t.count; ++f) {
-        const double *q = t.q[f].row(j, k), c = t.coefficient[f];
+      const double *q[Directions];
+      for (int f = 0; f < Directions; ++f) q[f] = t.q[f].row(j, k);
+      double *increment = t.increment.row(j, k), *direction = t.new_direction.row(j, k);
+      const auto move = [=](int i) EULASTIC_BODY {
+        double d = -shift;
+#pragma GCC unroll 4
+        for (int f = 0; f < Directions; ++f) d = kernels::fma(c[f], q[f][i], d);
+        increment[i] = kernels::fma(scale, d, increment[i]);
+        return d;
+      };
+      if (t.last) {
 #pragma omp simd
-        for (int i = -1; i < n[0] + 1; ++i) d[i] = kernels::fma(c, q[i], d[i]);
+        for (int i = -1; i < n[0] + 1; ++i) move(i);
+        continue;
       }
-      double *increment = t.increment.row(j, k);
+      if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) {
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) increment[i] = kernels::fma(scale, d[i], increment[i]);
-      if (t.last) continue;
-      std::copy(d - 1, d + n[0] + 1, t.new_direction.row(j, k) - 1);
-      if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
+        for (int i = -1; i < n[0] + 1; ++i) direction[i] = move(i);
+        continue;
+      }
       const double *from = t.residual.row(j, k);
       double *D = t.new_residual.row(j, k);
-      for (int f = 0; f < t.count; ++f) {
-        const double *q = t.q[f].row(j, k), c = t.coefficient[f];
-        const std::ptrdiff_t sy = t.q[f].sy, sz = t.q[f].sz;
-        const double *old = f == 0 ? from : D;
+      for (const int i : {-1, n[0]}) direction[i] = move(i);
 #pragma omp simd
-        for (int i = 0; i < n[0]; ++i) D[i] = kernels::fma(-c, kernels::laplacian<Dim>(q + i, sy, sz, h), old[i]);
+      for (int i = 0; i < n[0]; ++i) {
+        direction[i] = move(i);
+        double rest = from[i];
+#pragma GCC unroll 4
+        for (int f = 0; f < Directions; ++f)
+          rest = kernels::fma(-c[f], kernels::laplacian<Dim>(q[f] + i, sy, sz, h), rest);
+        D[i] = rest;
       }
     }
+}
+
+template <int Dim>
+EULASTIC_INLINE void take_step(const StepTask &t) {
+  for_directions(t.count, [&](auto count) EULASTIC_BODY { take_step<Dim, count()>(t); });
 }
 
 EULASTIC_CLONES void take_step_2d(const StepTask &t) { take_step<2>(t); }
@@ -150,7 +158,6 @@ PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange,
   int next = 0;
   for (FieldBlock *field : {&residual_, &correction_, &direction_, &scratch_}) *field = work_.part(next++, 1);
   if (options.memory > 0) memory_ = FieldBlock(grid, options.memory);
-  rows_.resize(static_cast<std::size_t>(grid.owned()[0] + 16) * (most + 1));
   PetscFunctionReturn(0);
 }
 
@@ -226,7 +233,7 @@ PetscErrorCode AcmSweepSolver::find_minimum(SweepMinimum *minimum, double *mean)
   const int count = static_cast<int>(directions_.size());
   ExactSums exact(sum_count(count));
   (grid_->dimension() == 2 ? add_sums_2d : add_sums_3d)(
-      {grid_, residual_[0], directions_.data(), count, grid_->inverse_squares(), rows_.data()}, exact);
+      {grid_, residual_[0], directions_.data(), count, grid_->inverse_squares()}, exact);
   double total[sum_count(most)];
   PetscCall(exact.reduce(grid_->comm(), total));
   SweepSums sums;
@@ -246,8 +253,7 @@ void AcmSweepSolver::step(bool last, double dt, const SweepMinimum &minimum, dou
   FieldBlock &new_residual = multigrid_ ? residual_ : correction_;
   (grid_->dimension() == 2 ? take_step_2d : take_step_3d)(
       {grid_, directions_.data(), static_cast<int>(directions_.size()), minimum.coefficient, grid_->inverse_squares(),
-       minimum.coefficient[0] * mean, 1 / dt, last, residual_[0], new_residual[0], scratch_[0], increment[0],
-       rows_.data()});
+       minimum.coefficient[0] * mean, 1 / dt, last, residual_[0], new_residual[0], scratch_[0], increment[0]});
   if (last) return;
   direction_.swap(scratch_);
   if (!multigrid_) residual_.swap(correction_);

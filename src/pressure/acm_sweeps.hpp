@@ -49,7 +49,6 @@ private:
   FieldBlock work_, residual_, correction_, direction_, scratch_;  ///< the first holds the others
   FieldBlock memory_;                                              ///< the newest increment first
   std::vector<ConstView> directions_;                              ///< of this sweep
-  std::vector<double> rows_;                                       ///< scratch, one row per direction and one more
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
   bool ghosts_of_memory_ = true;  ///< valid
