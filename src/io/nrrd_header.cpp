@@ -1,6 +1,7 @@
 #include "io/nrrd_header.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -165,6 +166,8 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
     std::string line = text.substr(begin, end - begin);
     begin = end + 1;
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    for (char &c : line)
+      if (std::iscntrl(static_cast<unsigned char>(c)) && c != '\t') c = '?';  // it may be quoted, in one line
     if (line.empty()) {
       header->data = static_cast<std::int64_t>(begin);
       const std::string wrong = HeaderReader(std::move(fields), header).read();

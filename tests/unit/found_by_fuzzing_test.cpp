@@ -1,9 +1,11 @@
 // What tests/fuzz has found, one by one.
 #include "bodies/body_sums.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/nrrd_header.hpp"
 #include "support/files.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 using namespace eulastic;
@@ -33,4 +35,12 @@ TEST(FoundByFuzzing, SumsOfARunThatHasGoneWrong) {
   ASSERT_EQ(sums.reduce(PETSC_COMM_SELF), 0);
   EXPECT_GE(std::abs(sums.value(0, 0)), 1e9);
   EXPECT_EQ(sums.value(0, 1), 0.25);
+}
+
+TEST(FoundByFuzzing, ControlCharactersInTheHeaderOfAVolume) {
+  const TemporaryDirectory room;
+  std::ofstream(room / "a.nrrd") << "NRRD0004\ndimension: 3\rsizes: 4 4 3\n\n";
+  NrrdHeader header;
+  const std::string wrong = read_nrrd_header(room / "a.nrrd", &header);
+  EXPECT_NE(wrong.find("dimension \"3?sizes: 4 4 3\""), std::string::npos) << wrong;
 }
