@@ -44,7 +44,9 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
       for (int i = -1; i <= n[0]; ++i) {
         if (!(phi(i, j, k) >= rule.centre)) continue;
         const std::ptrdiff_t p = layout.offset(i, j, k);
-        const double largest = phi(i, j, k) > full_cell ? largest_determinant : largest_at_surface;
+        const double largest = phi(i, j, k) > full_cell ? largest_determinant
+                               : phi(i, j, k) >= 0.5    ? largest_at_surface
+                                                        : largest_outside;
         if (!(determinant(phase.tensor.data() + p, layout.size, layout.sy, layout.sz, dimension) > largest)) continue;
         forgotten.resize(static_cast<std::size_t>(layout.size));
         forgotten[p] = 1;

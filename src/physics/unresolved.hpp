@@ -5,9 +5,10 @@
 
 namespace eulastic {
 
-/// Largest det B that is taken for one, in full cells and at the surface. (5) keeps it 1; a mean of unlike tensors has
-/// more. What a step and the edges of forgotten neighbours add leaves it below 4 in full cells.
-inline constexpr double largest_determinant = 3.5, largest_at_surface = 8, full_cell = 0.999;
+/// Largest det B that is taken for one, in full cells, at the surface, and where less than half is solid, which the
+/// classic method evolves too: little stress, and all that its smeared surface ever was. (5) keeps it 1; a mean of
+/// unlike tensors has more. What a step and the edges of forgotten neighbours add leaves it below 4 in full cells.
+inline constexpr double largest_determinant = 3.5, largest_at_surface = 8, largest_outside = 30, full_cell = 0.999;
 
 /// Whether det B may be too large anywhere in a body with tr B <= trace: det B <= (tr B/3)^3, in 2-D ((tr B - 1)/2)^2.
 bool may_be_unresolved(double trace, int dimension);
