@@ -7,7 +7,9 @@
 #include "io/text_file.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 namespace eulastic {
@@ -190,7 +192,8 @@ std::string BodiesFile::write_waiting() {
   const Hdf5Property access = unlocked_access();
   Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                     : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
-  bool fine = file && (written_ > 0 || write_bodies(file.get(), first_));
+  if (!file) return path_ + ": cannot be opened (" + std::strerror(errno) + ")";
+  bool fine = written_ > 0 || write_bodies(file.get(), first_);
   for (Column &column : columns_) {
     const std::size_t row = column.width == 0 ? 1 : column.width * first_.size();
     column.checksum += checksum(column.waiting.data(), column.waiting.size(), written_ * row);
