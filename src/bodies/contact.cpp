@@ -188,8 +188,9 @@ PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::v
       if (!choose_colours(colours, pairs, &own)) PetscCall(recolour(grid, colours, phases, &own, crowded));
     }
     moves->insert(moves->end(), own.begin(), own.end());
-    if (!crowded->empty()) moves->clear();
-    if (!crowded->empty()) break;
+    if (crowded->empty()) continue;
+    moves->clear();
+    break;
   }
   std::sort(moves->begin(), moves->end(), [](const BodyMove &a, const BodyMove &b) { return a.label < b.label; });
   if (!moves->empty()) move_bodies(grid, *moves, phases);
