@@ -1,5 +1,6 @@
 // eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
 #include "app/check_only.hpp"
+#include "app/overlap_warning.hpp"
 #include "app/run.hpp"
 #include "app/signals.hpp"
 #include "base/events.hpp"
@@ -27,6 +28,19 @@ void print_error(const std::string &message) {
   if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
 }
 
+// What -help and -check_only print.
+PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
+  PetscFunctionBeginUser;
+  std::string text = parsed.message, overlap;
+  if (text.empty()) {
+    text = check_report(parsed.config, ranks);
+    PetscCall(find_overlap_warning(PETSC_COMM_WORLD, parsed.config, &overlap));
+    if (!overlap.empty()) text += "warning: " + overlap + "\n";
+  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str()));
+  PetscFunctionReturn(0);
+}
+
 int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
@@ -36,9 +50,7 @@ int act(ParseResult &parsed) {
     return exit_usage;
   }
   if (!parsed.message.empty() || parsed.config.check_only) {
-    const std::string text = parsed.message.empty() ? check_report(parsed.config, ranks) : parsed.message;
-    (void)PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str());
-    return exit_fine;
+    return print_answer(parsed, ranks) ? exit_failed : exit_fine;
   }
   std::string kept, refusal;
   (void)PetscPushErrorHandler(keep_message, &kept);

@@ -2,6 +2,7 @@
 
 #include "app/checkpoints.hpp"
 #include "app/memory.hpp"
+#include "app/overlap_warning.hpp"
 #include "app/petsc_options.hpp"
 #include "app/scene.hpp"
 #include "app/signals.hpp"
@@ -35,6 +36,17 @@ bool finished(const State &state, const TimeControl &time, std::string *reason) 
 
 void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", warning.c_str());
+}
+
+// Of the scene at the start.
+PetscErrorCode print_warnings(const Config &config, const Run &run) {
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = run.solver.grid().comm();
+  std::string overlap;
+  PetscCall(find_overlap_warning(comm, config, &overlap));
+  print_warning(comm, overlap);
+  print_warning(comm, run.outputs.unresolved_bodies());
+  PetscFunctionReturn(0);
 }
 
 // The state that a run ends with has not met the guards yet.
@@ -120,7 +132,7 @@ PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirecto
   if (source.empty()) PetscCall(run->outputs.write_due(false));
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
-  if (source.empty()) print_warning(grid.comm(), run->outputs.unresolved_bodies());
+  if (source.empty()) PetscCall(print_warnings(config, *run));
   if (!source.empty())
     PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                           run->solver.state().time, static_cast<long long>(run->solver.state().step)));

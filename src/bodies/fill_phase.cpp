@@ -10,22 +10,6 @@
 namespace eulastic {
 namespace {
 
-// Owned cells of one direction that a body may touch, seen from one periodic image of the box.
-struct Range {
-  int begin, end, shift;
-};
-
-std::vector<Range> ranges(const Grid &grid, const PlacedBody &body, int d) {
-  const int first = grid.layout().begin[d], last = first + grid.owned()[d], images = body.has_images(d) ? 1 : 0;
-  std::vector<Range> result;
-  for (int image = -images; image <= images; ++image) {
-    const int shift = image * grid.cells()[d];
-    const int begin = std::max(body.begin(d), first + shift), end = std::min(body.end(d), last + shift);
-    if (begin < end) result.push_back({begin - shift - first, end - shift - first, shift + first});
-  }
-  return result;
-}
-
 // The sphere around the body misses this rank's box.
 bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
   for (int d = 0; d < grid.dimension(); ++d) {
@@ -39,16 +23,19 @@ bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
 }
 
 void add_body(const Grid &grid, const PlacedBody &body, double name, View fraction, View label) {
-  for (const Range &z : ranges(grid, body, 2))
-    for (const Range &y : ranges(grid, body, 1))
-      for (const Range &x : ranges(grid, body, 0))
+  const Int3 &first = grid.layout().begin;
+  const auto owned = [&](int d) { return body.ranges(d, first[d], first[d] + grid.owned()[d]); };
+  for (const PlacedBody::Range &z : owned(2))
+    for (const PlacedBody::Range &y : owned(1))
+      for (const PlacedBody::Range &x : owned(0))
         for (int k = z.begin; k < z.end; ++k)
           for (int j = y.begin; j < y.end; ++j)
             for (int i = x.begin; i < x.end; ++i) {
               const double phi = body.fraction({i + x.shift, j + y.shift, k + z.shift});
-              if (phi <= fraction(i, j, k)) continue;
-              fraction(i, j, k) = phi;
-              label(i, j, k) = name;
+              const Int3 c{i - first[0], j - first[1], k - first[2]};
+              if (phi <= fraction(c[0], c[1], c[2])) continue;
+              fraction(c[0], c[1], c[2]) = phi;
+              label(c[0], c[1], c[2]) = name;
             }
 }
 

@@ -62,6 +62,17 @@ PlacedBody::PlacedBody(const Surface &surface, const GridSpec &grid, const BodyP
   half_diagonal_ = std::sqrt(square) / 2;
 }
 
+std::vector<PlacedBody::Range> PlacedBody::ranges(int d, int first, int last) const {
+  std::vector<Range> result;
+  const int images = has_images_[d] ? 1 : 0;
+  for (int image = -images; image <= images; ++image) {
+    const int shift = image * cells_[d];
+    const int begin = std::max(begin_[d] - shift, first), end = std::min(end_[d] - shift, last);
+    if (begin < end) result.push_back({begin, end, shift});
+  }
+  return result;
+}
+
 Real3 PlacedBody::body_coordinates(const Real3 &r) const noexcept {
   const double x = r[0] * spacing_[0], y = r[1] * spacing_[1], z = r[2] * spacing_[2];
   const Rotation &q = rotation_;
@@ -97,10 +108,20 @@ std::int64_t PlacedBody::inside(const Real3 &r, int depth) const noexcept {
   return std::llround(half_space_fraction(mean, slopes) * static_cast<double>(full));
 }
 
-double PlacedBody::fraction(const Int3 &cell) const noexcept {
+// The middle of a cell, in cells from that of the body.
+Real3 PlacedBody::from_body(const Int3 &cell) const noexcept {
   Real3 r{};
   for (int d = 0; d < dimension_; ++d) r[d] = (cell[d] + 0.5 - 0.5 * cells_[d]) - middle_[d];
-  return std::ldexp(static_cast<double>(inside(r, 0)), -fraction_bits);
+  return r;
+}
+
+bool PlacedBody::is_clear_of(const Int3 &cell) const noexcept {
+  const Real3 y = body_coordinates(from_body(cell));
+  return surface_.level(y) >= surface_.slope(y, half_diagonal_) * half_diagonal_;
+}
+
+double PlacedBody::fraction(const Int3 &cell) const noexcept {
+  return std::ldexp(static_cast<double>(inside(from_body(cell), 0)), -fraction_bits);
 }
 
 }  // namespace eulastic

@@ -10,6 +10,7 @@
 #include "bodies/shapes.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace eulastic {
 
@@ -20,15 +21,19 @@ class PlacedBody {
 public:
   PlacedBody(const Surface &surface, const GridSpec &grid, const BodyPlace &place);
 
-  /// Global cells begin <= i < end that the body may touch, not wrapped into a periodic box.
-  int begin(int d) const noexcept { return begin_[d]; }
-  int end(int d) const noexcept { return end_[d]; }
-  /// Whether cells of direction d must be looked for in the periodic images as well.
-  bool has_images(int d) const noexcept { return has_images_[d]; }
+  /// Cells of the box; the body has them at begin + shift, not wrapped into a periodic box.
+  struct Range {
+    int begin, end, shift;
+  };
+  /// Cells first <= i < last of direction d that the body may touch, in every periodic image.
+  std::vector<Range> ranges(int d, int first, int last) const;
+  /// Whether the surface cannot pass a global, unwrapped cell, and the cell is outside: cheaper than its fraction.
+  bool is_clear_of(const Int3 &cell) const noexcept;
   /// phi of a global, unwrapped cell, 0 ... 1.
   double fraction(const Int3 &cell) const noexcept;
 
 private:
+  Real3 from_body(const Int3 &cell) const noexcept;
   Real3 body_coordinates(const Real3 &r) const noexcept;
   std::int64_t inside(const Real3 &r, int depth) const noexcept;
 

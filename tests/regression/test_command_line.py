@@ -3,9 +3,11 @@
 
 Needs EULASTIC=path of the binary; EULASTIC_MPIEXEC for the runs on several ranks.
 """
+import math
 import os
 import pathlib
 import pty
+import re
 import subprocess
 import tempfile
 import unittest
@@ -94,6 +96,31 @@ class CommandLine(unittest.TestCase):
             self.assertNotIn("PETSC ERROR", result.stderr)
             self.assertEqual(result.returncode, 1)
             self.assertTrue((self.room / f"run{ranks}/summary.json").exists())
+
+    def test_bodies_placed_over_each_other_are_a_warning(self):
+        (self.room / "pair.csv").write_text("2,2,2\n6,6,6\n5,6,6\n")
+        scene = ("-grid_cells 16,16,16 -grid_length 8,8,8 -time_end 1e-3 -time_step 1e-3 -species a,b -a_shape sphere "
+                 "-a_radius 1.5 -a_shear_modulus 1 -a_placement list -a_positions pair.csv -b_shape sphere "
+                 "-b_shear_modulus 1 -b_radius 1 ").split()
+        volume = math.pi * 1**2 * (4.5 - 1) / 3 * 2  # of a lens of two caps, 1 high
+        text = r"warning: 2 bodies overlap as placed; first body 2 \(a\) and body 3 \(a\), which share a volume of " \
+               r"at least (\S+), (\S+) % of the smaller; correct -a_positions, or use -a_placement random\n"
+        said = set()
+        for ranks in 0, 1, 2, 3:
+            answer = self.run_program(*scene, "-b_centre", "2,2,4.5", "-check_only", ranks=ranks)
+            self.assertEqual((answer.returncode, answer.stderr), (0, ""))
+            self.assertRegex(answer.stdout, text + r"\Z")
+            done = self.run_program(*scene, "-b_centre", "2,2,4.5", "-output_overwrite", ranks=ranks)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stderr, r"\Aeulastic: " + text)
+            said |= {done.stderr.splitlines()[0], "eulastic: " + answer.stdout.splitlines()[-1]}
+        self.assertEqual(len(said), 1, said)
+        shared, percent = map(float, re.search(text, said.pop() + "\n").groups())
+        self.assertTrue(0.9 * volume < shared < volume, shared)
+        self.assertAlmostEqual(percent, 100 * shared / (4 / 3 * math.pi * 1.5**3), delta=0.1)
+        three = self.run_program(*scene, "-b_centre", "2,2,4", "-check_only").stdout
+        self.assertIn("warning: 4 bodies overlap as placed; first body 1 (a) and body 4 (b), ", three)
+        self.assertIn("; correct -b_centre\n", three)
 
     def test_bodies_of_few_cells_are_a_warning(self):
         for radius, warning in ((".25", ""), (".1", "eulastic: warning: bodies of less than 8 cells: 1 of 1; ")):
