@@ -49,23 +49,20 @@ EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *st
     flag_points<false>(n, phi, step, threshold, row);
 }
 
-// Not 0 at the points outside with a face neighbour where B evolves; `row` has flags only. Returns whether any is.
-EULASTIC_CLONES unsigned find_first_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz,
-                                          unsigned char *found) {
+// 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere. Returns whether there is any.
+EULASTIC_CLONES unsigned find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz,
+                                    unsigned char L, unsigned char *found) {
+  const auto least = [](unsigned char a, unsigned char b) EULASTIC_BODY { return a < b ? a : b; };
   unsigned char any = 0;
 #pragma omp simd reduction(| : any)
   for (int i = 0; i < n; ++i) {
-    const unsigned char all = row[i - 1] & row[i + 1] & row[i - sy] & row[i + sy] & row[i - sz] & row[i + sz];
-    found[i] = static_cast<unsigned char>(row[i] & ~all);
+    const unsigned char near =
+        least(least(least(row[i - 1], row[i + 1]), least(row[i - sy], row[i + sy])), least(row[i - sz], row[i + sz]));
+    found[i] = row[i] == outside && near < L;
     any |= found[i];
   }
   return any;
 }
-
-struct Point {
-  Int3 index;
-  std::ptrdiff_t offset;
-};
 
 // Whether all edges around the centre phi[0] evolve.
 bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimension, double least) {
@@ -80,6 +77,27 @@ bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimensio
 // What the neighbour at `step` says of b[0]: its own value, or the line through it and the next.
 double extended(const double *b, std::ptrdiff_t step, bool linear) {
   return linear ? 2 * b[step] - b[2 * step] : b[step];
+}
+
+// Components on the same points, `size` doubles apart: the mean over the neighbours that count.
+template <int Fields, class Entries>
+void extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
+                   double *B) {
+  for (const auto &entry : entries) {
+    double *b = B + entry.offset;
+    double sum[Fields] = {};
+    for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
+      const unsigned pair = entry.neighbours >> (2 * d), linear = entry.second >> (2 * d);
+      double both[Fields] = {};
+      if (pair & 1)
+        for (int f = 0; f < Fields; ++f) both[f] = extended(b + f * size, -stride[d], linear & 1);
+      if (pair & 2)
+        for (int f = 0; f < Fields; ++f) both[f] += extended(b + f * size, stride[d], linear >> 1 & 1);
+      for (int f = 0; f < Fields; ++f) sum[f] += both[f];
+    }
+    const double count = __builtin_popcount(entry.neighbours);
+    for (int f = 0; f < Fields; ++f) b[f * size] = sum[f] / count;
+  }
 }
 
 }  // namespace
@@ -137,56 +155,35 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
         for (int i = 0; i < width; ++i)
           if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
     }
-  std::vector<Point> front, next;
-  // Claims the unclaimed face neighbours of a point for layer L.
-  const auto claim = [&](const Point &from, const Reach &box, unsigned char L) {
-    for (int d = 0; d < grid.dimension(); ++d)
-      for (const int side : {-1, 1}) {
-        const std::ptrdiff_t offset = from.offset + side * stride[d];
-        if (mask[offset] != outside) continue;
-        Point p{from.index, offset};
-        p.index[d] += side;
-        if (!box.contains(p.index)) continue;
-        mask[offset] = L;
-        next.push_back(p);
-      }
-  };
   std::vector<unsigned char> found(width);
+  const Reach owned(grid, at, 0);
   for (int L = 1; L <= layers; ++L) {
     const Reach box(grid, at, layers - L);
-    next.clear();
-    if (L == 1) {
-      for (int k = box.begin[2]; k < box.end[2]; ++k)
-        for (int j = box.begin[1]; j < box.end[1]; ++j) {
-          if (idle(j, k)) continue;
-          const int begin = box.begin[0], n = box.end[0] - begin;
-          const std::ptrdiff_t offset = layout.offset(begin, j, k);
-          if (find_first_layer(n, mask + offset, stride[1], stride[2], found.data()) == 0) continue;
-          for (int i = 0; i < n; ++i)
-            if (found[i]) next.push_back({{begin + i, j, k}, offset + i});
-        }
-      for (const Point &p : next) mask[p.offset] = 1;
-    } else {
-      for (const Point &point : front) claim(point, box, static_cast<unsigned char>(L));
-    }
+    const int begin = box.begin[0], n = box.end[0] - begin;
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
-    const Reach owned(grid, at, 0);
-    for (const Point &point : next) {
-      if (linear_ && !owned.contains(point.index)) continue;
-      const std::ptrdiff_t p = point.offset;
-      unsigned neighbours = 0, second = 0;
-      for (int d = 0; d < grid.dimension(); ++d) {
-        const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
-        if (mask[p - stride[d]] < L) neighbours |= low;
-        if (mask[p + stride[d]] < L) neighbours |= high;
-        if (!linear_) continue;
-        if (neighbours & low && leads_in(mask + p, -stride[d])) second |= low;
-        if (neighbours & high && leads_in(mask + p, stride[d])) second |= high;
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+      for (int j = box.begin[1]; j < box.end[1]; ++j) {
+        if (idle(j, k)) continue;
+        unsigned char *row = mask + layout.offset(begin, j, k);
+        if (find_layer(n, row, stride[1], stride[2], static_cast<unsigned char>(L), found.data()) == 0) continue;
+        for (int i = 0; i < n; ++i) {
+          if (!found[i]) continue;
+          unsigned char *here = row + i;
+          *here = static_cast<unsigned char>(L);
+          if (linear_ && !owned.contains({begin + i, j, k})) continue;
+          unsigned neighbours = 0, second = 0;
+          for (int d = 0; d < grid.dimension(); ++d) {
+            const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
+            if (here[-stride[d]] < L) neighbours |= low;
+            if (here[stride[d]] < L) neighbours |= high;
+            if (!linear_) continue;
+            if (neighbours & low && leads_in(here, -stride[d])) second |= low;
+            if (neighbours & high && leads_in(here, stride[d])) second |= high;
+          }
+          entries.push_back({here - mask, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
+        }
       }
-      entries.push_back({p, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
-    }
-    front.swap(next);
   }
 }
 
@@ -195,26 +192,14 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange,
   VerbScope scope(Verb::exterior);
   const Layout &layout = grid.layout();
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
-  const auto &components = tensor_components(grid.dimension());
+  const int dimension = grid.dimension();
   for (int L = 1; L <= layers; ++L) {
-    int next_edge = 1;
-    for (int c = 0; c < tensor.count(); ++c) {
-      const Location &location = locations_[components[c].a == components[c].b ? 0 : next_edge++];
-      double *B = tensor.data() + c * layout.size;
-      for (const Entry &entry : location.layer[L - 1]) {
-        double sum = 0;
-        int count = 0;
-        for (int d = 0; d < grid.dimension(); ++d) {
-          const int low = entry.neighbours >> (2 * d) & 1, high = entry.neighbours >> (2 * d + 1) & 1;
-          const double *b = B + entry.offset;
-          const double from_low = low ? extended(b, -stride[d], entry.second >> (2 * d) & 1) : 0;
-          const double from_high = high ? extended(b, stride[d], entry.second >> (2 * d + 1) & 1) : 0;
-          sum += from_low + from_high;  // the pair first: a mirrored scene gives the mirrored bits
-          count += low + high;
-        }
-        B[entry.offset] = sum / count;
-      }
-    }
+    double *B = tensor.data();  // the diagonals, which share their points, then the others
+    const auto diagonals = dimension == 3 ? extend_fields<3, std::vector<Entry>> : extend_fields<2, std::vector<Entry>>;
+    diagonals(locations_[0].layer[L - 1], dimension, stride, layout.size, B);
+    B += dimension * layout.size;
+    for (std::size_t n = 1; n < locations_.size(); ++n, B += layout.size)
+      extend_fields<1>(locations_[n].layer[L - 1], dimension, stride, layout.size, B);
     if (linear_ && L < layers) PetscCall(exchange.update(tensor, 2));
   }
   PetscFunctionReturn(0);
