@@ -85,17 +85,27 @@ def held_by_walls(run):
     return float(total / (force(run) * run.length.prod()))
 
 
-def wall_displacement(run):
-    """Largest radial displacement of the lumen's surface in the last snapshot since the first, above, below and at the
-    sides of the axis: the wall between it and the box, cell by cell along the vessel."""
-    (y0, z0), h = tube(run)[1], run.spacing
-    largest = 0.0
-    for axis, place, middle in ((1, y0 / h[1], z0 / h[2]), (0, z0 / h[2], y0 / h[1])):
-        walls = [numpy.split(snapshot["solid_fraction_vessel"].astype(float).take(int(middle), 1 - axis), [int(place)])
-                 for snapshot in (run.snapshots[0], run.snapshots[-1])]
-        for first, last in zip(*walls):
-            largest = max(largest, abs(last.sum(axis=0) - first.sum(axis=0)).max() * h[2 - axis])
-    return largest
+def wall_displacements(run):
+    """Outward displacement of the lumen's surface since the first snapshot in every one of the others: means over
+    sixteenths of the circumference, cell by cell along the vessel, (snapshots, nx, 16)."""
+    radius, (y0, z0) = tube(run)
+    angle = numpy.arctan2(run.centres(2)[:, None] - z0, run.centres(1)[None, :] - y0)
+    part = numpy.floor((angle + numpy.pi) * 8 / numpy.pi).astype(int) % 16
+    area = [snapshot["solid_fraction_vessel"].astype(float) for snapshot in run.snapshots]
+    width = run.spacing[1] * run.spacing[2] / (radius * numpy.pi / 8)
+    return numpy.array([[(first - later)[part == n].sum(axis=0) * width for n in range(16)]
+                        for first in area[:1] for later in area[1:]]).swapaxes(1, 2)
+
+
+def wall_speed(run):
+    """Of the wall's full cells within two of the lumen: mean along x and root mean square, last snapshot, in parts of
+    the largest of plasma alone."""
+    radius, (y0, z0) = tube(run)
+    distance = numpy.hypot(run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0)
+    snapshot = run.snapshots[-1]
+    near = (snapshot["solid_fraction_vessel"] > 0.999) & (distance < radius + 2 * run.spacing[1])[:, :, None]
+    u = snapshot["velocity_x"].astype(float)[near] / (2 * poiseuille(run) / area(run))
+    return u.mean(), numpy.sqrt((u ** 2).mean())
 
 
 # Flow
@@ -136,6 +146,65 @@ def pries(diameter, discharge):
     narrow = 1 / (1 + 1e-11 * diameter ** 12)
     power = (0.8 + numpy.exp(-0.075 * diameter)) * (narrow - 1) + narrow
     return 1 + (at_45 - 1) * ((1 - discharge) ** power - 1) / ((1 - 0.45) ** power - 1)
+
+
+def pries_bulk(discharge):
+    """The same in a tube so wide that the layer at its wall does not matter."""
+    return pries(1000, discharge)
+
+
+def pries_ratio(diameter, discharge):
+    """Hematocrit of the tube over that of the discharge (Pries, Secomb, Gaehtgens, Gross, Circ. Res. 67, 826, 1990)."""
+    return discharge + (1 - discharge) * (1 + 1.7 * numpy.exp(-0.415 * diameter) - 0.6 * numpy.exp(-0.011 * diameter))
+
+
+# Where the cells are, and what follows from it
+
+def profiles(run, snapshot):
+    """Means over rings around the axis, a cell of the grid wide: (radii, red cells' share, velocity)."""
+    (y0, z0), width = tube(run)[1], run.spacing[1]
+    distance = numpy.hypot(run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0)
+    rings = [(distance / width).astype(int) == n for n in range(int(tube(run)[0] / width))]
+    fields = [distance, *(snapshot[name].astype(float).mean(axis=2) for name in ("solid_fraction_rbc", "velocity_x"))]
+    return [numpy.array([field[ring].mean() for ring in rings]) for field in fields]
+
+
+def local_viscosity(runs):
+    """a, b of the relative viscosity 1 + a H + b H^2 that the cells give where they are: force r/2 over the slope of
+    u at all rings of all snapshots with cells but the first, least squares weighted as they count in the flow rate."""
+    rows = []
+    for run in runs:
+        for snapshot in run.snapshots[1:]:
+            r, share, u = profiles(run, snapshot)
+            edge = (r[1:] + r[:-1]) / 2
+            slope = (u[:-1] - u[1:]) / numpy.diff(r)
+            stress = force(run) * edge / 2 / float(run.options["fluid_viscosity"])
+            rows.append((edge ** 1.5, (share[1:] + share[:-1]) / 2, stress / slope - 1))
+    weight, share, more = (numpy.concatenate(column) for column in zip(*rows))
+    return numpy.linalg.lstsq(weight[:, None] * numpy.stack([share, share ** 2], 1), weight * more, rcond=None)[0]
+
+
+def tube_flow(radius, share, viscosity):
+    """Apparent relative viscosity and discharge hematocrit of a tube with `share`(r) of cells, from the relative
+    viscosity `viscosity`(share) at every place."""
+    r = (numpy.arange(4000) + 0.5) / 4000 * radius
+    h = share(r)
+    u = numpy.cumsum((r / viscosity(h))[::-1])[::-1]
+    return (r * numpy.cumsum(r[::-1])[::-1]).sum() / (r * u).sum(), (r * u * h).sum() / (r * u).sum()
+
+
+def cell_free_layer(radius, hematocrit, viscosity, wanted):
+    """Width of the layer without cells at the wall of a tube, its cells evenly in what is left, that has the apparent
+    viscosity `wanted`(discharge hematocrit)."""
+    def too_viscous(width):
+        core = radius - width
+        here, discharge = tube_flow(radius, lambda r: numpy.where(r < core, hematocrit * (radius / core) ** 2, 0), viscosity)
+        return here > wanted(discharge)
+    low, high = 0.0, (1 - hematocrit ** 0.5) * radius
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (middle, high) if too_viscous(middle) else (low, middle)
+    return low
 
 
 # Platelets

@@ -50,6 +50,47 @@ class Measures(unittest.TestCase):
         self.assertAlmostEqual(measures.radial_rms(run)[0], numpy.sqrt((expected[late] ** 2).mean() / 2), delta=1e-14)
 
 
+    def test_layer_without_cells(self):
+        """Two fluids in a tube: 1/mu = 1 - (core/R)^4 (1 - 1/mu_core); and the layer found again."""
+        def viscosity(share):
+            return 1 + 3 * share + 9 * share ** 2
+        radius, width, seeded = 12.0, 2.5, 0.2
+        core = seeded * (radius / (radius - width)) ** 2
+        exact = 1 / (1 - (1 - width / radius) ** 4 * (1 - 1 / viscosity(core)))
+        mu, discharge = measures.tube_flow(radius, lambda r: numpy.where(r < radius - width, core, 0), viscosity)
+        self.assertAlmostEqual(mu, exact, delta=2e-3)
+        self.assertGreater(discharge, seeded)
+        self.assertAlmostEqual(measures.cell_free_layer(radius, seeded, viscosity, lambda h: exact), width, delta=0.02)
+        self.assertAlmostEqual(measures.tube_flow(radius, lambda r: 0 * r + 0.3, viscosity)[1], 0.3, delta=1e-12)
+
+    def synthetic(self, lumens):
+        """A tube of radius 12 with cells in it and a wall that begins at radius `lumens` in the snapshots."""
+        h, n = 0.6, 48
+        centres = (numpy.arange(n) + 0.5) * h
+        fine = ((numpy.arange(8 * n) + 0.5) / 8 * h - 14.4)
+        distance = numpy.hypot(fine[:, None], fine[None, :])
+        r = numpy.hypot(centres[:, None] - 14.4, centres[None, :] - 14.4)
+        knots = numpy.linspace(0, 21, 4000)
+        slope = 1e-3 * knots / 2 / (1 + 3 * 0.4 * numpy.exp(-knots / 5) + 9 * 0.16 * numpy.exp(-2 * knots / 5))
+        u = numpy.cumsum(slope[::-1])[::-1] * knots[1]
+        snapshots = [{"solid_fraction_vessel": numpy.repeat((distance > lumen).reshape(n, 8, n, 8).mean(axis=(1, 3))[..., None], 4, 2),
+                      "solid_fraction_rbc": numpy.repeat(0.4 * numpy.exp(-r / 5)[..., None], 4, 2),
+                      "velocity_x": numpy.repeat(numpy.interp(r, knots, u)[..., None], 4, 2)} for lumen in lumens]
+        return types.SimpleNamespace(
+            options={"vessel_radius": "12", "vessel_centre": "0,14.4,14.4", "fluid_density": "1", "fluid_viscosity": "1",
+                     "body_force": "1e-3,0,0"}, spacing=[h] * 3, centres=lambda d: centres, snapshots=snapshots)
+
+    def test_local_viscosity(self):
+        a, b = measures.local_viscosity([self.synthetic([12, 12])])
+        for share in (0.1, 0.2, 0.3):
+            self.assertAlmostEqual(a * share + b * share ** 2, 3 * share + 9 * share ** 2, delta=0.03)
+
+    def test_displacement_of_the_wall(self):
+        moved = measures.wall_displacements(self.synthetic([12, 12.1, 12.3]))
+        self.assertEqual(moved.shape, (2, 4, 16))
+        numpy.testing.assert_allclose(moved.mean(axis=(1, 2)), [0.1, 0.3], atol=0.01)
+
+
 class Small(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
