@@ -139,32 +139,37 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
     if (at[d]) step[steps++] = fraction.stride(d);
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
   const Reach all(grid, at, layers);
-  const int first = all.begin[0], width = all.end[0] - first;
-  const auto idle = [&](int j, int k) {  // an owned row that no body is near
-    if (j < 0 || k < 0 || j >= phase.strained.rows_y() || k >= phase.strained.rows_z()) return false;
-    const ActiveSegments::Range range = phase.strained.row(j, k);
-    return range.first == range.last;
+  // What of a row in a box a body is near to: of owned rows that is known.
+  const auto part = [&](const Reach &box, int j, int k) -> OccupiedRows::Span {
+    if (j >= 0 && k >= 0 && j < phase.strained.rows_y() && k < phase.strained.rows_z()) {
+      const ActiveSegments::Range range = phase.strained.row(j, k);
+      if (range.first == range.last) return {0, 0};
+    }
+    const OccupiedRows::Span span = phase.rows.span(j, k);
+    return {std::max(span.begin, box.begin[0]), std::min(span.end, box.end[0])};
   };
   for (int k = all.begin[2]; k < all.end[2]; ++k)
     for (int j = all.begin[1]; j < all.end[1]; ++j) {
-      if (idle(j, k)) continue;
-      const double *phi = fraction.row(j, k) + first;
-      unsigned char *row = mask + layout.offset(first, j, k);
-      flag_row(width, phi, step, steps ? rule.edge : rule.centre, row);
+      const auto [begin, end] = part(all, j, k);
+      if (begin >= end) continue;
+      const double *phi = fraction.row(j, k) + begin;
+      unsigned char *row = mask + layout.offset(begin, j, k);
+      flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
       if (linear_ && steps == 0)
-        for (int i = 0; i < width; ++i)
+        for (int i = 0; i < end - begin; ++i)
           if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
     }
-  std::vector<unsigned char> found(width);
+  std::vector<unsigned char> found(all.end[0] - all.begin[0]);
   const Reach owned(grid, at, 0);
   for (int L = 1; L <= layers; ++L) {
     const Reach box(grid, at, layers - L);
-    const int begin = box.begin[0], n = box.end[0] - begin;
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
     for (int k = box.begin[2]; k < box.end[2]; ++k)
       for (int j = box.begin[1]; j < box.end[1]; ++j) {
-        if (idle(j, k)) continue;
+        const auto [begin, end] = part(box, j, k);
+        const int n = end - begin;
+        if (n <= 0) continue;
         unsigned char *row = mask + layout.offset(begin, j, k);
         if (find_layer(n, row, stride[1], stride[2], static_cast<unsigned char>(L), found.data()) == 0) continue;
         for (int i = 0; i < n; ++i) {
@@ -181,7 +186,8 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
             if (neighbours & low && leads_in(here, -stride[d])) second |= low;
             if (neighbours & high && leads_in(here, stride[d])) second |= high;
           }
-          entries.push_back({here - mask, static_cast<unsigned char>(neighbours), static_cast<unsigned char>(second)});
+          entries.push_back({static_cast<std::uint32_t>(here - mask), static_cast<unsigned char>(neighbours),
+                             static_cast<unsigned char>(second)});
         }
       }
   }
