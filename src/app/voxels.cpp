@@ -94,31 +94,43 @@ std::string about(const SpeciesSpec &spec, const std::string &wrong) {
 
 constexpr int most_cells = 1 << 24;  // of the box, in memory at a time
 
-// In slabs. The volume does not depend on the cells, so that few will do.
-std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, double *volume) {
-  if (!mask)
-    for (int &n : grid.cells) n = std::min(n, 64);
+}  // namespace
+
+std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit) {
   const Int3 &n = grid.cells;
   const int step = static_cast<int>(std::clamp(most_cells / (double(n[0]) * n[1]), 1.0, double(n[2])));
   std::vector<double> phi;
-  double sum = 0;
-  for (int k = 0; k < n[2]; k += step) {
-    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::min(step, n[2] - k)});
+  for (int k = begin; k < end; k += step) {
+    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::min(step, end - k)});
     phi.resize(std::size_t(n[0]) * n[1] * window.size[2]);
     const View fraction{phi.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
     VoxelBody body;  // anew: files may have to be read from the front
     std::string wrong = body.open(spec, grid);
     if (wrong.empty()) wrong = body.fill(window, fraction);
-    if (!wrong.empty()) return wrong;
+    if (!wrong.empty()) return about(spec, wrong);
     if (spec.voxels.invert)
       for (double &q : phi) q = 1 - q;
-    for (std::size_t row = 0; row < phi.size(); row += n[0])
-      sum += std::accumulate(phi.begin() + row, phi.begin() + row + n[0], 0.0);
-    if (mask) mask->add(window, fraction);
+    visit(window, fraction);
   }
+  return {};
+}
+
+namespace {
+
+// The volume does not depend on the cells, so that few will do.
+std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, double *volume) {
+  if (!mask)
+    for (int &n : grid.cells) n = std::min(n, 64);
+  const Int3 &n = grid.cells;
+  double sum = 0;
+  const std::string wrong = read_voxels(spec, grid, 0, n[2], [&](const CellWindow &window, ConstView fraction) {
+    for (int k = 0; k < window.size[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) sum += std::accumulate(fraction.row(j, k), fraction.row(j, k) + n[0], 0.0);
+    if (mask) mask->add(window, fraction);
+  });
   for (int d = 0; d < (n[2] == 1 ? 2 : 3); ++d) sum *= grid.length[d] / n[d];
   *volume = sum;
-  return {};
+  return wrong;
 }
 
 }  // namespace
@@ -130,7 +142,7 @@ std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSp
     if (species[s].shape != Shape::voxels) continue;
     if (masks) solids->masks.emplace_back(grid);
     const std::string wrong = measure(species[s], grid, masks ? &solids->masks.back() : nullptr, &(*volumes)[s]);
-    if (!wrong.empty()) return about(species[s], wrong);
+    if (!wrong.empty()) return wrong;
     solids->volume += (*volumes)[s];
   }
   return {};

@@ -6,7 +6,15 @@
 #include "bodies/solid_mask.hpp"
 #include "field/phase.hpp"
 
+#include <functional>
+
 namespace eulastic {
+
+using VisitLayers = std::function<void(const CellWindow &, ConstView fraction)>;
+
+/// phi of a species of shape voxels in the layers begin <= k < end of the box, some layers at a time. Returns one line
+/// on what is wrong, or nothing.
+std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit);
 
 /// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
 /// `solids`, and with `masks` their cells. Every rank reads the files, all of them. Returns one line on the first that

@@ -4,6 +4,7 @@
 #include "bodies/volume_fraction.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 
@@ -176,6 +177,31 @@ std::vector<char> find_overlaps(const std::vector<SpeciesSpec> &species,
     }
   if (first->body > 0) first->volume = search.shared(first->body - 1, first->other - 1, true);
   return overlaps;
+}
+
+void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, const GridSpec &grid,
+                const CellWindow &layers, ConstView fraction, SharedVolumes *shared) {
+  const Surface surface(spec, grid.cells[2] == 1 ? 2 : 3);
+  const double radius = surface.bounding_radius(), half = layers.size[2] * layers.spacing(2) / 2;
+  const double middle = layers.begin[2] * layers.spacing(2) + half, length = grid.length[2];
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    double distance = std::abs(places[b].centre[2] - middle);
+    if (grid.boundary[2] == Boundary::periodic) distance = std::min(distance, length - distance);
+    if (distance > half + radius) continue;
+    const PlacedBody body(surface, grid, places[b]);
+    for (const PlacedBody::Range &z : body.ranges(2, layers.begin[2], layers.begin[2] + layers.size[2]))
+      for (const PlacedBody::Range &y : body.ranges(1, 0, grid.cells[1]))
+        for (const PlacedBody::Range &x : body.ranges(0, 0, grid.cells[0]))
+          for (int k = z.begin; k < z.end; ++k)
+            for (int j = y.begin; j < y.end; ++j)
+              for (int i = x.begin; i < x.end; ++i) {
+                const double solid = fraction(i, j, k - layers.begin[2]);
+                if (!(solid > 0)) continue;
+                const double more = solid + body.fraction({i + x.shift, j + y.shift, k + z.shift}) - 1;
+                if (more > excess) shared->overlaps[b] = 1;
+                if (more > 0) shared->volume[b] += std::llround(std::ldexp(more, 30));
+              }
+  }
 }
 
 }  // namespace eulastic

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "bodies/placement.hpp"
+#include "grid/voxels.hpp"
 
+#include <cstdint>
 #include <vector>
 
 namespace eulastic {
@@ -17,9 +19,19 @@ struct Overlap {
 /// bodies that touch do not. Looked at are part `part` of `parts` of the bodies, each with all before it; all parts
 /// together find all bodies, and the first pair is that of one of them. No pairs of: two attached bodies, which is how
 /// walls are joined; bodies of one species with -NAME_contact merge, which are one; a body at random and one before
-/// it; bodies from files. Communicates nothing.
+/// it; bodies from files (add_shared). Communicates nothing.
 std::vector<char> find_overlaps(const std::vector<SpeciesSpec> &species,
                                 const std::vector<std::vector<BodyPlace>> &places, const GridSpec &grid, int part,
                                 int parts, Overlap *first);
+
+/// What bodies share with a solid: volumes in 2^-30 cells, to be added without round-off, and whether they overlap.
+struct SharedVolumes {
+  std::vector<std::int64_t> volume;
+  std::vector<char> overlaps;
+};
+
+/// Adds what the bodies of a species share with the solid of `fraction` in layers of the box. Sizes as `places`.
+void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, const GridSpec &grid,
+                const CellWindow &layers, ConstView fraction, SharedVolumes *shared);
 
 }  // namespace eulastic

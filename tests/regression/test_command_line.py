@@ -104,7 +104,7 @@ class CommandLine(unittest.TestCase):
                  "-b_shear_modulus 1 -b_radius 1 ").split()
         volume = math.pi * 1**2 * (4.5 - 1) / 3 * 2  # of a lens of two caps, 1 high
         text = r"warning: 2 bodies overlap as placed; first body 2 \(a\) and body 3 \(a\), which share a volume of " \
-               r"at least (\S+), (\S+) % of the smaller; correct -a_positions, or use -a_placement random\n"
+               r"at least (\S+), (\S+) % of body 3; correct -a_positions, or use -a_placement random\n"
         said = set()
         for ranks in 0, 1, 2, 3:
             answer = self.run_program(*scene, "-b_centre", "2,2,4.5", "-check_only", ranks=ranks)

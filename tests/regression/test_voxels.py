@@ -2,6 +2,7 @@
 """Species of shape voxels: HDF5, NRRD and STL become the solid fraction; wrong files are refused in one line."""
 import gzip
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -174,6 +175,31 @@ class Voxels(WithRoom):
             self.refused(*RUN, "-species", "part,cell", *BODY[2:], "v.h5", "-cell_shape", "sphere", "-cell_radius", ".1",
                          "-cell_shear_modulus", "1", "-cell_placement", "random", "-cell_count", "2", "-cell_inside",
                          inside, says=["-cell_", says])
+
+    def test_bodies_placed_in_the_solid_are_a_warning(self):
+        """The lower half is solid, up to y = .5; the second body is 0.06 deep in it, the first one touches it."""
+        solid = numpy.zeros(SHAPE)
+        solid[:, :5] = 1
+        self.hdf5(solid)
+        volume = numpy.pi * .06 ** 2 * (.6 - .06) / 3  # of the cap
+        scene = [*RUN, "-species", "cell,part", *BODY[2:], "v.h5", "-cell_shape", "sphere", "-cell_radius", ".2",
+                 "-cell_shear_modulus", "1", "-cell_placement", "list", "-cell_positions", "p.csv"]
+        said = set()
+        self.write("p.csv", b".3,.7,.4\n.9,.64,.4\n")
+        for ranks in (1, 2, 3):
+            for text in (self.start(*scene, ranks=ranks).stderr, self.start(*scene, "-check_only", ranks=ranks).stdout):
+                said.add(re.search(r"warning: .*overlap.*$", text, re.MULTILINE)[0])
+        self.assertEqual(len(said), 1, said)
+        found = re.fullmatch(r"warning: 2 bodies overlap as placed; first body 2 \(cell\) and body 3 \(part\), which share a "
+                             r"volume of at least (\S+), (\S+) % of body 2; correct -cell_positions, or use "
+                             r"-cell_placement random", said.pop())
+        self.assertAlmostEqual(float(found[1]), volume, delta=.02 * volume)
+        self.assertAlmostEqual(float(found[2]), 100 * volume / (4 / 3 * numpy.pi * .008), delta=.3)
+        self.write("p.csv", b".3,.7,.4\n.9,.7,.4\n")
+        self.assertEqual(self.start(*scene).stderr, "")
+        for attached in ("-cell_attached", "true", "-part_attached", "true"), ("-part_voxels_invert",):
+            other = self.start(*scene, *attached, "-check_only").stdout
+            self.assertEqual("overlap" in other, len(attached) == 1)
 
     def test_the_example_is_what_its_script_makes(self):
         for suffix in ("h5", "nrrd", "stl"):
