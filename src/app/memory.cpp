@@ -21,20 +21,19 @@ int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 
 /// Doubles per cell of a phase: fraction, label and B.
 double phase_fields(const Config &config) { return 1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6); }
 
-/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure, divergence, increment; what the parts
-/// of the method add; the phases.
+/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; divergence and increment, with work space
+/// or by themselves; what the parts of the method add; the phases.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
   const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
   const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
              thinc = method.interface == InterfaceScheme::thinc;
-  double sum = 2 * dimension + 3;
+  double sum = 2 * dimension + 1 + (work ? 6 : 2);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
     sum += (work ? 0 : 4) + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // coarse grids
-  if (work) sum += 2 * dimension;
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (phases == 0) return sum;
   if (method.linear_force()) sum += dimension;

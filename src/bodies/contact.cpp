@@ -50,22 +50,46 @@ PetscErrorCode find_homes(const Grid &grid, const std::vector<Phase> &phases, co
   PetscFunctionReturn(0);
 }
 
-// Removes phases without a body from the end of a species' colours. One Allreduce a phase, and most often one only.
-PetscErrorCode remove_empty_colours(const Grid &grid, std::vector<Phase> *phases) {
+// What one look at all phases finds.
+struct Look {
+  std::map<int, std::vector<int>> colours;       // of each species
+  std::map<int, std::vector<NearBodies>> pairs;  // of this rank, in one phase
+  std::map<int, int> near;                       // whether any rank has a pair
+  std::vector<int> occupied;                     // whether a phase has a body
+};
+
+// One Allreduce for all species.
+PetscErrorCode look_at(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases, Look *look) {
   PetscFunctionBeginUser;
-  for (bool removed = true; removed;) {
-    removed = false;
-    for (const auto &[first, colours] : colours_of(*phases)) {
-      if (colours.size() == 1) continue;
-      int bodies = static_cast<int>(labels_in(grid, (*phases)[colours.back()].label[0]).size());
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &bodies, 1, MPI_INT, MPI_MAX, grid.comm()));
-      if (bodies > 0) continue;
-      phases->erase(phases->begin() + colours.back());
-      removed = true;
-      break;  // positions have changed
+  *look = {};
+  look->colours = colours_of(*phases);
+  std::vector<int> found(phases->size(), 0);  // then one of each species
+  for (const auto &[first, colours] : look->colours) {
+    PetscCall(update_ghosts(exchange, contact_reach, colours, phases));
+    std::vector<NearBodies> &pairs = look->pairs[first];
+    for (const int p : colours) {
+      if (p != first) found[p] = !labels_in(grid, (*phases)[p].label[0]).empty();
+      find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
     }
+    found.push_back(!pairs.empty());
   }
+  if (look->colours.empty()) PetscFunctionReturn(0);
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
+  std::size_t next = phases->size();
+  for (const auto &[first, colours] : look->colours) look->near[first] = found[next++];
+  found.resize(phases->size());
+  look->occupied = std::move(found);
   PetscFunctionReturn(0);
+}
+
+// Removes phases without a body from the end of a species' colours, but the first one. Returns whether there were any.
+bool remove_empty_colours(const Look &look, std::vector<Phase> *phases) {
+  std::set<int> empty;
+  for (const auto &[first, colours] : look.colours)
+    for (auto last = colours.rbegin(); *last != first && !look.occupied[*last]; ++last) empty.insert(*last);
+  for (auto p = empty.rbegin(); p != empty.rend(); ++p) phases->erase(phases->begin() + *p);
+  return !empty.empty();
 }
 
 // Of every pair in one phase the higher label, unless the other one goes already. `pairs` are ascending.
@@ -173,16 +197,16 @@ PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::v
   moves->clear();
   crowded->clear();
   VerbScope scope(Verb::contact);
-  PetscCall(remove_empty_colours(grid, phases));
-  for (const auto &[first, colours] : colours_of(*phases)) {
-    std::vector<NearBodies> pairs;
+  Look look;
+  do PetscCall(look_at(grid, exchange, phases, &look));
+  while (remove_empty_colours(look, phases));  // positions have changed
+  for (const auto &[first, colours] : look.colours) {
     std::vector<BodyMove> own;
-    PetscCall(update_ghosts(exchange, contact_reach, colours, phases));
-    for (const int p : colours) find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
-    PetscCall(gather_near(grid.comm(), &pairs));
-    if (pairs.empty()) {
+    if (!look.near[first]) {
       PetscCall(empty_last_colour(grid, exchange, colours, phases, &own));
     } else {
+      std::vector<NearBodies> &pairs = look.pairs[first];
+      PetscCall(gather_near(grid.comm(), &pairs));
       own = choose_bodies(pairs);
       PetscCall(find_neighbours(grid, *phases, colours, own, contact_reach, &pairs));
       if (!choose_colours(colours, pairs, &own)) PetscCall(recolour(grid, colours, phases, &own, crowded));

@@ -57,7 +57,8 @@ void spread_one_layer(const Grid &grid, ConstView phi, ConstView label, View nex
 
 }  // namespace
 
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, FieldBlock work, Phase *phase) {
+  static_assert(layers % 2 == 0, "the label ends in its own memory");
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   PetscCall(exchange.update(phase->fraction, 1));
@@ -73,11 +74,10 @@ PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *ph
     else if (fraction <= 0.5)
       label = -label;
   });
-  FieldBlock next(grid, 1);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1));
-    spread_one_layer(grid, phi, phase->label[0], next[0]);
-    phase->label.swap(next);
+    spread_one_layer(grid, phi, phase->label[0], work[0]);
+    phase->label.swap(work);
   }
   for_each([](double, double &label) { label = std::abs(label); });
   PetscFunctionReturn(0);

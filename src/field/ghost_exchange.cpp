@@ -17,10 +17,29 @@ int image(const Grid &grid, int d, int g) {
 
 }  // namespace
 
+// Rows begin on a line of the cache, in every block. PETSc compares types at every exchange, which takes a microsecond:
+// runs are for boxes whose tables are large.
+PetscErrorCode GhostExchange::make_run() {
+  PetscFunctionBeginUser;
+  if (run_.length > 0) PetscFunctionReturn(0);
+  const bool large = grid_->dimension() == 3 && grid_->cell_count() >= 32768.0 * grid_->ranks();
+  int length = wraps_x() && large ? 8 : 1;
+  while (grid_->cells()[0] % length != 0) length /= 2;
+  run_.type = MPIU_REAL;
+  if (length > 1) {
+    PetscCallMPI(MPI_Type_contiguous(length, MPIU_REAL, &run_.type));
+    PetscCallMPI(MPI_Type_commit(&run_.type));
+  }
+  run_.length = length;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
   PetscFunctionBeginUser;
   SfHandle &handle = forests_[key];
   if (!handle) {
+    PetscCall(make_run());
+    const int run = run_.length;
     const Layout &own = grid_->layout();
     Int3 low{}, high{};
     for (int d = 0; d < 3; ++d) {
@@ -36,7 +55,7 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
     std::vector<PetscSFNode> roots;
     for (int k = low[2]; k < high[2]; ++k)
       for (int j = low[1]; j < high[1]; ++j)
-        for (int i = low[0]; i < high[0]; ++i) {
+        for (int i = low[0]; i < high[0]; i += run) {
           const Int3 local{i, j, k};
           Int3 global{};
           bool inside = true, exists = true;
@@ -51,12 +70,12 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
           const std::ptrdiff_t from =
               theirs.offset(global[0] - theirs.begin[0], global[1] - theirs.begin[1], global[2] - theirs.begin[2]);
           for (int f = 0; f < key.fields; ++f) {
-            leaves.push_back(static_cast<PetscInt>(own.offset(i, j, k) + f * own.size));
-            roots.push_back({owner, static_cast<PetscInt>(from + f * theirs.size)});
+            leaves.push_back(static_cast<PetscInt>((own.offset(i, j, k) + f * own.size) / run));
+            roots.push_back({owner, static_cast<PetscInt>((from + f * theirs.size) / run)});
           }
         }
     PetscCall(PetscSFCreate(grid_->comm(), handle.put()));
-    PetscCall(PetscSFSetGraph(handle.get(), static_cast<PetscInt>(own.size * key.fields),
+    PetscCall(PetscSFSetGraph(handle.get(), static_cast<PetscInt>(own.size * key.fields / run),
                               static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
                               PETSC_COPY_VALUES));
     PetscCall(PetscSFSetUp(handle.get()));
@@ -71,7 +90,7 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const Occupied
   if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
   PetscCall(forest({block.count(), width}, &sf));
-  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
@@ -81,7 +100,7 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
   VerbScope scope(Verb::exchange);
   if (!rows || !rows->inside()) {
     PetscCall(forest({block.count(), width}, &sf));
-    PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, block.data(), block.data(), MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
   }
   if (wraps_x()) {
     const Layout &own = block.layout();

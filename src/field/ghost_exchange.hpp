@@ -1,7 +1,8 @@
 // Ghost-only exchange: a PetscSF straight on the local arrays, so that no interior value is ever copied.
 //
 // Ghosts in a periodic x that is not split are wrapped row by row and never enter the SF. Index N of a wall
-// direction (the high wall of staggered fields) counts as owned: its values travel like any others.
+// direction (the high wall of staggered fields) counts as owned: its values travel like any others. In large boxes
+// whole rows go in runs of up to eight values, a line of the cache, so that the tables of the SF are that much smaller.
 #pragma once
 
 #include "field/field_block.hpp"
@@ -32,10 +33,23 @@ private:
       return fields != other.fields ? fields < other.fields : width < other.width;
     }
   };
+  /// Consecutive values that travel as one, and their type where they are several.
+  struct Run {
+    int length = 0;  ///< 0: not made yet
+    MPI_Datatype type = MPI_DATATYPE_NULL;
+    Run() = default;
+    Run(const Run &) = delete;
+    Run &operator=(const Run &) = delete;
+    ~Run() {
+      if (length > 1) (void)MPI_Type_free(&type);
+    }
+  };
+  PetscErrorCode make_run();
   PetscErrorCode forest(const Key &key, PetscSF *sf);
   bool wraps_x() const { return grid_->boundary(0) == Boundary::periodic && grid_->processors(0) == 1; }
 
   const Grid *grid_;
+  Run run_;
   std::map<Key, SfHandle> forests_;
 };
 

@@ -24,8 +24,9 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   spec_ = spec;
   const int dim = grid.dimension();
   exchange_ = std::make_unique<GhostExchange>(grid);
+  constexpr int sweeps_work = AcmSweepSolver::work_fields;
   if (spec.staggered() || spec.viscous == ViscousScheme::rkl)
-    work_ = FieldBlock(grid, 2 * dim);  // enough for what solids need before the predictor, and the pressure after it
+    work_ = FieldBlock(grid, sweeps_work + 2);  // also enough for what solids and stages need before the pressure
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
   } else if (spec.pressure == PressureKind::ksp) {
@@ -36,16 +37,15 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
   } else {
     auto sweeps = std::make_unique<AcmSweepSolver>();
-    constexpr int count = AcmSweepSolver::work_fields;
     PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse},
-                             work_ ? work_.part(0, count) : FieldBlock(grid, count)));
+                             work_ ? work_.part(0, sweeps_work) : FieldBlock(grid, sweeps_work)));
     pressure_solver_ = std::move(sweeps);
   }
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  divergence_ = FieldBlock(grid, 1);
-  increment_ = FieldBlock(grid, 1);
+  divergence_ = work_ ? work_.part(sweeps_work, 1) : FieldBlock(grid, 1);
+  increment_ = work_ ? work_.part(sweeps_work + 1, 1) : FieldBlock(grid, 1);
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   if (work_) {
     viscous_.rate = work_.part(0, dim);
@@ -296,7 +296,8 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
   PetscCall(transport(phases_now_, 0.5 * now_.dt));
   for (Phase &copy : phases_now_)
-    if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
+    if (copy.label)
+      PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &copy));  // cells that the half step has reached
   phases_now_step_ = now_.step;
   PetscFunctionReturn(0);
 }
@@ -307,7 +308,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   PetscFunctionBeginUser;
   now_.travel += now_.crossing_rate * dt;
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
-  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
+  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &phase));
   PetscCall(bodies_.follow(*grid_, now_.phases));
   PetscCall(separate_bodies());
   now_.travel = 0;

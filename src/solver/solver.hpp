@@ -79,6 +79,8 @@ private:
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
+  /// Work space between the steps.
+  FieldBlock idle_field() { return (work_ ? work_ : velocity_star_).part(0, 1); }
 
   const Grid *grid_ = nullptr;
   SolverSpec spec_;

@@ -102,6 +102,25 @@ TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
   });
 }
 
+// Boxes of 32^3 cells per rank and more: rows travel in runs of eight and of two values.
+TEST(GhostExchange, FillsThoseOfLargeBoxesInRuns) {
+  for (const Int3 &cells : {Int3{40, 58, 57}, Int3{42, 57, 56}})
+    for (const Boundary y : {Boundary::periodic, Boundary::wall}) {
+      GridSpec spec;
+      spec.cells = cells;
+      spec.boundary[1] = y;
+      Grid grid;
+      ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+      GhostExchange exchange(grid);
+      for (const int fields : {1, 3}) {
+        FieldBlock block(grid, fields);
+        prepare(grid, block);
+        ASSERT_EQ(exchange.update(block, 3), 0);
+        EXPECT_EQ(count_errors(grid, block, 3), 0) << fields << " fields, " << cells[0] << " cells in a row";
+      }
+    }
+}
+
 TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
   for_each_grid([](const Grid &grid) {
     GhostExchange exchange(grid);
