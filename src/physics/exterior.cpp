@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace eulastic {
 namespace {
@@ -79,10 +80,12 @@ double extended(const double *b, std::ptrdiff_t step, bool linear) {
   return linear ? 2 * b[step] - b[2 * step] : b[step];
 }
 
-// Components on the same points, `size` doubles apart: the mean over the neighbours that count.
+// Components on the same points, `size` doubles apart: the mean over the neighbours that count. Returns the flops: of
+// n values one each, two more of a line.
 template <int Fields, class Entries>
-void extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
-                   double *B) {
+double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
+                     double *B) {
+  std::int64_t flops = 0;
   for (const auto &entry : entries) {
     double *b = B + entry.offset;
     double sum[Fields] = {};
@@ -95,9 +98,12 @@ void extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *
         for (int f = 0; f < Fields; ++f) both[f] += extended(b + f * size, stride[d], linear >> 1 & 1);
       for (int f = 0; f < Fields; ++f) sum[f] += both[f];
     }
-    const double count = __builtin_popcount(entry.neighbours);
+    const int count = __builtin_popcount(entry.neighbours);
+    flops += count;
+    if (entry.second) flops += 2 * __builtin_popcount(entry.second);
     for (int f = 0; f < Fields; ++f) b[f * size] = sum[f] / count;
   }
+  return Fields * static_cast<double>(flops);
 }
 
 }  // namespace
@@ -202,10 +208,11 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange,
   for (int L = 1; L <= layers; ++L) {
     double *B = tensor.data();  // the diagonals, which share their points, then the others
     const auto diagonals = dimension == 3 ? extend_fields<3, std::vector<Entry>> : extend_fields<2, std::vector<Entry>>;
-    diagonals(locations_[0].layer[L - 1], dimension, stride, layout.size, B);
+    double flops = diagonals(locations_[0].layer[L - 1], dimension, stride, layout.size, B);
     B += dimension * layout.size;
     for (std::size_t n = 1; n < locations_.size(); ++n, B += layout.size)
-      extend_fields<1>(locations_[n].layer[L - 1], dimension, stride, layout.size, B);
+      flops += extend_fields<1>(locations_[n].layer[L - 1], dimension, stride, layout.size, B);
+    scope.flops(flops);
     if (linear_ && L < layers) PetscCall(exchange.update(tensor, 2));
   }
   PetscFunctionReturn(0);
