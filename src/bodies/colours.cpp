@@ -86,6 +86,7 @@ bool set_colours(const Grid &grid, const std::vector<long> &first, std::vector<P
   const auto is_colour = [](const Phase &phase) { return phase.colour > 0; };
   phases->erase(std::remove_if(phases->begin(), phases->end(), is_colour), phases->end());
   const long species = static_cast<long>(phases->size());
+  if (static_cast<long>(first.size()) > (most_colours - 1) * species) return false;
   for (const long p : first) {
     if (p < 0 || p >= species || !(*phases)[p].separate) return false;
     add_colour(grid, static_cast<int>(p), phases);

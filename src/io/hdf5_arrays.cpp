@@ -36,8 +36,12 @@ PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<hsize_t
   PetscFunctionBeginUser;
   PetscCall(open_dataset(name, &dataset));
   *shape = hdf5_shape(dataset.get());
-  std::size_t count = 1;
-  for (const hsize_t n : *shape) count *= n;
+  double promised = 1;
+  hsize_t file_bytes = 0;
+  for (const hsize_t n : *shape) promised *= double(n);
+  PetscCall(check(H5Fget_filesize(file_.get(), &file_bytes) >= 0 && promised <= double(file_bytes),
+                  "dataset " + name + " would be larger than its file"));
+  const auto count = static_cast<std::size_t>(promised);
   values->resize(count);
   const Hdf5Property transfer = hdf5_collective();
   const bool read = H5Dread(dataset.get(), hdf5_type<T>(), H5S_ALL, H5S_ALL, transfer.get(), values->data()) >= 0;

@@ -77,10 +77,22 @@ private:
   }
 
   fs::path room_;
-  std::vector<std::string> cases_;              ///< texts of options/
-  std::string checkpoint_, snapshot_, volume_;  ///< bytes of good ones
-  Words checkpoint_line_;
+  std::vector<std::string> cases_;  ///< texts of options/
+  std::string volume_;              ///< bytes of a good one
+  struct Good {
+    Words line;
+    std::string checkpoint, snapshot;
+  };
+  PetscErrorCode make_good(const std::string &line, Good *good) const;
+  Good one_, several_;  ///< runs of one phase, and of three: bodies of one species kept apart
 };
+
+Words words_of(const std::string &line) {
+  std::istringstream text(line);
+  Words words;
+  for (std::string word; text >> word;) words.push_back(word);
+  return words;
+}
 
 bool one_line(const std::string &message) {
   return !message.empty() && message.find_first_of("\n\r") == std::string::npos && message.size() < 1500;
@@ -163,24 +175,10 @@ Outcome Fuzzer::positions(Dice &dice) {
   }
   if (!dice.one_in(3)) text = dice.spoil(text, 2);
   present += text;
-  Words words{"-grid_cells",
-              "8,8,8",
-              "-time_end",
-              "1",
-              "-time_steps_max",
-              "1",
-              "-species",
-              "cell",
-              "-cell_shape",
-              "ellipsoid",
-              "-cell_semi_axes",
-              ".2,.1,.1",
-              "-cell_shear_modulus",
-              "1",
-              "-cell_placement",
-              "list",
-              "-cell_positions",
-              put("positions.csv", text)};
+  Words words = words_of(
+      "-grid_cells 8,8,8 -time_end 1 -time_steps_max 1 -species cell -cell_shape ellipsoid -cell_semi_axes .2,.1,.1 "
+      "-cell_shear_modulus 1 -cell_placement list");
+  words.insert(words.end(), {"-cell_positions", put("positions.csv", text)});
   return judge(words);
 }
 
@@ -190,7 +188,7 @@ Outcome Fuzzer::initial_state(Dice &dice) {
   fs::path file = room_ / "state.h5";
   const bool snapshot = dice.one_in(3);
   if (snapshot)
-    file = put_damaged(dice, "state.h5", snapshot_);
+    file = put_damaged(dice, "state.h5", one_.snapshot);
   else
     write_state(dice, file, is_flat ? flat : deep);
   const char *cells = snapshot ? "12,10,1" : is_flat ? "8,7,1" : "6,5,4";
@@ -210,22 +208,9 @@ Outcome Fuzzer::hdf5_volume(Dice &dice) {
 }
 
 Outcome Fuzzer::voxels(Dice &dice, const std::string &file) {
-  Words words{"-grid_cells",
-              dice.one_in(3) ? "8,7,1" : "8,7,6",
-              "-time_end",
-              "1",
-              "-time_steps_max",
-              "1",
-              "-fluid_viscosity",
-              ".1",
-              "-species",
-              "cell",
-              "-cell_shear_modulus",
-              "1",
-              "-cell_shape",
-              "voxels",
-              "-cell_voxels",
-              file};
+  Words words = words_of(
+      "-time_end 1 -time_steps_max 1 -fluid_viscosity .1 -species cell -cell_shear_modulus 1 -cell_shape voxels");
+  words.insert(words.end(), {"-grid_cells", dice.one_in(3) ? "8,7,1" : "8,7,6", "-cell_voxels", file});
   if (dice.one_in(3)) words.insert(words.end(), {"-cell_voxels_spacing", dice.one_in(3) ? "1,1,1" : ".1,.2,.3"});
   if (dice.one_in(3)) words.insert(words.end(), {"-cell_voxels_origin", dice.one_in(3) ? "-.5,0,.7" : ".1,.1,.1"});
   if (dice.one_in(4)) words.insert(words.end(), {"-cell_voxels_invert"});
@@ -233,10 +218,33 @@ Outcome Fuzzer::voxels(Dice &dice, const std::string &file) {
 }
 
 Outcome Fuzzer::checkpoint(Dice &dice) {
-  const fs::path file = put_damaged(dice, "checkpoint.h5", checkpoint_);
-  Words words = checkpoint_line_;
+  const bool several = dice.one_in(2);
+  const Good &good = several ? several_ : one_;
+  const bool colours = several && dice.one_in(4);
+  const fs::path file =
+      colours ? put("checkpoint.h5", good.checkpoint) : put_damaged(dice, "checkpoint.h5", good.checkpoint);
+  if (colours) change_colours(dice, file);
+  Words words = good.line;
   words.insert(words.end(), {"-restart", file, "-time_steps_max", "3"});
   return judge(words);
+}
+
+PetscErrorCode Fuzzer::make_good(const std::string &line, Good *good) const {
+  PetscFunctionBeginUser;
+  good->line = words_of(line);
+  Words words = good->line;
+  const fs::path directory = room_ / "good";
+  words.insert(words.end(), {"-time_steps_max", "2", "-checkpoint_interval", "1e-9", "-snapshot_interval", "9",
+                             "-output_dir", directory});
+  int code = -1;
+  std::string refusal;
+  fs::remove_all(directory);
+  PetscCall(run(parse(words), &code, &refusal));
+  PetscCheck(code == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s", refusal.c_str());
+  good->checkpoint = text_of(list_checkpoints(directory).front());
+  good->snapshot = text_of(directory / "snapshot_000000.h5");
+  PetscCheck(!good->checkpoint.empty() && !good->snapshot.empty(), PETSC_COMM_SELF, PETSC_ERR_PLIB, "no file");
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode Fuzzer::prepare() {
@@ -245,22 +253,13 @@ PetscErrorCode Fuzzer::prepare() {
     if (entry.path().extension() == ".opts") cases_.push_back(text_of(entry.path()));
   std::sort(cases_.begin(), cases_.end());
   volume_ = text_of(fs::path(EULASTIC_OPTIONS_DIR) / "branched_vessel.h5");
-  std::istringstream line(
-      "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 "
-      "-species cell -cell_shape sphere -cell_radius .3 -cell_shear_modulus 1");
-  for (std::string word; line >> word;) checkpoint_line_.push_back(word);
-  Words words = checkpoint_line_;
-  const fs::path directory = room_ / "good";
-  words.insert(words.end(), {"-time_steps_max", "2", "-checkpoint_interval", "1e-9", "-snapshot_interval", "9",
-                             "-output_dir", directory});
-  int code = -1;
-  std::string refusal;
-  PetscCall(run(parse(words), &code, &refusal));
-  PetscCheck(code == 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s", refusal.c_str());
-  checkpoint_ = text_of(list_checkpoints(directory).front());
-  snapshot_ = text_of(directory / "snapshot_000000.h5");
-  PetscCheck(!checkpoint_.empty() && !snapshot_.empty() && !volume_.empty(), PETSC_COMM_SELF, PETSC_ERR_PLIB,
-             "no file");
+  const std::string line =
+      "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 -species cell "
+      "-cell_shape sphere -cell_shear_modulus 1 -cell_radius ";
+  PetscCall(make_good(line + ".3", &one_));
+  PetscCall(make_good(line + ".12 -cell_placement lattice -cell_count 3,1,1", &several_));
+  PetscCheck(several_.checkpoint.find("solid_fraction_cell.2") != std::string::npos && !volume_.empty(),
+             PETSC_COMM_SELF, PETSC_ERR_PLIB, "no file, or not one of three phases");
   PetscFunctionReturn(0);
 }
 

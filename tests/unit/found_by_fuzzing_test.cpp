@@ -1,5 +1,6 @@
 // What tests/fuzz has found, one by one.
 #include "bodies/body_sums.hpp"
+#include "bodies/colours.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/nrrd_header.hpp"
 #include "support/files.hpp"
@@ -43,4 +44,47 @@ TEST(FoundByFuzzing, ControlCharactersInTheHeaderOfAVolume) {
   NrrdHeader header;
   const std::string wrong = read_nrrd_header(room / "a.nrrd", &header);
   EXPECT_NE(wrong.find("dimension \"3?sizes: 4 4 3\""), std::string::npos) << wrong;
+}
+
+// Nothing of them is in the file: memory for 2^32 numbers was asked for, or, of 2^64, none.
+TEST(FoundByFuzzing, ArraysLargerThanTheirFile) {
+  const TemporaryDirectory room;
+  const hsize_t chunk[2] = {1, 1};
+  {
+    const Hdf5FileHandle file(H5Fcreate((room / "a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+    const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
+    ASSERT_GE(H5Pset_chunk(creation.get(), 2, chunk), 0);
+    for (const int bits : {16, 32}) {
+      const hsize_t shape[2] = {hsize_t(1) << bits, hsize_t(1) << bits};
+      const Hdf5Space space(H5Screate_simple(2, shape, nullptr));
+      const Hdf5Dataset dataset(H5Dcreate2(file.get(), ("colours" + std::to_string(bits)).c_str(), H5T_NATIVE_LONG,
+                                           space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
+      ASSERT_TRUE(bool(dataset) || bits == 32);
+    }
+  }
+  Hdf5File file;
+  ASSERT_EQ(file.open(PETSC_COMM_SELF, room / "a.h5"), 0);
+  for (const char *name : {"colours16", "colours32"}) {
+    if (!file.has(name)) continue;
+    std::vector<hsize_t> shape;
+    std::vector<long> values;
+    EXPECT_NE(error_of([&] { return file.read_array(name, &shape, &values); }).find("larger than its file"),
+              std::string::npos)
+        << name;
+  }
+}
+
+TEST(FoundByFuzzing, MoreColoursThanASpeciesMayHave) {
+  Grid grid;
+  GridSpec spec;
+  spec.cells = {4, 4, 1};
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  std::vector<Phase> phases(1);
+  phases[0].separate = true;
+  EXPECT_TRUE(set_colours(grid, std::vector<long>(most_colours - 1, 0), &phases));
+  EXPECT_EQ(phases.size(), std::size_t(most_colours));
+  EXPECT_FALSE(set_colours(grid, std::vector<long>(most_colours, 0), &phases));
+  EXPECT_EQ(phases.size(), 1u);
+  EXPECT_FALSE(set_colours(grid, {1}, &phases));
+  EXPECT_FALSE(set_colours(grid, {-1}, &phases));
 }
