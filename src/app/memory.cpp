@@ -18,8 +18,10 @@ namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
-/// Doubles per cell of a phase: fraction, label and B.
-double phase_fields(const Config &config) { return 1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6); }
+/// Doubles per cell of a phase: fraction, label and B; of the staggered method again at the time of the output.
+double phase_fields(const Config &config) {
+  return (1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6)) * (config.method.staggered() ? 2 : 1);
+}
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; divergence and increment, with work space
 /// or by themselves; what the parts of the method add; the phases.
@@ -36,7 +38,7 @@ double fields(const Config &config) {
     sum += (work ? 0 : 4) + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0);  // coarse grids
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (phases == 0) return sum;
-  if (method.linear_force()) sum += dimension;
+  if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
   if (!thinc) sum += 1;
   if (thinc && !work) sum += 3;

@@ -1,7 +1,5 @@
 #include "solver/solver.hpp"
 
-#include "bodies/contact.hpp"
-#include "bodies/labels.hpp"
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
@@ -13,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 namespace eulastic {
@@ -59,7 +56,16 @@ PetscErrorCode Solver::prepare() {
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (spec_.linear_force()) viscous_.slope = FieldBlock(*grid_, grid_->dimension());
+  if (spec_.linear_force()) {
+    const int dim = grid_->dimension();
+    velocity_star_ = {};
+    FieldBlock flow(*grid_, 3 * dim);
+    std::copy_n(now_.velocity.data(), grid_->layout().size * dim, flow.data());
+    now_.velocity = flow.part(0, dim);
+    viscous_.slope = flow.part(dim, dim);
+    velocity_star_ = flow.part(2 * dim, dim);
+    flow_ = std::move(flow);
+  }
   const int components = now_.phases[0].tensor.count();
   next_tensor_ = spec_.staggered() ? work_.part(0, components) : FieldBlock(*grid_, components);  // Euler swaps it
   if (spec_.interface == InterfaceScheme::thinc)
@@ -145,9 +151,9 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
                     increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
-                    work_.bytes() + viscous_.slope.bytes() + pressure_solver_->bytes() +
-                    (interface_ ? interface_->bytes() : 0);
-  for (const Phase &phase : now_.phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
+                    work_.bytes() + flow_.bytes() + pressure_solver_->bytes() + (interface_ ? interface_->bytes() : 0);
+  for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
+    for (const Phase &phase : *phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
 }
 
@@ -283,45 +289,6 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
   }
   PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, rows));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
-  PetscFunctionBeginUser;
-  *phases = &now_.phases;
-  if (!spec_.staggered() || now_.step == 0) PetscFunctionReturn(0);
-  *phases = &phases_now_;
-  if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
-  phases_now_.resize(now_.phases.size());
-  for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
-  PetscCall(transport(phases_now_, 0.5 * now_.dt));
-  for (Phase &copy : phases_now_)
-    if (copy.label)
-      PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &copy));  // cells that the half step has reached
-  phases_now_step_ = now_.step;
-  PetscFunctionReturn(0);
-}
-
-// Labels are carried on a schedule that is part of the run, never because somebody looks.
-PetscErrorCode Solver::follow_bodies(double dt) {
-  constexpr double allowed = 0.3;  // cells; below the half that carry_labels() bears, as the speed is some steps old
-  PetscFunctionBeginUser;
-  now_.travel += now_.crossing_rate * dt;
-  if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
-  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &phase));
-  PetscCall(bodies_.follow(*grid_, now_.phases));
-  PetscCall(separate_bodies());
-  now_.travel = 0;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::separate_bodies() {
-  PetscFunctionBeginUser;
-  std::vector<BodyMove> moves;
-  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves, &crowded_));
-  std::set<int> changed;
-  for (const BodyMove &move : moves) changed.insert({move.from, move.to});
-  for (const int p : changed) PetscCall(settle(now_.phases[p]));
   PetscFunctionReturn(0);
 }
 

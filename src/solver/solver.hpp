@@ -81,6 +81,7 @@ private:
   PetscErrorCode settle(Phase &phase);
   /// Work space between the steps.
   FieldBlock idle_field() { return (work_ ? work_ : velocity_star_).part(0, 1); }
+  FieldBlock idle_tensor(int components);
 
   const Grid *grid_ = nullptr;
   SolverSpec spec_;
@@ -90,13 +91,14 @@ private:
   BodyTracker bodies_;
   std::string crowded_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
-  OccupiedRows next_rows_;     ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
-  ActiveSegments stale_;       ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
-  FieldBlock work_;            ///< shared by what the verbs need one after the other
+  OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
+  ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
+  FieldBlock work_;         ///< shared by what the verbs need one after the other
+  FieldBlock flow_;  ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time
   ExteriorLayers layers_;
   std::unique_ptr<InterfaceTransport> interface_;
-  std::vector<Phase> phases_now_;  ///< copies for phases_now()
+  std::vector<Phase> phases_now_;  ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };

@@ -1,0 +1,55 @@
+// Solver: what is done for bodies between the steps: phases at the time of the velocity, labels, contact.
+#include "bodies/contact.hpp"
+#include "bodies/labels.hpp"
+#include "solver/solver.hpp"
+
+#include <set>
+
+namespace eulastic {
+
+// The next velocity and the slope beside it.
+FieldBlock Solver::idle_tensor(int components) {
+  return flow_.part(velocity_star_.data() == flow_.data() ? 0 : grid_->dimension(), components);
+}
+
+PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
+  PetscFunctionBeginUser;
+  *phases = &now_.phases;
+  if (!spec_.staggered() || now_.step == 0) PetscFunctionReturn(0);
+  *phases = &phases_now_;
+  if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
+  phases_now_.resize(now_.phases.size());
+  if (flow_) phases_now_[0].tensor = idle_tensor(now_.phases[0].tensor.count());
+  for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
+  PetscCall(transport(phases_now_, 0.5 * now_.dt));
+  for (Phase &copy : phases_now_)
+    if (copy.label)
+      PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &copy));  // cells that the half step has reached
+  phases_now_step_ = now_.step;
+  PetscFunctionReturn(0);
+}
+
+// Labels are carried on a schedule that is part of the run, never because somebody looks.
+PetscErrorCode Solver::follow_bodies(double dt) {
+  constexpr double allowed = 0.3;  // cells; below the half that carry_labels() bears, as the speed is some steps old
+  PetscFunctionBeginUser;
+  now_.travel += now_.crossing_rate * dt;
+  if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
+  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, idle_field(), &phase));
+  PetscCall(bodies_.follow(*grid_, now_.phases));
+  PetscCall(separate_bodies());
+  now_.travel = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::separate_bodies() {
+  PetscFunctionBeginUser;
+  std::vector<BodyMove> moves;
+  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves, &crowded_));
+  std::set<int> changed;
+  for (const BodyMove &move : moves) changed.insert({move.from, move.to});
+  for (const int p : changed) PetscCall(settle(now_.phases[p]));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
