@@ -74,7 +74,8 @@ included.
 fluid; there is no spring that pulls it back. The flow shears it by {shear:.2f}, which moves its surface along x by about
 {elastic:.2f} µm where it is thinnest, and then it stands. Cells that pass press on it: the outward displacement of its
 surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is there at the first snapshot
-already and hardly grows after it; its mean is zero, volume is kept. With cells the wall creeps a little along x, as in
+already; its mean is zero, volume is kept. At the last snapshot its rms is {growth}
+times that of the first (plasma, then with more and more cells). With cells the wall creeps a little along x, as in
 plasma alone it does not: at its mean velocity within two cells of the lumen, {creep:.3f} µm in 1000 µs where it is fastest.
 
 ![Shares of the shear stress](images/section5_stress.png)
@@ -323,6 +324,7 @@ def write(runs, tubes, coarse, missing, path):
         capillary=wall_stress / measures.shear_modulus(run, "platelet"),
         memory=estimate(PAPER, "memory", r"[\d.]+ GB"), time=estimate(PAPER, "wall time", r"[\d.]+ \w+"),
         shear=wall_stress / measures.shear_modulus(run, "vessel"), patch=radius * math.pi / 8,
+        growth=", ".join(f"{d[-1].std() / d[0].std():.1f}" for d in map(measures.wall_displacements, runs.values())),
         creep=max(1e3 * measures.wall_speed(run)[0] * 2 * measures.poiseuille(run) / measures.area(run) for run in runs.values()),
         elastic=wall_stress / measures.shear_modulus(run, "vessel") * (run.length[1] / 2 - radius),
         unfinished=other_options(run) + (f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else ""), trend=trend(runs),
