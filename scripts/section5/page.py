@@ -72,11 +72,11 @@ included.
 
 **The wall** is an elastic solid that begins without stress. The sides of the box that it reaches hold it, as they hold
 fluid; there is no spring that pulls it back. The flow shears it by {shear:.2f}, which moves its surface along x by about
-{elastic:.2f} µm where it is thinnest, and then it stands. Cells that pass press on it: the outward displacement of its
+{elastic:.2f} µm where it is thinnest. Cells that pass press on it: the outward displacement of its
 surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is there at the first snapshot
 already; its mean is zero, volume is kept. At the last snapshot its rms is {growth}
-times that of the first (plasma, then with more and more cells). With cells the wall creeps a little along x, as in
-plasma alone it does not: at its mean velocity within two cells of the lumen, {creep:.3f} µm in 1000 µs where it is fastest.
+times that of the first (plasma, then with more and more cells); why it still grows, in plasma too, is not known. With
+cells the wall also creeps a little along x: at its mean velocity within two cells of the lumen, {creep:.3f} µm in 1000 µs where it is fastest.
 
 ![Shares of the shear stress](images/section5_stress.png)
 

@@ -192,7 +192,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
             if (neighbours & low && leads_in(here, -stride[d])) second |= low;
             if (neighbours & high && leads_in(here, stride[d])) second |= high;
           }
-          entries.push_back({static_cast<std::uint32_t>(here - mask), static_cast<unsigned char>(neighbours),
+          entries.push_back({static_cast<PetscInt>(here - mask), static_cast<unsigned char>(neighbours),
                              static_cast<unsigned char>(second)});
         }
       }

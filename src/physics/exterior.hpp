@@ -11,8 +11,6 @@
 #include "physics/fluid.hpp"
 #include "physics/transport.hpp"
 
-#include <cstdint>
-
 namespace eulastic {
 
 /// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
@@ -43,7 +41,7 @@ public:
 
 private:
   struct Entry {
-    std::uint32_t offset;      ///< from the field's first double
+    PetscInt offset;           ///< from the field's first double
     unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
     unsigned char second;      ///< the same of the points behind them: there linear extension is possible
   };
