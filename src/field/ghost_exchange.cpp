@@ -94,14 +94,20 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const Occupied
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRows *rows) {
+PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscSF sf;
   PetscFunctionBeginUser;
+  if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  if (!rows || !rows->inside()) {
-    PetscCall(forest({block.count(), width}, &sf));
-    PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
-  }
+  PetscCall(forest({block.count(), width}, &sf));
+  PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRows *rows) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exchange);
+  PetscCall(end_rows(block, width, rows));
   if (wraps_x()) {
     const Layout &own = block.layout();
     // Rows behind walls are left alone: what is there must not depend on whether x is split.
@@ -121,6 +127,13 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
           }
         }
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::update_rows(FieldBlock &block, int width) {
+  PetscFunctionBeginUser;
+  PetscCall(begin(block, width));
+  PetscCall(end_rows(block, width, nullptr));
   PetscFunctionReturn(0);
 }
 

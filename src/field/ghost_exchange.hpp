@@ -25,6 +25,8 @@ public:
   PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
+  /// Both, but for what lies across a periodic x that is not split.
+  PetscErrorCode update_rows(FieldBlock &block, int width);
 
 private:
   struct Key {
@@ -46,6 +48,7 @@ private:
   };
   PetscErrorCode make_run();
   PetscErrorCode forest(const Key &key, PetscSF *sf);
+  PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
   bool wraps_x() const { return grid_->boundary(0) == Boundary::periodic && grid_->processors(0) == 1; }
 
   const Grid *grid_;

@@ -72,11 +72,7 @@ const std::vector<TensorComponent> &tensor_components(int dimension) {
   return dimension == 2 ? flat : full;
 }
 
-namespace {
-
-// `speed(wall)[c]`: what the tangential components take on that wall.
-template <class Speed>
-void reflect_velocity(const Grid &grid, const Walls &walls, Speed speed, FieldBlock &velocity, int width) {
+void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = grid.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
@@ -85,27 +81,11 @@ void reflect_velocity(const Grid &grid, const Walls &walls, Speed speed, FieldBl
       const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
       for (const bool high : {false, true}) {
         if (!(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
-        const double wall = c == d ? 0.0 : speed(walls.motion[d][high])[c];
+        const double wall = c == d ? 0.0 : walls.motion[d][high].at(time)[c];
         reflect(grid, velocity[c], d, high, c == d, {-1.0, 2 * wall}, width);
       }
     }
   }
-}
-
-}  // namespace
-
-void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width) {
-  reflect_velocity(
-      grid, walls, [=](const WallMotion &wall) { return wall.at(time); }, velocity, width);
-}
-
-void fill_wall_ghosts_velocity_change(const Grid &grid, const Walls &walls, double from, double to, FieldBlock &change,
-                                      int width) {
-  const auto difference = [=](const WallMotion &wall) {
-    const Real3 a = wall.at(from), b = wall.at(to);
-    return Real3{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  };
-  reflect_velocity(grid, walls, difference, change, width);
 }
 
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width) {

@@ -42,9 +42,6 @@ const std::vector<TensorComponent> &tensor_components(int dimension);
 /// Fills `width` layers behind every wall this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); wall faces are set to 0.
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width);
-/// The same for a velocity increment since the time `from`, where the walls move as they do `to` then.
-void fill_wall_ghosts_velocity_change(const Grid &grid, const Walls &walls, double from, double to, FieldBlock &change,
-                                      int width);
 /// Even reflection of one field of the given staggering.
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width);
 /// All components of a left Cauchy-Green block.

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "kernels/momentum.hpp"
+#include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
 
 #include <cmath>
@@ -20,6 +21,8 @@ EULASTIC_INLINE void add_sums(const Grid &grid, ConstView divergence, ConstView 
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const double *D = divergence.row(j, k), *p = pressure.row(j, k);
+      kernels::prefetch_plane<Dim>(D, n[0], sy, sz);
+      kernels::prefetch_plane<Dim>(p, n[0], sy, sz);
       const auto products = [=](int i, auto add) EULASTIC_BODY {
         const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h),
                      lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);

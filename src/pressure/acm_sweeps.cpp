@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "field/walls.hpp"
 #include "kernels/momentum.hpp"
+#include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
 
 #include <algorithm>
@@ -45,7 +46,10 @@ EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const double *D = t.residual.row(j, k), *q[Directions];
-      for (int f = 0; f < Directions; ++f) q[f] = t.q[f].row(j, k);
+      for (int f = 0; f < Directions; ++f) {
+        q[f] = t.q[f].row(j, k);
+        kernels::prefetch_plane<Dim>(q[f], n[0], sy, sz);
+      }
       const auto products = [=](int i, auto add) EULASTIC_BODY {
         double L[Directions];
         int s = 0;
