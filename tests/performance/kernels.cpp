@@ -2,6 +2,8 @@
 #include "../support/scene.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/momentum.hpp"
+#include "kernels/poisson.hpp"
+#include "kernels/super_time_stepping.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
 #include "machine.hpp"
@@ -50,6 +52,37 @@ EULASTIC_CLONES void viscous(Block &b) {
                                                   b.carried[0].data());
 }
 
+EULASTIC_CLONES void rkl_stage(Block &b) {
+  const InverseSquares h = b.grid.inverse_squares();
+  const kernels::RklStage stage{0.5, 0.3, 1e-6, 0.01, 0};
+  for (const Segment &s : b.rows)
+    kernels::rkl_stage<3, false>(s, stage, b.fields[0], b.fields[1], b.fields[1], h, b.fields[2]);
+}
+
+// The sums of a sweep over D and one direction more, without what is done once a row.
+EULASTIC_CLONES void sweep_sums(Block &b) {
+  const InverseSquares h = b.grid.inverse_squares();
+  const std::ptrdiff_t sy = b.fields[0].sy, sz = b.fields[0].sz;
+  for (const Segment &s : b.rows) {
+    const double *D = b.fields[0].row(s.j, s.k), *d = b.fields[1].row(s.j, s.k);
+    double sum[7];
+    kernels::lane_sums<7>(
+        s.i_end, 0,
+        [=](int i, auto add) EULASTIC_BODY {
+          const double lap_D = kernels::laplacian<3>(D + i, sy, sz, h), lap_d = kernels::laplacian<3>(d + i, sy, sz, h);
+          add(0, D[i], D[i]);
+          add(1, d[i], 1);
+          add(2, D[i], lap_D);
+          add(3, D[i], lap_d);
+          add(4, lap_D, lap_D);
+          add(5, lap_d, lap_D);
+          add(6, lap_d, lap_d);
+        },
+        sum);
+    b.rate[0] += sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5] + sum[6];
+  }
+}
+
 EULASTIC_CLONES void elastic(Block &b) {
   const std::ptrdiff_t stride[3] = {b.directions.a, b.directions.b, b.directions.c};
   const kernels::TensorViews views{b.fields[4], b.fields[5], b.fields[6], b.fields[9], b.fields[8]};
@@ -95,6 +128,8 @@ BENCHMARK_CAPTURE(kernel, weno5_advection, weno5, 3 * (kernels::weno5_flops + 3)
 BENCHMARK_CAPTURE(kernel, viscous_pressure, viscous, 3 * kernels::viscous_pressure_flops_per_direction + 5)
     ->Iterations(1000)
     ->UseRealTime();
+BENCHMARK_CAPTURE(kernel, rkl_stage, rkl_stage, kernels::rkl_stage_flops_3d)->Iterations(1000)->UseRealTime();
+BENCHMARK_CAPTURE(kernel, sweep_sums, sweep_sums, 2 * 13 + 14)->Iterations(1000)->UseRealTime();
 BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::elastic_flops_3d)->Iterations(1000)->UseRealTime();
 BENCHMARK_CAPTURE(kernel, stretch_diagonal, stretch_diagonal, kernels::stretch_diagonal_flops_3d)
     ->Iterations(1000)
