@@ -28,9 +28,10 @@ struct Reach {
   }
 };
 
-// Whether the way from mask[0] leads towards the body beyond the neighbour.
+// Whether the way from mask[0] leads towards the body for two points beyond the neighbour.
 bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
-  return mask[2 * step] == 0 || mask[2 * step] < mask[step];
+  const auto inwards = [](unsigned char here, unsigned char next) { return next == 0 || next < here; };
+  return inwards(mask[step], mask[2 * step]) && inwards(mask[2 * step], mask[3 * step]);
 }
 
 // 0 where B evolves, `outside` elsewhere, on the first `n` points of a row; phi at their centres or low edges.
@@ -75,13 +76,16 @@ bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimensio
   return true;
 }
 
-// What the neighbour at `step` says of b[0]: its own value, or the line through it and the next.
+// What the neighbour at `step` says of b[0]: its own value, or a line whose slope is the smaller one of the two behind
+// it, none if they differ in sign.
 double extended(const double *b, std::ptrdiff_t step, bool linear) {
-  return linear ? 2 * b[step] - b[2 * step] : b[step];
+  if (!linear) return b[step];
+  const double near = b[step] - b[2 * step], far = b[2 * step] - b[3 * step];
+  return b[step] + (near * far > 0 ? (std::fabs(near) < std::fabs(far) ? near : far) : 0);
 }
 
 // Components on the same points, `size` doubles apart: the mean over the neighbours that count. Returns the flops: of
-// n values one each, two more of a line.
+// n values one each, seven more of a line.
 template <int Fields, class Entries>
 double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
                      double *B) {
@@ -90,7 +94,7 @@ double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t
     double *b = B + entry.offset;
     double sum[Fields] = {};
     for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
-      const unsigned pair = entry.neighbours >> (2 * d), linear = entry.second >> (2 * d);
+      const unsigned pair = entry.neighbours >> (2 * d), linear = entry.lines >> (2 * d);
       double both[Fields] = {};
       if (pair & 1)
         for (int f = 0; f < Fields; ++f) both[f] = extended(b + f * size, -stride[d], linear & 1);
@@ -100,7 +104,7 @@ double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t
     }
     const int count = __builtin_popcount(entry.neighbours);
     flops += count;
-    if (entry.second) flops += 2 * __builtin_popcount(entry.second);
+    if (entry.lines) flops += 7 * __builtin_popcount(entry.lines);
     for (int f = 0; f < Fields; ++f) b[f * size] = sum[f] / count;
   }
   return Fields * static_cast<double>(flops);
@@ -183,17 +187,17 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
           unsigned char *here = row + i;
           *here = static_cast<unsigned char>(L);
           if (linear_ && !owned.contains({begin + i, j, k})) continue;
-          unsigned neighbours = 0, second = 0;
+          unsigned neighbours = 0, lines = 0;
           for (int d = 0; d < grid.dimension(); ++d) {
             const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
             if (here[-stride[d]] < L) neighbours |= low;
             if (here[stride[d]] < L) neighbours |= high;
             if (!linear_) continue;
-            if (neighbours & low && leads_in(here, -stride[d])) second |= low;
-            if (neighbours & high && leads_in(here, stride[d])) second |= high;
+            if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
+            if (neighbours & high && leads_in(here, stride[d])) lines |= high;
           }
           entries.push_back({static_cast<PetscInt>(here - mask), static_cast<unsigned char>(neighbours),
-                             static_cast<unsigned char>(second)});
+                             static_cast<unsigned char>(lines)});
         }
       }
   }
@@ -213,7 +217,7 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange,
     for (std::size_t n = 1; n < locations_.size(); ++n, B += layout.size)
       flops += extend_fields<1>(locations_[n].layer[L - 1], dimension, stride, layout.size, B);
     scope.flops(flops);
-    if (linear_ && L < layers) PetscCall(exchange.update(tensor, 2));
+    if (linear_ && L < layers) PetscCall(exchange.update(tensor, 3));
   }
   PetscFunctionReturn(0);
 }

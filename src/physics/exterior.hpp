@@ -33,8 +33,8 @@ public:
 
   /// phi of the phase needs five valid ghost layers; find_solid() has run.
   PetscErrorCode build(const Grid &grid, const Phase &phase);
-  /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees two
-  /// points in, so that attached bodies exchange ghosts after every layer.
+  /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
+  /// three points in, so that attached bodies exchange ghosts after every layer.
   PetscErrorCode extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
@@ -43,7 +43,7 @@ private:
   struct Entry {
     PetscInt offset;           ///< from the field's first double
     unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
-    unsigned char second;      ///< the same of the points behind them: there linear extension is possible
+    unsigned char lines;       ///< those of them with two points more behind: there linear extension is possible
   };
   struct Location {
     Staggering staggering{};
