@@ -16,7 +16,8 @@ namespace eulastic {
 /// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
 /// and empty centres does not decide.
 inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30, 4};
-/// Attached bodies: only where all is solid. With linear extension that is second order wherever the surface lies.
+/// Attached bodies: only where all is solid. With linear extension, of the smaller of two slopes, that is second order
+/// wherever the surface lies.
 inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30, 4};
 inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
   return material.linear ? evolve_where_full : evolve_above_half;

@@ -44,3 +44,34 @@ TEST(Exterior, OnlyAttachedBodiesAreExtendedLinearly) {
   EXPECT_FALSE(phases[1].material.linear);
   EXPECT_FALSE(phases[2].material.linear);
 }
+
+TEST(Exterior, LinesTakeTheSmallerSlope) {
+  GridSpec grid;
+  grid.cells = {8, 16, 1};
+  grid.boundary[1] = Boundary::wall;
+  Scene scene;
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, SolverSpec{}), 0);
+  scene.add_phase(
+      1, [](double, double y, double) { return y < .5 ? 1. : 0.; }, true);
+  ASSERT_EQ(scene.solver.prepare(), 0);
+  Phase &phase = scene.solver.state().phases[0];
+  ASSERT_TRUE(phase.material.linear);
+  ExteriorLayers layers;
+  ASSERT_EQ(layers.build(scene.grid, phase), 0);
+  constexpr int last = 6;  // row 7 has surface edges: centres up to 6 evolve
+  struct Line {
+    double third, second, first, next, after;
+  };
+  for (const Line &line : {Line{1, 2, 3, 4, 5}, Line{1.5, 2, 3, 3.5, 4}, Line{1, 2.5, 3, 3.5, 4}, Line{3, 2, 3, 3, 3},
+                           Line{5, 4, 3, 2, 1}, Line{2, 2, 3, 3, 3}}) {
+    const View xx = phase.tensor[0];
+    for (int i = -3; i < 11; ++i) {
+      xx.row(last - 2, 0)[i] = line.third;
+      xx.row(last - 1, 0)[i] = line.second;
+      xx.row(last, 0)[i] = line.first;
+    }
+    ASSERT_EQ(layers.extend(scene.grid, scene.solver.exchange(), phase.tensor), 0);
+    EXPECT_EQ(xx.row(last + 1, 0)[3], line.next);
+    EXPECT_EQ(xx.row(last + 2, 0)[3], line.after);
+  }
+}
