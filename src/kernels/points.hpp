@@ -35,7 +35,7 @@ EULASTIC_INLINE void gather(Batch &batch, std::ptrdiff_t row, int begin, int end
 }
 
 /// Rows of fields, seven planes deep, that fit the second-level cache: verbs go through all of z for so many at a time.
-inline constexpr int block_rows = 16;
+inline constexpr int block_rows = 32;
 
 /// body(offset, slot) for the points of a segment: offset from the origin of q and of every field like it, slot = i.
 template <class Body>

@@ -15,12 +15,15 @@ EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_
   return 0.125 * (((q[0] + q[a]) + (q[b] + q[a + b])) + ((q[c] + q[c + a]) + (q[c + b] + q[c + a + b])));
 }
 
-/// Asks for the n values of the next plane that a stencil around row(j, k) comes to four rows later, into the
-/// second-level cache: where a verb reads several fields, processors do not foresee what it needs from memory.
+/// Asks for n values, into the second-level cache: where a verb reads several fields, or rows in pieces, processors do
+/// not foresee what it needs from memory.
+EULASTIC_INLINE void prefetch(const double *values, int n) noexcept {
+  for (int i = 0; i < n; i += 8) __builtin_prefetch(values + i, 0, 2);
+}
+/// The values of the next plane that a stencil around row(j, k) comes to four rows later.
 template <int Dim>
 EULASTIC_INLINE void prefetch_plane(const double *row, int n, std::ptrdiff_t sy, std::ptrdiff_t sz) noexcept {
-  if constexpr (Dim == 3)
-    for (int i = 0; i < n; i += 8) __builtin_prefetch(row + 4 * sy + sz + i, 0, 2);
+  if constexpr (Dim == 3) prefetch(row + 4 * sy + sz, n);
 }
 
 /// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.

@@ -51,8 +51,13 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
     };
     kernels::Batch batch;
     for (int j = j_begin; j < std::min(j_begin + kernels::block_rows, grid.owned()[1]); ++j)
-      for (const Segment &s : phase.stressed.row(j, k))
+      for (const Segment &s : phase.stressed.row(j, k)) {
+        if (Dim == 3) {
+          kernels::prefetch(phi.row(j, k + 2) + s.i_begin, s.size());
+          for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(j, k + 2) + s.i_begin, s.size());
+        }
         kernels::gather(batch, j * phi.sy + k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
+      }
     add(batch);
   }
 }
@@ -79,6 +84,10 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
       for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
+          if (Dim == 3) {  // the next plane, of the stencil and of the result
+            kernels::prefetch(v[a].row(j, k + 4), n[0]);
+            kernels::prefetch(out[a].row(j, k + 1), n[0]);
+          }
           if (t.inertia) {
             const double *velocity[3] = {carried[0], carried[1], carried[2]};
             velocity[a] = v[a].row(j, k);

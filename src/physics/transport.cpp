@@ -42,6 +42,11 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
       for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
       const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
       if (row.size() <= 0) continue;
+      if (Dim == 3) {  // the next plane
+        kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
+        for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + row.i_begin, row.size());
+        kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
+      }
       for (int d = 0; d < Dim; ++d)
         kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
       kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
@@ -115,7 +120,9 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
                                   int j_begin, int j_end, int k, FieldBlock &out) {
+  constexpr int reach = 3;  // of WENO5
   const bool centre = a == b;
+  const ConstView phi = phase.fraction[0];
   const bool at[3] = {!centre && (a == 0 || b == 0), !centre && (a == 1 || b == 1), !centre && (a == 2 || b == 2)};
   const int end = t.grid->points_end(0, at[0]);
   const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
@@ -143,8 +150,15 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
       for (const Segment &old : t.stale->row(j, k))
         set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
     };
-    const std::ptrdiff_t row = j * phase.fraction.layout().sy + k * phase.fraction.layout().sz;
+    const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
     for (const Segment &s : phase.solid.row(j, k)) {
+      if (Dim == 3 && centre) {  // first to come here: the next plane, for all components
+        const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;
+        kernels::prefetch(phi.row(j, k + 1) + i, length);
+        for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
+        for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(j, k + 1 + reach) + i, length);
+        for (int f = 0; f < B.count(); ++f) kernels::prefetch(out[f].row(j, k + 1) + i, length);
+      }
       leave_to(s.i_begin);
       const int stop = std::min(s.i_end, end);
       kernels::gather(batch, row, s.i_begin, stop, advance);
@@ -202,7 +216,7 @@ PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase
     phase.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
   else
     phase.strained = phase.solid;
-  phase.stressed.build(grid, phi, phase.rows, rule.stressed, 2, 2);  // one more: also where it was a step ago
+  phase.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,7 @@ struct EvolveRule {
   double centre, edge;  ///< least solid fraction, at centres and (mean of four) on edges
   double stressed;      ///< least solid fraction that makes stress
   int layers = 0;       ///< how far B is extended outside, in points
+  int reach = 2;        ///< how far from such solid faces feel stress, that of a step before included
 };
 /// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
 inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};

@@ -107,8 +107,11 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
 }
 
 EvolveRule Solver::evolve_rule(const Phase &phase) const {
-  if (spec_.exterior == SolidExterior::identity) return reset_below_one_per_cent;
-  EvolveRule rule = evolve_rule_of(phase.material);
+  const bool reset = spec_.exterior == SolidExterior::identity;
+  EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
+  // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
+  if (!spec_.staggered() && phase.material.law == Law::neo_hookean) rule.reach = 1;
+  if (reset) return rule;
   if (spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
   return rule;
 }

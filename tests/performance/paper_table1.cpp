@@ -34,6 +34,8 @@ EULASTIC_INLINE void carry(const Fields &t, const Segment &row, const Staggering
 
 EULASTIC_INLINE void move(const Fields &t, const Segment &row, ConstView q, int f, double *const *carried,
                           double *rate) {
+  kernels::prefetch(q.row(row.j, row.k + 4), row.i_end);
+  kernels::prefetch(t.next[f].row(row.j, row.k + 1), row.i_end);
   kernels::advection_rate<3>(row, q, carried, t.inverse.data(), 1e-6, rate);
   const double *now = q.row(row.j, row.k);
   double *next = t.next[f].row(row.j, row.k);

@@ -7,6 +7,7 @@
 #include "pressure/acm_sweeps.hpp"
 
 using namespace eulastic;
+using performance::Filling;
 
 namespace {
 
@@ -31,9 +32,9 @@ struct Scratch {
 
 // `work(scratch, bytes per cell and round)` gives the verb and how many rounds (stages, sweeps) a call has.
 template <class Make>
-void verb(benchmark::State &state, Make make) {
+void verb(benchmark::State &state, Make make, Filling filling = Filling::all) {
   const int n = int(state.range(0));
-  performance::Box *box = performance::box({n, n, n}, performance::Filling::all, method_preset(MethodKind::classic));
+  performance::Box *box = performance::box({n, n, n}, filling, method_preset(MethodKind::classic));
   if (!box) return state.SkipWithError("no scene");
   Scratch scratch(*box);
   make(scratch, [&](double bytes, int rounds, auto task) {
@@ -72,6 +73,19 @@ EULASTIC_VERB(segments, 8, find_solid(s.grid, reset_below_one_per_cent, s.now.ph
 // v, phi, B -> B
 EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
               test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
+
+// The same among red blood cells; bytes are not counted.
+#define EULASTIC_CELLS_VERB(name, expression)                                                                \
+  void name(benchmark::State &state) {                                                                       \
+    verb(                                                                                                    \
+        state, [](Scratch &s, auto measure) { measure(0, 1, [&] { return expression; }); }, Filling::cells); \
+  }                                                                                                          \
+  EULASTIC_NAMED(name)
+EULASTIC_CELLS_VERB(cells_predict, test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure,
+                                                 s.now.phases, s.velocity));
+EULASTIC_CELLS_VERB(cells_fraction, advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
+EULASTIC_CELLS_VERB(cells_left_cauchy_green,
+                    test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
 
 // A ghost is read and written; three layers, none behind walls (y).
 double exchanged(const Grid &grid, int fields) {
