@@ -94,6 +94,7 @@ template <int Dim, int Directions>
 EULASTIC_INLINE void take_step(const StepTask &t) {
   const Int3 n = t.grid->owned();
   const int gz = Dim == 3 ? 1 : 0;
+  constexpr int ahead = 16;  // rows
   const InverseSquares h = t.h;
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
@@ -102,7 +103,11 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
   for (int k = -gz; k < n[2] + gz; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       const double *q[Directions];
-      for (int f = 0; f < Directions; ++f) q[f] = t.q[f].row(j, k);
+      for (int f = 0; f < Directions; ++f) {
+        q[f] = t.q[f].row(j, k);
+        kernels::prefetch(q[f] + ahead * sy + sz, n[0]);
+      }
+      for (const View &f : {t.increment, t.new_direction, t.new_residual}) kernels::prefetch(f.row(j + ahead, k), n[0]);
       double *increment = t.increment.row(j, k), *direction = t.new_direction.row(j, k);
       const auto move = [=](int i) EULASTIC_BODY {
         double d = -shift;
