@@ -34,7 +34,8 @@ EULASTIC_INLINE void gather(Batch &batch, std::ptrdiff_t row, int begin, int end
   }
 }
 
-/// Rows of fields, seven planes deep, that fit the second-level cache: verbs go through all of z for so many at a time.
+/// Verbs go through all of z for so many rows at a time: of 128 cells, three fields of them seven planes deep fit the
+/// second-level cache.
 inline constexpr int block_rows = 32;
 
 /// body(offset, slot) for the points of a segment: offset from the origin of q and of every field like it, slot = i.

@@ -153,7 +153,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
     for (const Segment &s : phase.solid.row(j, k)) {
       if (Dim == 3 && centre) {  // first to come here: the next plane, for all components
-        const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;
+        const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
         kernels::prefetch(phi.row(j, k + 1) + i, length);
         for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
         for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(j, k + 1 + reach) + i, length);

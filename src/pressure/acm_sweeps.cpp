@@ -107,7 +107,9 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
         q[f] = t.q[f].row(j, k);
         kernels::prefetch(q[f] + ahead * sy + sz, n[0]);
       }
-      for (const View &f : {t.increment, t.new_direction, t.new_residual}) kernels::prefetch(f.row(j + ahead, k), n[0]);
+      kernels::prefetch(t.increment.row(j + ahead, k), n[0]);
+      if (!t.last)
+        for (const View &f : {t.new_direction, t.new_residual}) kernels::prefetch(f.row(j + ahead, k), n[0]);
       double *increment = t.increment.row(j, k), *direction = t.new_direction.row(j, k);
       const auto move = [=](int i) EULASTIC_BODY {
         double d = -shift;

@@ -111,8 +111,7 @@ EvolveRule Solver::evolve_rule(const Phase &phase) const {
   EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
   if (!spec_.staggered() && phase.material.law == Law::neo_hookean) rule.reach = 1;
-  if (reset) return rule;
-  if (spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
+  if (!reset && spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
   return rule;
 }
 

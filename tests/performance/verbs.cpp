@@ -32,7 +32,7 @@ struct Scratch {
 
 // `work(scratch, bytes per cell and round)` gives the verb and how many rounds (stages, sweeps) a call has.
 template <class Make>
-void verb(benchmark::State &state, Make make, Filling filling = Filling::all) {
+void verb(benchmark::State &state, Filling filling, Make make) {
   const int n = int(state.range(0));
   performance::Box *box = performance::box({n, n, n}, filling, method_preset(MethodKind::classic));
   if (!box) return state.SkipWithError("no scene");
@@ -46,11 +46,12 @@ void verb(benchmark::State &state, Make make, Filling filling = Filling::all) {
   BENCHMARK(name)->Arg(64)->Iterations(16)->UseRealTime()->Unit(benchmark::kMillisecond); \
   BENCHMARK(name)->Arg(128)->Iterations(2)->UseRealTime()->Unit(benchmark::kMillisecond)
 
-#define EULASTIC_VERB(name, bytes, expression)                                                    \
-  void name(benchmark::State &state) {                                                            \
-    verb(state, [](Scratch &s, auto measure) { measure(bytes, 1, [&] { return expression; }); }); \
-  }                                                                                               \
+#define EULASTIC_VERB_IN(name, filling, bytes, expression)                                                 \
+  void name(benchmark::State &state) {                                                                     \
+    verb(state, filling, [](Scratch &s, auto measure) { measure(bytes, 1, [&] { return expression; }); }); \
+  }                                                                                                        \
   EULASTIC_NAMED(name)
+#define EULASTIC_VERB(name, bytes, expression) EULASTIC_VERB_IN(name, Filling::all, bytes, expression)
 
 // v, p -> v*
 EULASTIC_VERB(predict_fluid, 4 * 8 + 3 * 16,
@@ -75,17 +76,13 @@ EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
               test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
 
 // The same among red blood cells; bytes are not counted.
-#define EULASTIC_CELLS_VERB(name, expression)                                                                \
-  void name(benchmark::State &state) {                                                                       \
-    verb(                                                                                                    \
-        state, [](Scratch &s, auto measure) { measure(0, 1, [&] { return expression; }); }, Filling::cells); \
-  }                                                                                                          \
-  EULASTIC_NAMED(name)
-EULASTIC_CELLS_VERB(cells_predict, test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure,
-                                                 s.now.phases, s.velocity));
-EULASTIC_CELLS_VERB(cells_fraction, advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
-EULASTIC_CELLS_VERB(cells_left_cauchy_green,
-                    test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
+EULASTIC_VERB_IN(cells_predict, Filling::cells, 0,
+                 test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, s.now.phases,
+                               s.velocity));
+EULASTIC_VERB_IN(cells_fraction, Filling::cells, 0,
+                 advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
+EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0,
+                 test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
 
 // A ghost is read and written; three layers, none behind walls (y).
 double exchanged(const Grid &grid, int fields) {
@@ -98,7 +95,7 @@ EULASTIC_VERB(exchange_tensor, exchanged(s.grid, 6), s.exchange.update(s.tensor,
 // A stage of a velocity component by itself: W_j-1, W_j-2 in place, the rate. (Several share a pass, so that less goes
 // through memory.) Before: rate -> W_1 and W_0 = 0; after: v, W -> v*.
 void rkl_stage(benchmark::State &state) {
-  verb(state, [](Scratch &s, auto measure) {
+  verb(state, Filling::all, [](Scratch &s, auto measure) {
     constexpr int stages = 41;
     constexpr double stage = 8 + 16 + 8, ends = (8 + 16) + 16 + (8 + 8 + 16);
     SuperTimeStepping work{FieldBlock(s.grid, 3), {}, FieldBlock(s.grid, 3), FieldBlock(s.grid, 3)};
@@ -124,7 +121,7 @@ constexpr double cycle_finest = 8 + (8 + 16) + 2 * (8 + 8 + 16);
 constexpr double cycle_bytes = cycle_finest + (cycle_finest + (8 + 8 + 16) + 16 + 8) / 7;
 
 void sweep(benchmark::State &state, bool multigrid) {
-  verb(state, [&](Scratch &s, auto measure) {
+  verb(state, Filling::all, [&](Scratch &s, auto measure) {
     AcmSweepSolver solver;
     FieldBlock work(s.grid, AcmSweepSolver::work_fields);
     if (solver.create(s.grid, s.exchange, {sweeps, 0, multigrid}, std::move(work)) != 0)
