@@ -23,8 +23,10 @@ public:
   /// Memory of its own: 0 for a part of another block.
   std::size_t bytes() const noexcept { return data_.get_deleter().borrowed ? 0 : size() * sizeof(double); }
 
-  View operator[](int f) noexcept { return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz}; }
-  ConstView operator[](int f) const noexcept {
+  [[gnu::always_inline]] View operator[](int f) noexcept {
+    return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
+  }
+  [[gnu::always_inline]] ConstView operator[](int f) const noexcept {
     return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
   }
 
