@@ -33,30 +33,31 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
   const int ghosts = t.grid->layout().ghosts[0];
   double *rate = scratch.row(0);
   double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
-      const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
-      const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
-      double *next = out[0].row(j, k);
-      for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
-      for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
-      const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
-      if (row.size() <= 0) continue;
-      if (Dim == 3) {  // the next plane
-        kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
-        for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + row.i_begin, row.size());
-        kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
-      }
-      for (int d = 0; d < Dim; ++d)
-        kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
-      kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
-      const double *now = phi.row(j, k);
+  for (int block = 0; block < n[1]; block += kernels::block_rows)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
+        const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
+        const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
+        double *next = out[0].row(j, k);
+        for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
+        for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
+        const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
+        if (row.size() <= 0) continue;
+        if (Dim == 3) {  // the next plane
+          kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
+          for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + row.i_begin, row.size());
+          kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
+        }
+        for (int d = 0; d < Dim; ++d)
+          kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
+        kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
+        const double *now = phi.row(j, k);
 #pragma omp simd
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const double moved = kernels::fma(dt, rate[i], now[i]);
-        next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
+        for (int i = row.i_begin; i < row.i_end; ++i) {
+          const double moved = kernels::fma(dt, rate[i], now[i]);
+          next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
+        }
       }
-    }
 }
 
 EULASTIC_CLONES void advect_2d(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
