@@ -44,6 +44,42 @@ void Superaccumulator::add(double value) noexcept {
   limb[2] += sign * static_cast<std::int64_t>(static_cast<std::uint64_t>(shifted >> 64));
 }
 
+// Error-free transformations: below 2^E a value is h_1 + h_2 + h_3, multiples of 2^(E-47), 2^(E-94) and 2^(E-141), of
+// which 64 add up exactly. (x + m) - m, m = 1.5 2^(E+5), rounds to a multiple of 2^(E-47).
+void Superaccumulator::add(const double *values, int n) noexcept {
+  constexpr int digits = 47, in_range[2] = {200, 1900};
+  std::uint64_t all = 0;
+  for (int i = 0; i < n; ++i) all = std::max(all, bits_of(values[i]) << 1);
+  const int biased = static_cast<int>(all >> 53);
+  const auto rounder = [&](int level) {
+    const std::uint64_t bits = static_cast<std::uint64_t>(biased + 6 - level * digits) << 52 | 1ull << 51;
+    double value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  };
+  if (all == 0) return;
+  bool rest = biased < in_range[0] || biased > in_range[1];  // infinities and NaN too
+  double high = 0, middle = 0, low = 0;
+  if (!rest) {
+    const double m1 = rounder(0), m2 = rounder(1), m3 = rounder(2);
+#pragma omp simd reduction(+ : high, middle, low) reduction(| : rest)
+    for (int i = 0; i < n; ++i) {
+      const double h1 = (values[i] + m1) - m1, r1 = values[i] - h1;
+      const double h2 = (r1 + m2) - m2, r2 = r1 - h2;
+      const double h3 = (r2 + m3) - m3;
+      high += h1;
+      middle += h2;
+      low += h3;
+      rest |= r2 != h3;
+    }
+  }
+  if (rest) {
+    for (int i = 0; i < n; ++i) add(values[i]);
+  } else {
+    for (const double sum : {high, middle, low}) add(sum);
+  }
+}
+
 double Superaccumulator::value() const noexcept {
   if (word_[limbs] != 0) return std::numeric_limits<double>::quiet_NaN();
   std::array<std::int64_t, limbs + 1> digit{};
@@ -82,6 +118,16 @@ double lane_sum(const double *values, int n, std::int64_t first) noexcept {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
+void ExactSums::clear() noexcept {
+  std::fill(sums_.begin(), sums_.end(), Superaccumulator{});
+  for (Waiting &w : waiting_) w.count = 0;
+}
+
+void ExactSums::flush(int s) noexcept {
+  sums_[s].add(waiting_[s].value, waiting_[s].count);
+  waiting_[s].count = 0;
+}
+
 void ExactSums::add_row(int s, const double *values, int n, std::int64_t first) noexcept {
   for (int i = 0; i < n;) {
     const int length = std::min<int>(n - i, block - static_cast<int>((first + i) % block));
@@ -93,6 +139,7 @@ void ExactSums::add_row(int s, const double *values, int n, std::int64_t first) 
 PetscErrorCode ExactSums::reduce(MPI_Comm comm, double *result) {
   static_assert(sizeof(Superaccumulator) == Superaccumulator::words * sizeof(std::int64_t), "plain words");
   PetscFunctionBeginUser;
+  for (std::size_t s = 0; s < sums_.size(); ++s) flush(static_cast<int>(s));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums_.data(), static_cast<int>(sums_.size()) * Superaccumulator::words,
                              MPI_INT64_T, MPI_SUM, comm));
   for (std::size_t s = 0; s < sums_.size(); ++s) result[s] = sums_[s].value();

@@ -21,6 +21,10 @@ public:
   static constexpr int words = limbs + 1;  ///< the last one counts non-finite terms
 
   void add(double value) noexcept;
+  /// Adds values[0..n), n <= several. The same words' value as one by one, and much sooner if their exponents are
+  /// alike.
+  static constexpr int several = 64;
+  void add(const double *values, int n) noexcept;
   /// The correctly rounded sum of everything added, NaN if any term was not finite.
   double value() const noexcept;
 
@@ -36,9 +40,13 @@ class ExactSums {
 public:
   static constexpr int block = 256;
 
-  explicit ExactSums(int count) : sums_(count) {}
-  void clear() noexcept { std::fill(sums_.begin(), sums_.end(), Superaccumulator{}); }
-  void add(int s, double value) noexcept { sums_[s].add(value); }
+  explicit ExactSums(int count) : sums_(count), waiting_(count) {}
+  void clear() noexcept;
+  void add(int s, double value) noexcept {
+    Waiting &w = waiting_[s];
+    w.value[w.count++] = value;
+    if (w.count == Superaccumulator::several) flush(s);
+  }
   /// Adds values[0..n), a piece of a row that starts at absolute x index `first`. Pieces of one block on one rank
   /// must be added together (a whole block or all of the row) for the same bits.
   void add_row(int s, const double *values, int n, std::int64_t first) noexcept;
@@ -46,7 +54,14 @@ public:
   PetscErrorCode reduce(MPI_Comm comm, double *result);
 
 private:
+  struct Waiting {
+    double value[Superaccumulator::several];
+    int count = 0;
+  };
+  void flush(int s) noexcept;
+
   std::vector<Superaccumulator> sums_;
+  std::vector<Waiting> waiting_;
 };
 
 /// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks

@@ -94,9 +94,12 @@ EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, doubl
 #pragma omp simd
     for (int l = 0; l < 8; ++l) at(i + l, l);
   for (int l = 0; i < n; ++i, ++l) at(i, l);
-  for (int s = 0; s < N; ++s)
-    sum[s] = ((lane[s][0] + lane[s][4]) + (lane[s][2] + lane[s][6])) +
-             ((lane[s][1] + lane[s][5]) + (lane[s][3] + lane[s][7]));
+  for (int s = 0; s < N; ++s) {  // in halves: ((0 4) (2 6)) ((1 5) (3 7))
+    double half[4];
+#pragma omp simd
+    for (int l = 0; l < 4; ++l) half[l] = lane[s][l] + lane[s][l + 4];
+    sum[s] = (half[0] + half[2]) + (half[1] + half[3]);
+  }
 }
 
 }  // namespace eulastic::kernels

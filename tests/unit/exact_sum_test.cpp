@@ -144,6 +144,40 @@ TEST(Superaccumulator, RoundsThousandsOfRandomSetsCorrectlyInAnyOrder) {
 }
 
 // The carries of many additions: 2^22 terms of 53 bits and a total known exactly.
+// Values whose exponents differ by up to `spread`; of one sign the sums of their parts are largest.
+TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
+  std::mt19937_64 random(11);
+  const auto between = [&](int low, int high) { return low + int(random() % std::uint64_t(high - low + 1)); };
+  for (const int spread : {0, 1, 30, 46, 60, 93, 100, 141, 300})
+    for (const bool both_signs : {false, true})
+      for (const int top : {0, 60, -400, 850, 1020, -850, -1000})
+        for (int round = 0; round < 20; ++round) {
+          std::vector<double> values(round < 10 ? Superaccumulator::several : between(1, Superaccumulator::several));
+          for (double &v : values) {
+            const double mantissa = 2 - std::ldexp(double(random() % (round % 2 ? 1ull << 52 : 4)), -52);
+            v = std::ldexp(mantissa, std::max(top - between(0, spread), -1073)) * (both_signs && random() % 2 ? -1 : 1);
+            if (round == 5 && random() % 4 == 0) v = 0;
+          }
+          Superaccumulator at_once, one_by_one;
+          at_once.add(values.data(), int(values.size()));
+          for (const double v : values) one_by_one.add(v);
+          // What rounding hides shows when the leading part is taken away again.
+          for (int part = 0; part < 4; ++part) {
+            const double sum = one_by_one.value();
+            ASSERT_EQ(bits(at_once.value()), bits(sum)) << spread << ' ' << top << ' ' << values.size() << ' ' << part;
+            if (std::isinf(sum)) break;
+            at_once.add(-sum);
+            one_by_one.add(-sum);
+          }
+        }
+  for (const double bad : {inf, -inf, Limits::quiet_NaN()}) {
+    const double values[3] = {1, bad, 2};
+    Superaccumulator sum;
+    sum.add(values, 3);
+    EXPECT_TRUE(std::isnan(sum.value())) << bad;
+  }
+}
+
 TEST(Superaccumulator, ManyAdditions) {
   const double term = 0x1.fffffffffffffp+10;
   Superaccumulator up, down;
