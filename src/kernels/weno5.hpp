@@ -56,21 +56,37 @@ EULASTIC_INLINE void advection_rate(const Batch &batch, ConstView q, const doubl
   });
 }
 
-/// The same for a row, with the same bits: a loop for every direction needs fewer registers.
+/// The same for a row and direction d of 0 ... Dim - 1, in this order, with the same bits: a loop for every direction
+/// needs fewer registers. speed(i) is component d of the velocity.
+template <int Dim, class Speed>
+EULASTIC_INLINE void add_advection_rate(const Segment &s, ConstView q, int d, Speed speed, double inverse_spacing,
+                                        double epsilon, double *rate) noexcept {
+  const double *row = q.row(s.j, s.k);
+  const std::ptrdiff_t stride = q.stride(d);
+  const auto each = [&](auto total) EULASTIC_BODY {
+#pragma omp simd
+    for (int i = s.i_begin; i < s.i_end; ++i) {
+      const double along = speed(i);
+      rate[i] = total(along * inverse_spacing, weno5_difference(row + i, stride, along, epsilon), rate[i]);
+    }
+  };
+  if (d == 0)
+    each([](double a, double b, double) EULASTIC_BODY { return a * b; });
+  else if (d < Dim - 1)
+    each([](double a, double b, double sum) EULASTIC_BODY { return fma(a, b, sum); });
+  else
+    each([](double a, double b, double sum) EULASTIC_BODY { return -fma(a, b, sum); });
+}
+
+/// rate = -v . grad q on a row, of velocities that are there already.
 template <int Dim>
 EULASTIC_INLINE void advection_rate(const Segment &s, ConstView q, const double *const *velocity,
                                     const double *inverse_spacing, double epsilon, double *rate) noexcept {
-  const double *row = q.row(s.j, s.k);
-  const auto along = [&](int d, auto total) EULASTIC_BODY {
-    const double *speed = velocity[d], inverse = inverse_spacing[d];
-    const std::ptrdiff_t stride = q.stride(d);
-#pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i)
-      rate[i] = total(speed[i] * inverse, weno5_difference(row + i, stride, speed[i], epsilon), rate[i]);
-  };
-  along(0, [](double a, double b, double) EULASTIC_BODY { return a * b; });
-  if constexpr (Dim == 3) along(1, [](double a, double b, double sum) EULASTIC_BODY { return fma(a, b, sum); });
-  along(Dim - 1, [](double a, double b, double sum) EULASTIC_BODY { return -fma(a, b, sum); });
+  for (int d = 0; d < Dim; ++d) {
+    const double *along = velocity[d];
+    add_advection_rate<Dim>(
+        s, q, d, [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d], epsilon, rate);
+  }
 }
 
 }  // namespace eulastic::kernels

@@ -78,7 +78,6 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
   const ConstView p = (*t.pressure)[0];
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
-  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
   for (int block = 0; block < n[1]; block += kernels::block_rows)
     for (int k = 0; k < n[2]; ++k) {
       for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
@@ -89,11 +88,19 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
             kernels::prefetch(out[a].row(j, k + 1), n[0]);
           }
           if (t.inertia) {
-            const double *velocity[3] = {carried[0], carried[1], carried[2]};
-            velocity[a] = v[a].row(j, k);
-            for (int d = 0; d < Dim; ++d)
-              if (d != a) kernels::carry_velocity(row, v[d], d, at_face[a].data(), Dim, carried[d]);
-            kernels::advection_rate<Dim>(row, v[a], velocity, t.inverse.data(), t.epsilon, rate);
+            for (int d = 0; d < Dim; ++d) {
+              const auto advect = [&](auto speed) EULASTIC_BODY {
+                kernels::add_advection_rate<Dim>(row, v[a], d, speed, t.inverse[d], t.epsilon, rate);
+              };
+              const double *q = v[d].row(j, k);
+              // To the faces of a, in the order of directions.
+              const std::ptrdiff_t own = v[d].stride(d), back = -v[a].stride(a);
+              const std::ptrdiff_t first = d < a ? own : back, second = d < a ? back : own;
+              if (d == a)
+                advect([=](int i) EULASTIC_BODY { return q[i]; });
+              else
+                advect([=](int i) EULASTIC_BODY { return kernels::average4(q + i, first, second); });
+            }
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
             for (int i = 0; i < n[0]; ++i) rate[i] = 0;

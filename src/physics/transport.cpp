@@ -32,7 +32,6 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
   const double dt = t.dt;
   const int ghosts = t.grid->layout().ghosts[0];
   double *rate = scratch.row(0);
-  double *carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
   for (int block = 0; block < n[1]; block += kernels::block_rows)
     for (int k = 0; k < n[2]; ++k)
       for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
@@ -48,9 +47,14 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
           for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + row.i_begin, row.size());
           kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
         }
-        for (int d = 0; d < Dim; ++d)
-          kernels::carry_velocity(row, (*t.velocity)[d], d, at_centre.data(), Dim, carried[d]);
-        kernels::advection_rate<Dim>(row, phi, carried, t.inverse.data(), epsilon, rate);
+        for (int d = 0; d < Dim; ++d) {
+          const ConstView v = (*t.velocity)[d];
+          const double *face = v.row(j, k);
+          const std::ptrdiff_t up = v.stride(d);
+          kernels::add_advection_rate<Dim>(
+              row, phi, d, [=](int i) EULASTIC_BODY { return 0.5 * (face[i] + face[i + up]); }, t.inverse[d], epsilon,
+              rate);
+        }
         const double *now = phi.row(j, k);
 #pragma omp simd
         for (int i = row.i_begin; i < row.i_end; ++i) {
