@@ -90,7 +90,13 @@ template <int Fields, class Entries>
 double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
                      double *B) {
   std::int64_t flops = 0;
-  for (const auto &entry : entries) {
+  const std::ptrdiff_t slice = stride[dimension - 1];
+  const std::size_t points = entries.size();
+  for (std::size_t n = 0; n < points; ++n) {
+    const auto &entry = entries[n];
+    const double *later = B + entries[std::min(n + 32, points - 1)].offset;
+    for (int f = 0; f < Fields; ++f)  // not foreseen by processors
+      for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
     double *b = B + entry.offset;
     double sum[Fields] = {};
     for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
