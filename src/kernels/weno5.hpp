@@ -1,7 +1,7 @@
 // WENO5 (Jiang & Shu, JCP 126, 1996) in the non-conservative, upwind form v.grad q.
 #pragma once
 
-#include "kernels/points.hpp"
+#include "kernels/stencils.hpp"
 
 namespace eulastic::kernels {
 
@@ -78,14 +78,35 @@ EULASTIC_INLINE void add_advection_rate(const Segment &s, ConstView q, int d, Sp
     each([](double a, double b, double sum) EULASTIC_BODY { return -fma(a, b, sum); });
 }
 
-/// rate = -v . grad q on a row, of velocities that are there already.
-template <int Dim>
-EULASTIC_INLINE void advection_rate(const Segment &s, ConstView q, const double *const *velocity,
-                                    const double *inverse_spacing, double epsilon, double *rate) noexcept {
+/// rate = -v . grad v_a on a row of faces of direction a; v[d] gives the views of Dim face velocities of one layout,
+/// which are averaged to where they are needed.
+template <int Dim, class Velocity>
+EULASTIC_INLINE void face_advection_rate(const Segment &s, const Velocity &v, int a, const double *inverse_spacing,
+                                         double epsilon, double *rate) noexcept {
   for (int d = 0; d < Dim; ++d) {
-    const double *along = velocity[d];
+    const auto advect = [&](auto speed) EULASTIC_BODY {
+      add_advection_rate<Dim>(s, v[a], d, speed, inverse_spacing[d], epsilon, rate);
+    };
+    const double *q = v[d].row(s.j, s.k);
+    const std::ptrdiff_t own = v[d].stride(d), back = -v[a].stride(a);
+    const std::ptrdiff_t first = d < a ? own : back, second = d < a ? back : own;  // in the order of directions
+    if (d == a)
+      advect([=](int i) EULASTIC_BODY { return q[i]; });
+    else
+      advect([=](int i) EULASTIC_BODY { return average4(q + i, first, second); });
+  }
+}
+
+/// rate = -v . grad q on a row of centres.
+template <int Dim, class Velocity>
+EULASTIC_INLINE void centre_advection_rate(const Segment &s, ConstView q, const Velocity &v,
+                                           const double *inverse_spacing, double epsilon, double *rate) noexcept {
+  for (int d = 0; d < Dim; ++d) {
+    const double *face = v[d].row(s.j, s.k);
+    const std::ptrdiff_t up = v[d].stride(d);
     add_advection_rate<Dim>(
-        s, q, d, [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d], epsilon, rate);
+        s, q, d, [=](int i) EULASTIC_BODY { return 0.5 * (face[i] + face[i + up]); }, inverse_spacing[d], epsilon,
+        rate);
   }
 }
 

@@ -88,19 +88,7 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
             kernels::prefetch(out[a].row(j, k + 1), n[0]);
           }
           if (t.inertia) {
-            for (int d = 0; d < Dim; ++d) {
-              const auto advect = [&](auto speed) EULASTIC_BODY {
-                kernels::add_advection_rate<Dim>(row, v[a], d, speed, t.inverse[d], t.epsilon, rate);
-              };
-              const double *q = v[d].row(j, k);
-              // To the faces of a, in the order of directions.
-              const std::ptrdiff_t own = v[d].stride(d), back = -v[a].stride(a);
-              const std::ptrdiff_t first = d < a ? own : back, second = d < a ? back : own;
-              if (d == a)
-                advect([=](int i) EULASTIC_BODY { return q[i]; });
-              else
-                advect([=](int i) EULASTIC_BODY { return kernels::average4(q + i, first, second); });
-            }
+            kernels::face_advection_rate<Dim>(row, v, a, t.inverse.data(), t.epsilon, rate);
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
             for (int i = 0; i < n[0]; ++i) rate[i] = 0;
@@ -206,7 +194,7 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
                              fluid.body_force.at(step.force_time),
                              {1 / h[0], 1 / h[1], 1 / h[2]},
                              {1 / h[0] * (1 / h[0]), 1 / h[1] * (1 / h[1]), 1 / h[2] * (1 / h[2])}};
-  RowScratch scratch(grid, 4);
+  RowScratch scratch(grid, 1);
   (dim == 2 ? predict_2d : predict_3d)(terms, out, scratch);
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;

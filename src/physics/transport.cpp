@@ -31,6 +31,7 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
   const ConstView phi = phase.fraction[0];
   const double dt = t.dt;
   const int ghosts = t.grid->layout().ghosts[0];
+  const FieldBlock &v = *t.velocity;
   double *rate = scratch.row(0);
   for (int block = 0; block < n[1]; block += kernels::block_rows)
     for (int k = 0; k < n[2]; ++k)
@@ -44,17 +45,10 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
         if (row.size() <= 0) continue;
         if (Dim == 3) {  // the next plane
           kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
-          for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + row.i_begin, row.size());
+          for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
           kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
         }
-        for (int d = 0; d < Dim; ++d) {
-          const ConstView v = (*t.velocity)[d];
-          const double *face = v.row(j, k);
-          const std::ptrdiff_t up = v.stride(d);
-          kernels::add_advection_rate<Dim>(
-              row, phi, d, [=](int i) EULASTIC_BODY { return 0.5 * (face[i] + face[i + up]); }, t.inverse[d], epsilon,
-              rate);
-        }
+        kernels::centre_advection_rate<Dim>(row, phi, v, t.inverse.data(), epsilon, rate);
         const double *now = phi.row(j, k);
 #pragma omp simd
         for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -202,7 +196,7 @@ PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &ve
                                const OccupiedRows &next_rows, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  RowScratch scratch(grid, 4);
+  RowScratch scratch(grid, 1);
   const TransportTerms terms = make_terms(grid, dt, velocity);
   if (grid.dimension() == 2)
     advect_2d(terms, phase, next_rows, next, scratch);

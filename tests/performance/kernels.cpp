@@ -1,11 +1,11 @@
 // Kernels alone, row by row on a block of 64 x 16 x 16 cells that stays in the caches.
+#include "../support/advection.hpp"
 #include "../support/scene.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/poisson.hpp"
 #include "kernels/super_time_stepping.hpp"
 #include "kernels/upper_convected.hpp"
-#include "kernels/weno5.hpp"
 #include "machine.hpp"
 
 #include <vector>
@@ -43,7 +43,7 @@ EULASTIC_CLONES void carry(Block &b) {
 
 EULASTIC_CLONES void weno5(Block &b) {
   const double *velocity[3] = {b.carried[0].data(), b.carried[1].data(), b.carried[2].data()};
-  for (const Segment &s : b.rows) kernels::advection_rate<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
+  for (const Segment &s : b.rows) test::advection_rate<3>(s, b.fields[0], velocity, b.inverse, 1e-6, b.rate.data());
 }
 
 EULASTIC_CLONES void viscous(Block &b) {

@@ -28,44 +28,64 @@ EULASTIC_INLINE void in_blocks(const Int3 &n, F f) {
       for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) f(Segment{0, n[0], j, k});
 }
 
-EULASTIC_INLINE void carry(const Fields &t, const Segment &row, const Staggering &at, double *const *carried) {
-  for (int d = 0; d < 3; ++d) kernels::carry_velocity(row, t.velocity[d], d, at.data(), 3, carried[d]);
+// q - dt v.grad q of field f of `next` on a row, after `advect`(rate).
+template <class Points, class Advect>
+EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, int f, double *rate, Advect advect) {
+  advect(rate);
+  const double *now = q.origin, dt = t.dt;
+  double *next = t.next[f].origin;
+  kernels::for_points(points, q,
+                      [=](std::ptrdiff_t o, int i) EULASTIC_BODY { next[o] = kernels::fma(dt, rate[i], now[o]); });
 }
 
-EULASTIC_INLINE void move(const Fields &t, const Segment &row, ConstView q, int f, double *const *carried,
-                          double *rate) {
+EULASTIC_INLINE void prefetch(const Fields &t, const Segment &row, ConstView q, int f) {
   kernels::prefetch(q.row(row.j, row.k + 4), row.i_end);
   kernels::prefetch(t.next[f].row(row.j, row.k + 1), row.i_end);
-  kernels::advection_rate<3>(row, q, carried, t.inverse.data(), 1e-6, rate);
-  const double *now = q.row(row.j, row.k);
-  double *next = t.next[f].row(row.j, row.k);
-  const double dt = t.dt;
-#pragma omp simd
-  for (int i = 0; i < row.i_end; ++i) next[i] = kernels::fma(dt, rate[i], now[i]);
+}
+
+// Components of B at one location, `first` to `last` - 1.
+EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Staggering &at, int first, int last) {
+  alignas(64) double rate[kernels::Batch::points], carried[3][kernels::Batch::points];
+  const double *const velocity[3] = {carried[0], carried[1], carried[2]};
+  const Int3 n = t.grid.owned();
+  const auto work = [&](const kernels::Batch &batch) EULASTIC_BODY {
+    for (int d = 0; d < 3; ++d) kernels::carry_velocity(batch, t.velocity[d], d, at.data(), 3, carried[d]);
+    for (int c = first; c < last; ++c)
+      move(t, batch, t.tensor[c], 4 + c, rate, [&](double *out) EULASTIC_BODY {
+        kernels::advection_rate<3>(batch, t.tensor[c], velocity, t.inverse.data(), 1e-6, out);
+      });
+  };
+  kernels::Batch batch;
+  for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
+    for (int c = first; c < last; ++c) prefetch(t, {0, n[0], j, k}, t.tensor[c], 4 + c);
+    kernels::gather(batch, j * t.tensor[0].sy + k * t.tensor[0].sz, 0, n[0], work);
+  }
+  work(batch);
 }
 
 // q - dt v.grad q of three velocities, phi and six components of B, each where it lives.
 EULASTIC_CLONES void advect(const Fields &t, RowScratch &scratch) {
-  double *rate = scratch.row(0), *const carried[3] = {scratch.row(1), scratch.row(2), scratch.row(3)};
+  double *rate = scratch.row(0);
   const Int3 n = t.grid.owned();
+  const FieldBlock &v = t.velocity;
   in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
     for (int a = 0; a < 3; ++a) {
-      carry(t, row, at_face[a], carried);
-      move(t, row, t.velocity[a], a, carried, rate);
+      prefetch(t, row, v[a], a);
+      move(t, row, v[a], a, rate,
+           [&](double *out) EULASTIC_BODY { kernels::face_advection_rate<3>(row, v, a, t.inverse.data(), 1e-6, out); });
     }
   });
   in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
-    carry(t, row, at_centre, carried);
-    move(t, row, t.fraction[0], 3, carried, rate);
+    prefetch(t, row, t.fraction[0], 3);
+    move(t, row, t.fraction[0], 3, rate, [&](double *out) EULASTIC_BODY {
+      kernels::centre_advection_rate<3>(row, t.fraction[0], v, t.inverse.data(), 1e-6, out);
+    });
   });
-  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
-    carry(t, row, at_centre, carried);
-    for (int c = 0; c < 3; ++c) move(t, row, t.tensor[c], 4 + c, carried, rate);
-    for (int c = 0; c < 3; ++c) {
-      carry(t, row, {c != 0, c != 1, c != 2}, carried);
-      move(t, row, t.tensor[3 + c], 7 + c, carried, rate);
+  for (int block = 0; block < n[1]; block += kernels::block_rows)
+    for (int k = 0; k < n[2]; ++k) {
+      move_tensor(t, block, k, at_centre, 0, 3);
+      for (int c = 0; c < 3; ++c) move_tensor(t, block, k, {c != 0, c != 1, c != 2}, 3 + c, 4 + c);
     }
-  });
 }
 // Averages to the faces 3 x 8, to the centres 6 twice, to the edges 3 x 12; ten updates.
 constexpr double derivatives = 30, advection_flops = derivatives * (kernels::weno5_flops + 3) + 24 + 12 + 36 + 20;

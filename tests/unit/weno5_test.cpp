@@ -1,6 +1,5 @@
 // WENO5 against its textbook form, polynomials and smooth data; symmetry, steps, constants, pieces of rows.
-#include "kernels/weno5.hpp"
-
+#include "support/advection.hpp"
 #include "support/polynomials.hpp"
 
 #include <gtest/gtest.h>
@@ -107,7 +106,7 @@ double advection_error(int d, int cells, double velocity) {
   for (int e = 0; e < 3; ++e) inverse[e] = 1 / grid.spacing()[e];
   FieldBlock out(grid, 1);
   for (const Segment &s : grid.rows()) {
-    kernels::advection_rate<3>(s, q[0], carried, inverse.data(), 1e-6, rate.data());
+    advection_rate<3>(s, q[0], carried, inverse.data(), 1e-6, rate.data());
     std::copy(rate.begin(), rate.end(), out[0].row(s.j, s.k));
   }
   return rms_error(grid, out[0], at_centre, [=](double x, double y, double z) {
@@ -179,7 +178,7 @@ TEST(Weno5, AdvectedStepStaysBounded) {
   for (int step = 0; step < 200; ++step) {  // 40 cells: once around
     for (int g = 0; g < 3; ++g) q[g] = q[n + g], q[n + 3 + g] = q[3 + g];
     std::vector<double> rate(n);
-    kernels::advection_rate<2>(Segment{0, n, 0, 0}, {q.data() + 3, 0, 0}, carried, inverse, 1e-6, rate.data());
+    advection_rate<2>(Segment{0, n, 0, 0}, {q.data() + 3, 0, 0}, carried, inverse, 1e-6, rate.data());
     for (int i = 0; i < n; ++i) q[i + 3] += 0.2 * rate[i];
   }
   const auto [low, high] = std::minmax_element(q.begin() + 3, q.begin() + 3 + n);
@@ -208,9 +207,9 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
     for (const Segment &s : grid.rows()) {
       double *rate = out[0].row(s.j, s.k);
       if (flat)
-        kernels::advection_rate<2>(s, field[0], carried, inverse, 1e-6, rate);
+        advection_rate<2>(s, field[0], carried, inverse, 1e-6, rate);
       else
-        kernels::advection_rate<3>(s, field[0], carried, inverse, 1e-6, rate);
+        advection_rate<3>(s, field[0], carried, inverse, 1e-6, rate);
       for (int i = 0; i < s.i_end; ++i) {
         double exact = 0;
         for (int d = 0; d < grid.dimension(); ++d) exact -= rows[d][i] * q.g[d];
@@ -231,10 +230,10 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   for (double &v : velocity) v = random();
   const double *carried[3] = {velocity.data(), velocity.data(), velocity.data()};
   const double inverse[3] = {37, 3, 2.7};
-  kernels::advection_rate<3>(Segment{0, 37, 1, 1}, q[0], carried, inverse, 1e-6, whole.data());
+  advection_rate<3>(Segment{0, 37, 1, 1}, q[0], carried, inverse, 1e-6, whole.data());
   const int cuts[] = {0, 1, 8, 11, 27, 37};
   for (int c = 0; c < 5; ++c)
-    kernels::advection_rate<3>(Segment{cuts[c], cuts[c + 1], 1, 1}, q[0], carried, inverse, 1e-6, pieces.data());
+    advection_rate<3>(Segment{cuts[c], cuts[c + 1], 1, 1}, q[0], carried, inverse, 1e-6, pieces.data());
   EXPECT_EQ(std::memcmp(whole.data(), pieces.data(), sizeof(double) * 37), 0);
 }
 
