@@ -21,7 +21,7 @@ public:
   static constexpr int words = limbs + 1;  ///< the last one counts non-finite terms
 
   void add(double value) noexcept;
-  /// Adds values[0..n), n <= several. The same words' value as one by one, and much sooner if their exponents are
+  /// Adds values[0..n), n <= several: the same sum as one by one, and much sooner if their exponents are
   /// alike.
   static constexpr int several = 64;
   void add(const double *values, int n) noexcept;
