@@ -15,8 +15,8 @@ public:
                       Guards *guards, const std::string &restarted_from);
 
   /// Collective, after a step and what it made due. Writes a checkpoint if one is due by simulated time or by rank 0's
-  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards do not let
-  /// pass is not written: the last good one stays.
+  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards do not
+  /// let pass is not written: the last good one stays.
   PetscErrorCode after_step(const RunPosition &position, std::string *exit_reason, Stop *stop);
   /// Collective. The last one of a run that writes any.
   PetscErrorCode before_end(const RunPosition &position, Stop *stop);

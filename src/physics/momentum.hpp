@@ -17,9 +17,9 @@ struct AdvectionWeights {
 
 /// What the momentum equation needs to know of a step.
 struct MomentumStep {
-  double force_time;         ///< when the body force is taken
+  double force_time;  ///< when the body force is taken
   double dt;
-  double speed_scale;        ///< typical |v|, for WENO5
+  double speed_scale;  ///< typical |v|, for WENO5
   AdvectionWeights weights;
 };
 
@@ -31,20 +31,20 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
 
 /// The rate dv/dt itself, for super time stepping. `advection` holds -v.grad v of the last step (read when its weight
 /// is not 0) and gets that of this one; it may be empty when the weight is 0.
-PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
-                             const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
-                             FieldBlock &advection, FieldBlock &rate);
+PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+                             const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
+                             FieldBlock &rate);
 
-/// force += scale times the elastic force of all phases, div(G phi dev B) or that of the law, at the faces that feel it.
-/// One ghost of phi and B.
+/// force += scale times the elastic force of all phases, div(G phi dev B) or that of the law, at the faces that feel
+/// it. One ghost of phi and B.
 PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force);
 
 /// D* = rho div v* at centres. Needs one ghost of v*.
 PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
                                   FieldBlock &divergence);
 
-/// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too (8).
-/// rotation = nu/2 is the rotational form of the second-order step, 0 the paper's.
+/// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too
+/// (8). rotation = nu/2 is the rotational form of the second-order step, 0 the paper's.
 PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
                                 const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
                                 FieldBlock &pressure);

@@ -14,9 +14,9 @@ int rkl_stages(double dt, double dt_explicit);
 
 /// Input and work space of super_time_step, velocity blocks.
 struct SuperTimeStepping {
-  FieldBlock rate;           ///< M_0: dv/dt with the viscous term of the start and all else of the middle of the step
-  FieldBlock slope;          ///< M_1: how the elastic force per mass changes in time; empty = not at all
-  FieldBlock now, before;    ///< increments W_j-1 and W_j-2
+  FieldBlock rate;         ///< M_0: dv/dt with the viscous term of the start and all else of the middle of the step
+  FieldBlock slope;        ///< M_1: how the elastic force per mass changes in time; empty = not at all
+  FieldBlock now, before;  ///< increments W_j-1 and W_j-2
 };
 
 /// v* = v + W_s, where W' = nu lap W + M_0 + (t - dt/2) M_1 over dt, W = 0 at the start and U(t) - U(time) on moving

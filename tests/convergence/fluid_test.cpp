@@ -27,7 +27,9 @@ double advected_taylor_green(int cells, MethodKind method, PressureKind pressure
   spec.pressure = pressure;
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   const auto u = [=](double t) {
-    return [=](double x, double y, double) { return 1 + std::exp(-2 * nu * k * k * t) * std::sin(k * (x - t)) * std::cos(k * (y - t)); };
+    return [=](double x, double y, double) {
+      return 1 + std::exp(-2 * nu * k * k * t) * std::sin(k * (x - t)) * std::cos(k * (y - t));
+    };
   };
   const auto v = [=](double x, double y, double) { return 1 - std::cos(k * x) * std::sin(k * y); };
   State &state = scene.solver.state();
@@ -63,7 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, AdvectedTaylorGreen,
                          });
 
 // A channel of height 1 along x with walls in y, thin in x and z, run to `end`; returns the rms error of u.
-double channel(int cells, const SolverSpec &spec, double end, bool three_d, const Function &start, const Function &exact) {
+double channel(int cells, const SolverSpec &spec, double end, bool three_d, const Function &start,
+               const Function &exact) {
   Scene scene;
   GridSpec grid;
   grid.cells = {4, cells, three_d ? 4 : 1};
@@ -92,7 +95,8 @@ TEST(Channel, StartUpConvergesAtOrderTwo) {  // F3, g = H = nu = 1
   for (const double t : {0.05, 0.2}) {
     const double e[3] = {channel(8, spec, t, false, {}, exact(t)), channel(16, spec, t, true, {}, exact(t)),
                          channel(32, spec, t, false, {}, exact(t))};
-    std::printf("  F3 t = %g: %.3e %.3e %.3e, orders %.2f %.2f\n", t, e[0], e[1], e[2], order(e[0], e[1]), order(e[1], e[2]));
+    std::printf("  F3 t = %g: %.3e %.3e %.3e, orders %.2f %.2f\n", t, e[0], e[1], e[2], order(e[0], e[1]),
+                order(e[1], e[2]));
     EXPECT_GT(order(e[0], e[1]), 1.9);
     EXPECT_GT(order(e[1], e[2]), 1.9);
     EXPECT_LT(e[2], 1.25e-4);  // 0.1 % of the steady maximum 1/8
@@ -104,7 +108,8 @@ TEST(Channel, WomersleyConvergesAtOrderTwo) {  // F4, H = 1, nu = 0.05, K = 1, o
   const auto exact = [=](double t) {
     return [=](double, double y, double) {
       const Complex i(0, 1), k = std::sqrt(i * omega / nu);
-      return (1.0 / (i * omega) * (1.0 - std::cosh(k * (y - 0.5)) / std::cosh(k * 0.5)) * std::exp(i * omega * t)).real();
+      return (1.0 / (i * omega) * (1.0 - std::cosh(k * (y - 0.5)) / std::cosh(k * 0.5)) * std::exp(i * omega * t))
+          .real();
     };
   };
   SolverSpec spec;

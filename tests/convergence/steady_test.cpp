@@ -95,8 +95,8 @@ std::array<double, 3> layers(int cells, const Material &material) {
 TEST(RestingLayer, ConvergesToTheExactState) {
   for (const Material &material : {Material{1}, Material::mooney_rivlin(0.3, 0.2, 2)}) {
     const auto coarse = layers(16, material), fine = layers(32, material);
-    std::printf("  S3, c3 = %g, at 16, 32: u %.3e %.3e, B_xy %.3e %.3e, at the wall %.3e %.3e\n", material.c3, coarse[0],
-                fine[0], coarse[1], fine[1], coarse[2], fine[2]);
+    std::printf("  S3, c3 = %g, at 16, 32: u %.3e %.3e, B_xy %.3e %.3e, at the wall %.3e %.3e\n", material.c3,
+                coarse[0], fine[0], coarse[1], fine[1], coarse[2], fine[2]);
     EXPECT_LT(fine[0], 1e-3);
     EXPECT_LT(fine[1], 1e-3 * 0.375);  // of its largest value
     if (material.c3 == 0) {

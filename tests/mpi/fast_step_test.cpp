@@ -32,7 +32,8 @@ std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, 
   });
   if (pressure == PressureKind::smac)  // both laws
     for (Phase &phase : scene.solver.state().phases)
-      phase.material.law = Law::mooney_rivlin, phase.material.c1 = 0.3, phase.material.c2 = 0.2, phase.material.c3 = 0.1;
+      phase.material.law = Law::mooney_rivlin, phase.material.c1 = 0.3, phase.material.c2 = 0.2,
+      phase.material.c3 = 0.1;
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(0.3, 15), 0);
   std::uint64_t hash = 0;

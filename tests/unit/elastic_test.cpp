@@ -127,8 +127,8 @@ void trace_rate(const Grid &grid, const FieldBlock &B, const FieldBlock &v, Fiel
       const double *aa = row(B[a]), *va = row(v[a]);
       for (int i = s.i_begin; i < s.i_end; ++i)
         out[i] += 2 * (dim == 2 ? kernels::half_diagonal_stretch<2>(aa + i, row(B[2]) + i, nullptr, va + i, d)
-                                : kernels::half_diagonal_stretch<3>(aa + i, row(B[at(a, b)]) + i,
-                                                                    row(B[at(a, c)]) + i, va + i, d));
+                                : kernels::half_diagonal_stretch<3>(aa + i, row(B[at(a, b)]) + i, row(B[at(a, c)]) + i,
+                                                                    va + i, d));
     }
 }
 

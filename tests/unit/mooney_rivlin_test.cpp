@@ -76,8 +76,9 @@ double computed_stress(const Solid &solid, int a, int b) {
   const ConstView q = phase.tensor[0];
   const std::ptrdiff_t stride[3] = {q.stride(0), q.stride(1), q.stride(2)};
   const kernels::MooneyRivlin law = law_of(phase.material);
-  return dim == 2 ? kernels::mooney_rivlin_normal<2>(kernels::tensor_at<2>(B.component, stride, a, 1 - a), 0, law)
-                  : kernels::mooney_rivlin_normal<3>(kernels::tensor_at<3>(B.component, stride, a, (a + 1) % 3), 0, law);
+  return dim == 2
+             ? kernels::mooney_rivlin_normal<2>(kernels::tensor_at<2>(B.component, stride, a, 1 - a), 0, law)
+             : kernels::mooney_rivlin_normal<3>(kernels::tensor_at<3>(B.component, stride, a, (a + 1) % 3), 0, law);
 }
 
 TEST(MooneyRivlin, StressOfUniformStrain) {
@@ -150,8 +151,7 @@ TEST(MooneyRivlin, FirstCoefficientAloneIsNeoHookean) {
     predicted_force(solid, Material::mooney_rivlin(0.7, 0, 0), b);
     for (int d = 0; d < a.count(); ++d)
       for (const Segment &s : solid.grid.rows())
-        for (int i = 0; i < s.i_end; ++i)
-          EXPECT_NEAR(a[d](i, s.j, s.k), b[d](i, s.j, s.k), 1e-14 * size);
+        for (int i = 0; i < s.i_end; ++i) EXPECT_NEAR(a[d](i, s.j, s.k), b[d](i, s.j, s.k), 1e-14 * size);
   }
 }
 
@@ -202,7 +202,8 @@ double force_error(bool flat, int cells) {
                            Point low = x, high = x;
                            low[d] -= 1e-4, high[d] += 1e-4;
                            sum += (fraction(high) * stress(rubber, tensor(high))[a][d] -
-                                   fraction(low) * stress(rubber, tensor(low))[a][d]) / 2e-4;
+                                   fraction(low) * stress(rubber, tensor(low))[a][d]) /
+                                  2e-4;
                          }
                          return sum;
                        }));
