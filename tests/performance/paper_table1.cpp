@@ -130,7 +130,7 @@ void part(benchmark::State &state, double bytes, double flops, Task task) {
   const Real3 &h = grid.spacing();
   const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor,
                       next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
-  RowScratch scratch(grid, 4);
+  RowScratch scratch(grid, 1);
   performance::measure(state, {grid.cell_count(), bytes, flops}, [&] { return task(fields, scratch, now.phases); });
 }
 

@@ -237,4 +237,31 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   EXPECT_EQ(std::memcmp(whole.data(), pieces.data(), sizeof(double) * 37), 0);
 }
 
+// Batches go through all directions in one loop, rows through one at a time.
+TEST(Weno5, BatchesHaveTheBitsOfRows) {
+  Random random(8);
+  GridSpec spec = uneven_box(false, {37, 3, 3});
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  FieldBlock q(grid, 1);
+  randomise(grid, q, random);
+  std::vector<double> velocity[3], row(37), batched(37);
+  for (auto &v : velocity)
+    for (int i = 0; i < 37; ++i) v.push_back(random());
+  const double *carried[3] = {velocity[0].data(), velocity[1].data(), velocity[2].data()};
+  const double inverse[3] = {37, 3, 2.7};
+  advection_rate<3>(Segment{0, 37, 1, 1}, q[0], carried, inverse, 1e-6, row.data());
+  int done = 0;
+  const auto work = [&](const kernels::Batch &batch) {
+    const double *left[3] = {carried[0] + done, carried[1] + done, carried[2] + done};
+    kernels::advection_rate<3>(batch, q[0], left, inverse, 1e-6, batched.data() + done);
+    done = 32;
+  };
+  kernels::Batch batch, rest;
+  kernels::gather(batch, q[0].sy + q[0].sz, 0, 32, work);  // four vectors, not yet done
+  work(batch);
+  kernels::gather(rest, q[0].sy + q[0].sz, 32, 37, work);  // less than a vector: at once
+  EXPECT_EQ(std::memcmp(row.data(), batched.data(), sizeof(double) * 37), 0);
+}
+
 }  // namespace
