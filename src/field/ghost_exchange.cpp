@@ -115,12 +115,15 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
     const auto last = [&](int d) {
       return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
     };
+    constexpr int ahead = 8;  // rows: the ends of rows are too far apart for processors to foresee them
     const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
     for (int f = 0; f < block.count(); ++f)
       for (int k = k_begin; k < k_end; ++k)
         for (int j = j_begin; j < j_end; ++j) {
           if (rows && rows->idle(j, k)) continue;
           double *row = block[f].row(j, k);
+          const double *later = row + ahead * own.sy;
+          for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
           for (int m = 1; m <= width; ++m) {
             row[-m] = row[n - m];
             row[n - 1 + m] = row[m - 1];

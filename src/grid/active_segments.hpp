@@ -31,6 +31,10 @@ public:
     const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
     return {segments_.data() + first_[r], segments_.data() + first_[r + 1]};
   }
+  /// Whether there is such a row, without segments.
+  bool idle(int j, int k) const noexcept {
+    return j >= begin_[1] && j < begin_[1] + rows_y_ && row(j, k).begin() == row(j, k).end();
+  }
   const std::vector<Segment> &all() const noexcept { return segments_; }
   int rows_y() const noexcept { return rows_y_; }
   int rows_z() const noexcept { return rows_z_; }

@@ -53,8 +53,12 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
     for (int j = j_begin; j < std::min(j_begin + kernels::block_rows, grid.owned()[1]); ++j)
       for (const Segment &s : phase.stressed.row(j, k)) {
         if (Dim == 3) {
-          kernels::prefetch(phi.row(j, k + 2) + s.i_begin, s.size());
-          for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(j, k + 2) + s.i_begin, s.size());
+          const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line
+          const int low = phase.stressed.idle(j - 1, k) ? j - 1 : j, high = phase.stressed.idle(j + 1, k) ? j + 1 : j;
+          for (int y = low; y <= high; ++y) {
+            kernels::prefetch(phi.row(y, k + 2) + i, length);
+            for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(y, k + 2) + i, length);
+          }
         }
         kernels::gather(batch, j * phi.sy + k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
       }
@@ -84,8 +88,9 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
           if (Dim == 3) {  // the next plane, of the stencil and of the result
-            kernels::prefetch(v[a].row(j, k + 4), n[0]);
+            kernels::prefetch(v[a].row(j, k + 4) - 3, n[0] + 2 * 3 + 7);  // up to its last cache line
             kernels::prefetch(out[a].row(j, k + 1), n[0]);
+            if (a == 0) kernels::prefetch(p.row(j, k + 1), n[0]);
           }
           if (t.inertia) {
             kernels::face_advection_rate<Dim>(row, v, a, t.inverse.data(), t.epsilon, rate);

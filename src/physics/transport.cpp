@@ -116,15 +116,18 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
 }
 
 // The components that live at one location, all diagonal ones or the off-diagonal one of a and b, on rows of plane k.
+// Adds the points that evolve to `evolved`.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                  int j_begin, int j_end, int k, FieldBlock &out) {
+                                  int j_begin, int j_end, int k, FieldBlock &out, std::ptrdiff_t &evolved) {
   constexpr int reach = 3;  // of WENO5
   const bool centre = a == b;
   const ConstView phi = phase.fraction[0];
   const bool at[3] = {!centre && (a == 0 || b == 0), !centre && (a == 1 || b == 1), !centre && (a == 2 || b == 2)};
   const int end = t.grid->points_end(0, at[0]);
   const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
+  const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
+  const double threshold = centre ? t.rule.centre : t.rule.edge;
   alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
   const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
   const auto advance = [&](kernels::Batch &batch) EULASTIC_BODY {
@@ -150,40 +153,65 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
         set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
     };
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
+    // Whether any point of a vector does: segments are those of all locations together.
+    const auto evolves = [&](std::ptrdiff_t first, int count) EULASTIC_BODY {
+      if (phi.origin[first] > 0.5) return true;  // as within bodies
+      bool any = false;
+#pragma omp simd reduction(| : any)
+      for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + first + i, centre, da, db) >= threshold;
+      return any;
+    };
     for (const Segment &s : phase.solid.row(j, k)) {
       if (Dim == 3 && centre) {  // first to come here: the next plane, for all components
         const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
         kernels::prefetch(phi.row(j, k + 1) + i, length);
         for (int d = 0; d < Dim; ++d) kernels::prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
-        for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(j, k + 1 + reach) + i, length);
+        const int low = phase.solid.idle(j - 1, k) ? j - reach : j, high = phase.solid.idle(j + 1, k) ? j + reach : j;
+        for (int f = 0; f < B.count(); ++f)
+          for (int y = low; y <= high; ++y) kernels::prefetch(B[f].row(y, k + 1 + reach) + i, length);
         for (int f = 0; f < B.count(); ++f) kernels::prefetch(out[f].row(j, k + 1) + i, length);
       }
       leave_to(s.i_begin);
       const int stop = std::min(s.i_end, end);
-      kernels::gather(batch, row, s.i_begin, stop, advance);
-      done = stop;
+      for (int i = s.i_begin; i < stop; i = done) {
+        done = std::min(i + kernels::Batch::width, stop);
+        if (evolves(row + i, done - i)) {
+          evolved += done - i;
+          kernels::gather(batch, row, i, done, advance);
+        } else {
+          set_exterior(i, done);
+        }
+      }
     }
     leave_to(end);
   }
   if (batch.count > 0) advance(batch);
 }
 
+struct Evolved {
+  std::ptrdiff_t centres = 0, edges = 0;  // points, each of all its components
+};
+
 template <int Dim, bool SecondOfHeun>
-EULASTIC_INLINE void advance_tensor(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
+                                       FieldBlock &out) {
   constexpr int block = kernels::block_rows;
+  Evolved sum;
   for (int j = 0; j < phase.solid.rows_y(); j += block)
     for (int k = 0; k < phase.solid.rows_z(); ++k) {
-      advance_rows<Dim, SecondOfHeun>(t, phase, B, 0, 0, j, j + block, k, out);
+      advance_rows<Dim, SecondOfHeun>(t, phase, B, 0, 0, j, j + block, k, out, sum.centres);
       for (int a = 0; a < Dim; ++a)
-        for (int b = a + 1; b < Dim; ++b) advance_rows<Dim, SecondOfHeun>(t, phase, B, a, b, j, j + block, k, out);
+        for (int b = a + 1; b < Dim; ++b)
+          advance_rows<Dim, SecondOfHeun>(t, phase, B, a, b, j, j + block, k, out, sum.edges);
     }
+  return sum;
 }
 
-EULASTIC_CLONES void tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
-  t.second_of_heun ? advance_tensor<2, true>(t, phase, B, out) : advance_tensor<2, false>(t, phase, B, out);
+EULASTIC_CLONES Evolved tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+  return t.second_of_heun ? advance_tensor<2, true>(t, phase, B, out) : advance_tensor<2, false>(t, phase, B, out);
 }
-EULASTIC_CLONES void tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
-  t.second_of_heun ? advance_tensor<3, true>(t, phase, B, out) : advance_tensor<3, false>(t, phase, B, out);
+EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+  return t.second_of_heun ? advance_tensor<3, true>(t, phase, B, out) : advance_tensor<3, false>(t, phase, B, out);
 }
 
 TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
@@ -227,15 +255,13 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   terms.rule = stage.rule;
   terms.second_of_heun = stage.second_of_heun;
   terms.stale = stage.stale;
-  if (grid.dimension() == 2) {
-    tensor_2d(terms, phase, tensor, next);
-    scope.flops(phase.solid.points() * (3 * (2 * (kernels::weno5_flops + 5) + 2) +
-                                        2 * kernels::stretch_diagonal_flops_2d + kernels::stretch_shear_flops_2d));
-  } else {
-    tensor_3d(terms, phase, tensor, next);
-    scope.flops(phase.solid.points() * (6 * (3 * (kernels::weno5_flops + 5) + 2) +
-                                        3 * kernels::stretch_diagonal_flops_3d + 3 * kernels::stretch_shear_flops_3d));
-  }
+  const bool flat = grid.dimension() == 2;
+  const Evolved points = (flat ? tensor_2d : tensor_3d)(terms, phase, tensor, next);
+  const double advection = grid.dimension() * (kernels::weno5_flops + 5) + 2;
+  const double diagonal = flat ? kernels::stretch_diagonal_flops_2d : kernels::stretch_diagonal_flops_3d;
+  const double shear = flat ? kernels::stretch_shear_flops_2d : kernels::stretch_shear_flops_3d;
+  scope.flops(double(points.centres) * grid.dimension() * (advection + diagonal) +
+              double(points.edges) * (advection + shear));
   PetscFunctionReturn(0);
 }
 
