@@ -23,7 +23,7 @@ PetscErrorCode GhostExchange::make_run() {
   PetscFunctionBeginUser;
   if (run_.length > 0) PetscFunctionReturn(0);
   const bool large = grid_->dimension() == 3 && grid_->cell_count() >= 32768.0 * grid_->ranks();
-  int length = wraps_x() && large ? 8 : 1;
+  int length = grid_->wraps_x() && large ? 8 : 1;
   while (grid_->cells()[0] % length != 0) length /= 2;
   run_.type = MPIU_REAL;
   if (length > 1) {
@@ -47,7 +47,7 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
       low[d] = -width;
       high[d] = own.cells[d] + width;
     }
-    if (wraps_x()) {
+    if (grid_->wraps_x()) {
       low[0] = 0;
       high[0] = own.cells[0];
     }
@@ -104,32 +104,43 @@ PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const Occup
   PetscFunctionReturn(0);
 }
 
+// Wraps the rows (j, k) of all fields for which not skip(j, k). Rows behind walls are left alone: what is there must
+// not depend on whether x is split.
+template <class Skip>
+void GhostExchange::wrap_rows(FieldBlock &block, int width, Skip skip) const {
+  constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
+  if (!grid_->wraps_x()) return;
+  const Layout &own = block.layout();
+  const auto first = [&](int d) { return grid_->touches_low(d) ? 0 : -std::min(width, own.ghosts[d]); };
+  const auto last = [&](int d) {
+    return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
+  };
+  const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
+  for (int f = 0; f < block.count(); ++f)
+    for (int k = k_begin; k < k_end; ++k)
+      for (int j = j_begin; j < j_end; ++j) {
+        if (skip(j, k)) continue;
+        double *row = block[f].row(j, k);
+        const double *later = row + ahead * own.sy;
+        for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
+        grid_->wrap_row(row, width);
+      }
+}
+
 PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
   PetscCall(end_rows(block, width, rows));
-  if (wraps_x()) {
-    const Layout &own = block.layout();
-    // Rows behind walls are left alone: what is there must not depend on whether x is split.
-    const auto first = [&](int d) { return grid_->touches_low(d) ? 0 : -std::min(width, own.ghosts[d]); };
-    const auto last = [&](int d) {
-      return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
-    };
-    constexpr int ahead = 8;  // rows: the ends of rows are too far apart for processors to foresee them
-    const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
-    for (int f = 0; f < block.count(); ++f)
-      for (int k = k_begin; k < k_end; ++k)
-        for (int j = j_begin; j < j_end; ++j) {
-          if (rows && rows->idle(j, k)) continue;
-          double *row = block[f].row(j, k);
-          const double *later = row + ahead * own.sy;
-          for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
-          for (int m = 1; m <= width; ++m) {
-            row[-m] = row[n - m];
-            row[n - 1 + m] = row[m - 1];
-          }
-        }
-  }
+  wrap_rows(block, width, [rows](int j, int k) { return rows && rows->idle(j, k); });
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::update_wrapped(FieldBlock &block, int width) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exchange);
+  PetscCall(update_rows(block, width));
+  const Int3 &n = block.layout().cells;
+  wrap_rows(block, width, [&n](int j, int k) { return j >= 0 && j < n[1] && k >= 0 && k < n[2]; });
   PetscFunctionReturn(0);
 }
 

@@ -25,6 +25,8 @@ public:
   PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
+  /// Both, where whoever wrote the owned rows has wrapped them around a periodic x (Grid::wrap_row).
+  PetscErrorCode update_wrapped(FieldBlock &block, int width);
   /// Both, but for what lies across a periodic x that is not split.
   PetscErrorCode update_rows(FieldBlock &block, int width);
 
@@ -49,7 +51,8 @@ private:
   PetscErrorCode make_run();
   PetscErrorCode forest(const Key &key, PetscSF *sf);
   PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
-  bool wraps_x() const { return grid_->boundary(0) == Boundary::periodic && grid_->processors(0) == 1; }
+  template <class Skip>
+  void wrap_rows(FieldBlock &block, int width, Skip skip) const;
 
   const Grid *grid_;
   Run run_;

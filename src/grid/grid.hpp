@@ -78,6 +78,16 @@ public:
   /// Ranks along direction d.
   int processors(int d) const { return static_cast<int>(starts_[d].size()) - 1; }
 
+  /// Whether x is periodic and not split: its ghosts are the other end of the same row.
+  bool wraps_x() const { return spec_.boundary[0] == Boundary::periodic && processors(0) == 1; }
+  /// Fills `width` ghosts on both ends of a row of a field, where x wraps.
+  [[gnu::always_inline]] void wrap_row(double *row, int width) const noexcept {
+    for (int m = 1, n = layout_.cells[0]; m <= width; ++m) {
+      row[-m] = row[n - m];
+      row[n - 1 + m] = row[m - 1];
+    }
+  }
+
   const Layout &layout() const { return layout_; }
   const Int3 &owned() const { return layout_.cells; }
   Layout layout_of(int rank) const;

@@ -5,7 +5,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX512F__) && \
     !defined(EULASTIC_NO_CLONES)
-#define EULASTIC_CLONES __attribute__((target_clones("arch=x86-64-v4", "default")))
+#define EULASTIC_CLONES __attribute__((target_clones("arch=x86-64-v4", "default"), noinline))
 #else
 #define EULASTIC_CLONES
 #endif

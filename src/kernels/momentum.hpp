@@ -44,6 +44,14 @@ EULASTIC_INLINE void divergence(const Segment &s, ConstView u, ConstView v, Cons
   }
 }
 
+/// delta p of (11), without its mean and that of p: kappa = beta^2 dt^2, g = beta^2 dt^2 gamma.
+struct AcmIncrement {
+  double kappa, g, inverse_dt, mean;
+  EULASTIC_BODY double operator()(double divergence, double pressure) const noexcept {
+    return -inverse_dt * fma(kappa, divergence, g * (pressure - mean)) - mean;
+  }
+};
+
 /// Compact Laplacian of a centred field at q[0].
 template <int Dim>
 EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, InverseSquares h) noexcept {

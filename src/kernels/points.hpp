@@ -9,7 +9,7 @@ namespace eulastic::kernels {
 /// Vectors of 8 points, as offsets from the origin of a field. Segments of a body are a few vectors long, and entering
 /// a loop costs as much as three of them: a batch enters it once for many segments.
 struct Batch {
-  static constexpr int width = 8, vectors = 32, points = width * vectors;
+  static constexpr int width = 8, vectors = 64, points = width * vectors;
   std::ptrdiff_t first[vectors];
   int count = 0;
   int size = width;  ///< points of each vector; fewer only at the end of rows

@@ -41,73 +41,27 @@ EULASTIC_INLINE double weno5_difference(const double *q, std::ptrdiff_t stride, 
   return fma(from_left ? 1. / 6 : -1. / 6, above / below, from_left ? d2 : d3);
 }
 
-/// rate = -v . grad q; `velocity[d]` and `rate` by slots; q needs three ghosts.
-template <int Dim>
-EULASTIC_INLINE void advection_rate(const Batch &batch, ConstView q, const double *const *velocity,
-                                    const double *inverse_spacing, double epsilon, double *rate) noexcept {
-  const double *u = velocity[0], *v = velocity[1], *w = velocity[Dim == 3 ? 2 : 0];
-  const double ix = inverse_spacing[0], iy = inverse_spacing[1], iz = inverse_spacing[2];
-  for_points(batch, q, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
-    const double *centre = q.origin + o;
-    double sum = u[i] * ix * weno5_difference(centre, 1, u[i], epsilon);
-    sum = fma(v[i] * iy, weno5_difference(centre, q.sy, v[i], epsilon), sum);
-    if constexpr (Dim == 3) sum = fma(w[i] * iz, weno5_difference(centre, q.sz, w[i], epsilon), sum);
-    rate[i] = -sum;
-  });
-}
+/// Which of the directions comes: the first sets the rate, the last one turns its sign.
+enum class Turn { first, between, last };
 
-/// The same for a row and direction d of 0 ... Dim - 1, in this order, with the same bits: a loop for every direction
-/// needs fewer registers. speed(i) is component d of the velocity.
-template <int Dim, class Speed>
-EULASTIC_INLINE void add_advection_rate(const Segment &s, ConstView q, int d, Speed speed, double inverse_spacing,
-                                        double epsilon, double *rate) noexcept {
-  const double *row = q.row(s.j, s.k);
-  const std::ptrdiff_t stride = q.stride(d);
+/// The part of rate = -v . grad q along one direction, at the points of a segment or batch; q needs three ghosts.
+/// speed(slot) is that component of v, `rate` is by slots, `stride` and 1/h those of the direction.
+template <class Points, class Speed>
+EULASTIC_INLINE void add_advection_rate(const Points &points, ConstView q, Turn turn, std::ptrdiff_t stride,
+                                        Speed speed, double inverse_spacing, double epsilon, double *rate) noexcept {
+  const double *origin = q.origin;
   const auto each = [&](auto total) EULASTIC_BODY {
-#pragma omp simd
-    for (int i = s.i_begin; i < s.i_end; ++i) {
+    for_points(points, q, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
       const double along = speed(i);
-      rate[i] = total(along * inverse_spacing, weno5_difference(row + i, stride, along, epsilon), rate[i]);
-    }
+      rate[i] = total(along * inverse_spacing, weno5_difference(origin + o, stride, along, epsilon), rate[i]);
+    });
   };
-  if (d == 0)
+  if (turn == Turn::first)
     each([](double a, double b, double) EULASTIC_BODY { return a * b; });
-  else if (d < Dim - 1)
+  else if (turn == Turn::between)
     each([](double a, double b, double sum) EULASTIC_BODY { return fma(a, b, sum); });
   else
     each([](double a, double b, double sum) EULASTIC_BODY { return -fma(a, b, sum); });
-}
-
-/// rate = -v . grad v_a on a row of faces of direction a; v[d] gives the views of Dim face velocities of one layout,
-/// which are averaged to where they are needed.
-template <int Dim, class Velocity>
-EULASTIC_INLINE void face_advection_rate(const Segment &s, const Velocity &v, int a, const double *inverse_spacing,
-                                         double epsilon, double *rate) noexcept {
-  for (int d = 0; d < Dim; ++d) {
-    const auto advect = [&](auto speed) EULASTIC_BODY {
-      add_advection_rate<Dim>(s, v[a], d, speed, inverse_spacing[d], epsilon, rate);
-    };
-    const double *q = v[d].row(s.j, s.k);
-    const std::ptrdiff_t own = v[d].stride(d), back = -v[a].stride(a);
-    const std::ptrdiff_t first = d < a ? own : back, second = d < a ? back : own;  // in the order of directions
-    if (d == a)
-      advect([=](int i) EULASTIC_BODY { return q[i]; });
-    else
-      advect([=](int i) EULASTIC_BODY { return average4(q + i, first, second); });
-  }
-}
-
-/// rate = -v . grad q on a row of centres.
-template <int Dim, class Velocity>
-EULASTIC_INLINE void centre_advection_rate(const Segment &s, ConstView q, const Velocity &v,
-                                           const double *inverse_spacing, double epsilon, double *rate) noexcept {
-  for (int d = 0; d < Dim; ++d) {
-    const double *face = v[d].row(s.j, s.k);
-    const std::ptrdiff_t up = v[d].stride(d);
-    add_advection_rate<Dim>(
-        s, q, d, [=](int i) EULASTIC_BODY { return 0.5 * (face[i] + face[i + up]); }, inverse_spacing[d], epsilon,
-        rate);
-  }
 }
 
 }  // namespace eulastic::kernels

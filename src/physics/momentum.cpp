@@ -4,6 +4,7 @@
 #include "kernels/momentum.hpp"
 #include "kernels/mooney_rivlin.hpp"
 #include "kernels/weno5.hpp"
+#include "physics/advection.hpp"
 #include "physics/row_scratch.hpp"
 
 #include <algorithm>
@@ -19,8 +20,9 @@ struct PredictorTerms {
   bool inertia;
   double dt, density, kinematic_viscosity, epsilon;
   AdvectionWeights weights;
-  FieldBlock *advection;  // null: not kept
-  bool rate_only;         // write dv/dt instead of v + dt dv/dt
+  FieldBlock *advection;   // null: not kept
+  FieldBlock *divergence;  // of v*; null: not wanted
+  bool rate_only;          // write dv/dt instead of v + dt dv/dt
   Real3 force, inverse, inverse_squared;
 };
 
@@ -76,6 +78,29 @@ EULASTIC_INLINE void combine_advection(int n, AdvectionWeights weights, double *
   }
 }
 
+// No flow through the low walls, before the divergence is taken.
+template <int Dim>
+EULASTIC_INLINE void close_low_faces(const Grid &grid, int begin, int end, int k, FieldBlock &v) {
+  const int n = grid.owned()[0];
+  for (int j = begin; j < end; ++j) {
+    if (grid.touches_low(0)) v[0](0, j, k) = 0;
+    if (grid.touches_low(1) && j == 0) std::fill_n(v[1].row(j, k), n, 0.0);
+    if (Dim == 3 && grid.touches_low(2) && k == 0) std::fill_n(v[2].row(j, k), n, 0.0);
+  }
+}
+
+// Rows begin <= j < end of plane k, from cell `first` on.
+template <int Dim>
+EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const FieldBlock &v, int first, int begin,
+                                     int end, int k, FieldBlock &out) {
+  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
+  for (int j = begin; j < end; ++j) {
+    double *row = out[0].row(j, k);
+    kernels::divergence<Dim>({first, grid.owned()[0], j, k}, v[0], v[1], v[Dim - 1], inverse.data(), density, row);
+    if (grid.wraps_x()) grid.wrap_row(row, 1);
+  }
+}
+
 template <int Dim, bool RateOnly>
 EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratch &scratch) {
   const FieldBlock &v = *t.velocity;
@@ -89,11 +114,12 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         for (int a = 0; a < Dim; ++a) {
           if (Dim == 3) {  // the next plane, of the stencil and of the result
             kernels::prefetch(v[a].row(j, k + 4) - 3, n[0] + 2 * 3 + 7);  // up to its last cache line
-            kernels::prefetch(out[a].row(j, k + 1), n[0]);
+            kernels::prefetch(out[a].row(j, k + 1) - 1, n[0] + 2 + 7);
             if (a == 0) kernels::prefetch(p.row(j, k + 1), n[0]);
+            if (a == 0 && t.divergence) kernels::prefetch((*t.divergence)[0].row(j, k) - 1, n[0] + 2 + 7);
           }
           if (t.inertia) {
-            kernels::face_advection_rate<Dim>(row, v, a, t.inverse.data(), t.epsilon, rate);
+            face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, rate);
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
             for (int i = 0; i < n[0]; ++i) rate[i] = 0;
@@ -104,6 +130,15 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
         }
       }
       elastic_force<Dim>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, k, out);
+      if (RateOnly) continue;
+      const int end = std::min(block + kernels::block_rows, n[1]);
+      close_low_faces<Dim>(*t.grid, block, end, k, out);
+      if (t.grid->wraps_x())
+        for (int a = 0; a < Dim; ++a)
+          for (int j = block; j < end; ++j) t.grid->wrap_row(out[a].row(j, k), 1);
+      const int before = Dim == 3 ? k - 1 : k;  // where the faces above are known, but for the last row's
+      if (t.divergence && before >= 0)
+        divergence_rows<Dim>(*t.grid, t.density, out, 0, std::max(block - 1, 0), end - 1, before, *t.divergence);
     }
 }
 
@@ -139,48 +174,38 @@ double elastic_flops(int dimension, const std::vector<Phase> &phases) {
   return sum;
 }
 
+// All rows, or those that predict() leaves.
 template <int Dim>
-EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const FieldBlock &v, FieldBlock &out) {
+EULASTIC_INLINE void divergence_everywhere(const Grid &grid, double density, const FieldBlock &v, bool left_only,
+                                           FieldBlock &out) {
   const Int3 n = grid.owned();
-  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j)
-      kernels::divergence<Dim>({0, n[0], j, k}, v[0], v[1], v[Dim - 1], inverse.data(), density, out[0].row(j, k));
+  for (int k = 0; k < n[2]; ++k) {
+    const int inner = left_only && (Dim == 2 || k < n[2] - 1) ? n[1] - 1 : 0;
+    if (!grid.wraps_x()) divergence_rows<Dim>(grid, density, v, n[0] - 1, 0, inner, k, out);
+    divergence_rows<Dim>(grid, density, v, 0, inner, n[1], k, out);
+  }
 }
 
-EULASTIC_CLONES void divergence_2d(const Grid &g, double density, const FieldBlock &v, FieldBlock &out) {
-  divergence_rows<2>(g, density, v, out);
+EULASTIC_CLONES void divergence_2d(const Grid &g, double density, const FieldBlock &v, bool left_only,
+                                   FieldBlock &out) {
+  divergence_everywhere<2>(g, density, v, left_only, out);
 }
-EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlock &v, FieldBlock &out) {
-  divergence_rows<3>(g, density, v, out);
+EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlock &v, bool left_only,
+                                   FieldBlock &out) {
+  divergence_everywhere<3>(g, density, v, left_only, out);
 }
 
-EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, double rotation,
-                                  const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                  FieldBlock &pressure) {
+double divergence_flops(int dimension) { return 3 * dimension - 1; }
+
+// Cells of which predict() knows all faces.
+double inner_count(const Grid &grid) {
   const Int3 n = grid.owned();
-  const int gz = grid.dimension() == 3 ? 1 : 0;
-  const ConstView q = increment[0];
-  for (int k = -gz; k < n[2] + gz; ++k)
-    for (int j = -1; j < n[1] + 1; ++j) {
-      double *p = pressure[0].row(j, k);
-      const double *dp = q.row(j, k), *D = divergence[0].row(j, k);
-#pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) p[i] += kernels::fma(-rotation, D[i], dp[i]);
-      if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
-      for (int a = 0; a < grid.dimension(); ++a) {
-        const double factor = dt_over_density / grid.spacing()[a];
-        const std::ptrdiff_t s = q.stride(a);
-        double *v = velocity[a].row(j, k);
-#pragma omp simd
-        for (int i = 0; i < n[0]; ++i) v[i] = kernels::fma(-factor, dp[i] - dp[i - s], v[i]);
-      }
-    }
+  return double(n[0] - (grid.wraps_x() ? 0 : 1)) * (n[1] - 1) * (grid.dimension() == 3 ? n[2] - 1 : 1);
 }
 
 void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
-                   const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock *advection, bool rate_only,
-                   FieldBlock &out) {
+                   const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock *advection,
+                   FieldBlock *divergence, bool rate_only, FieldBlock &out) {
   VerbScope scope(Verb::momentum);
   const int dim = grid.dimension();
   const Real3 &h = grid.spacing();
@@ -195,6 +220,7 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
                              weno_epsilon(step.speed_scale),
                              step.weights,
                              advection,
+                             divergence,
                              rate_only,
                              fluid.body_force.at(step.force_time),
                              {1 / h[0], 1 / h[1], 1 / h[2]},
@@ -204,15 +230,16 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, phases)));
+  if (divergence) scope.flops(inner_count(grid) * divergence_flops(dim));
 }
 
 }  // namespace
 
 PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
                                 const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
+                                const std::vector<Phase> &phases, FieldBlock &velocity_star, FieldBlock *divergence) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, false, velocity_star);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, divergence, false, velocity_star);
   PetscFunctionReturn(0);
 }
 
@@ -220,7 +247,7 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
                              FieldBlock &rate) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, true, rate);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, nullptr, true, rate);
   PetscFunctionReturn(0);
 }
 
@@ -237,21 +264,17 @@ PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldB
                                   FieldBlock &divergence) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::divergence);
-  if (grid.dimension() == 2)
-    divergence_2d(grid, density, velocity_star, divergence);
-  else
-    divergence_3d(grid, density, velocity_star, divergence);
-  scope.flops(grid.owned_count() * (3 * grid.dimension() - 1));
+  (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, density, velocity_star, false, divergence);
+  scope.flops(grid.owned_count() * divergence_flops(grid.dimension()));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                FieldBlock &pressure) {
+PetscErrorCode complete_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+                                   FieldBlock &divergence) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::correction);
-  correct_rows(grid, dt / density, rotation, increment, divergence, velocity, pressure);
-  scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
+  VerbScope scope(Verb::divergence);
+  (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, density, velocity_star, true, divergence);
+  scope.flops((grid.owned_count() - inner_count(grid)) * divergence_flops(grid.dimension()));
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-// The predictor (7) and what surrounds the pressure: divergence and correction (9).
+// The predictor (7) and the divergence of what it predicts.
 #pragma once
 
 #include "field/phase.hpp"
@@ -24,10 +24,13 @@ struct MomentumStep {
 };
 
 /// v* = v + dt/rho (-grad p + div sigma' + rho f) - dt v.grad v at all faces; (7). Needs three ghosts of v, one of p,
-/// phi and B. Wall faces come out unset: fill the wall ghosts.
+/// phi and B. Faces on high walls come out unset: fill the wall ghosts. Rows are wrapped by one around a periodic x.
+/// `divergence`, where given, gets D* while v* is in the caches, but on the high sides of the rank: see
+/// complete_divergence().
 PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
                                 const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star);
+                                const std::vector<Phase> &phases, FieldBlock &velocity_star,
+                                FieldBlock *divergence = nullptr);
 
 /// The rate dv/dt itself, for super time stepping. `advection` holds -v.grad v of the last step (read when its weight
 /// is not 0) and gets that of this one; it may be empty when the weight is 0.
@@ -39,14 +42,11 @@ PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const Momentu
 /// it. One ghost of phi and B.
 PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force);
 
-/// D* = rho div v* at centres. Needs one ghost of v*.
+/// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
 PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
                                   FieldBlock &divergence);
-
-/// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too
-/// (8). rotation = nu/2 is the rotational form of the second-order step, 0 the paper's.
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                FieldBlock &pressure);
+/// The same where predict_velocity() had no ghosts of v* yet.
+PetscErrorCode complete_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+                                   FieldBlock &divergence);
 
 }  // namespace eulastic

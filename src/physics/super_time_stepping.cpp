@@ -69,7 +69,7 @@ struct Sides {
   bool alone[3];  // no layers to be computed again
 
   explicit Sides(const Grid &grid) {
-    wraps_x = grid.boundary(0) == Boundary::periodic && grid.processors(0) == 1;
+    wraps_x = grid.wraps_x();
     for (int d = 0; d < 3; ++d) {
       wall[d][0] = grid.touches_low(d);
       wall[d][1] = grid.touches_high(d);
@@ -176,7 +176,7 @@ EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const Inverse
   stages_in_one_pass<3>(grid, pass, h, sides, f);
 }
 
-// to = scale a + b at all owned points; b may be null.
+// to = scale a + b at all owned points, wrapped by one; b may be null.
 EULASTIC_CLONES void scale_add(const Grid &grid, double scale, const FieldBlock &a, const FieldBlock *b,
                                FieldBlock &to) {
   const Int3 n = grid.owned();
@@ -192,6 +192,7 @@ EULASTIC_CLONES void scale_add(const Grid &grid, double scale, const FieldBlock 
         } else {
           for (int i = 0; i < n[0]; ++i) out[i] = scale * x[i];
         }
+        if (grid.wraps_x()) grid.wrap_row(out, 1);
       }
 }
 

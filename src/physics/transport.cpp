@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
+#include "physics/advection.hpp"
 #include "physics/row_scratch.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
           for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
           kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
         }
-        kernels::centre_advection_rate<Dim>(row, phi, v, t.inverse.data(), epsilon, rate);
+        centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
         const double *now = phi.row(j, k);
 #pragma omp simd
         for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -95,7 +96,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
   const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
   double *next = out[f].origin;
-  kernels::advection_rate<Dim>(batch, B[f], carried, t.inverse.data(), epsilon, rate);
+  advection_rate(batch, B[f], Dim, carried, t.inverse.data(), epsilon, rate);
   const auto stage = [=](std::ptrdiff_t o, double total, double share, double exterior, double least) EULASTIC_BODY {
     // positive_definite.hpp; minus infinity stays, so that it is noticed.
     constexpr double lowest = -std::numeric_limits<double>::max();
@@ -115,30 +116,48 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
     });
 }
 
-// The components that live at one location, all diagonal ones or the off-diagonal one of a and b, on rows of plane k.
-// Adds the points that evolve to `evolved`.
+// A location: all diagonal components live at centres (a = b), the off-diagonal one of a and b on edges.
+struct Location {
+  int a, b;
+  bool at[3];  // staggered
+
+  Location(int x, int y) : a(x), b(y) {
+    for (int d = 0; d < 3; ++d) at[d] = a != b && (d == a || d == b);
+  }
+  bool centre() const { return a == b; }
+};
+
+// All components of one location at the points of a batch.
 template <int Dim, bool SecondOfHeun>
-EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                  int j_begin, int j_end, int k, FieldBlock &out, std::ptrdiff_t &evolved) {
+EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
+                                   const Location &location, const kernels::Batch &batch, FieldBlock &out) {
+  alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
+  const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
+  for (int e = 0; e < Dim; ++e) kernels::carry_velocity(batch, (*t.velocity)[e], e, location.at, Dim, velocity[e]);
+  if (location.centre())
+    for (int c = 0; c < Dim; ++c) advance_component<Dim, SecondOfHeun>(t, phase, B, c, c, batch, carried, rate, out);
+  else
+    advance_component<Dim, SecondOfHeun>(t, phase, B, location.a, location.b, batch, carried, rate, out);
+}
+
+// The components of one location on rows of plane k, but for what is left in `batch`. Adds the points that evolve to
+// `evolved`.
+template <int Dim, bool SecondOfHeun>
+EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
+                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out,
+                                  kernels::Batch &batch, std::ptrdiff_t &evolved) {
   constexpr int reach = 3;  // of WENO5
-  const bool centre = a == b;
+  const int a = location.a, b = location.b;
+  const bool centre = location.centre();
+  const bool(&at)[3] = location.at;
   const ConstView phi = phase.fraction[0];
-  const bool at[3] = {!centre && (a == 0 || b == 0), !centre && (a == 1 || b == 1), !centre && (a == 2 || b == 2)};
   const int end = t.grid->points_end(0, at[0]);
   const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
-  alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
-  const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
-  const auto advance = [&](kernels::Batch &batch) EULASTIC_BODY {
-    for (int e = 0; e < Dim; ++e) kernels::carry_velocity(batch, (*t.velocity)[e], e, at, Dim, velocity[e]);
-    if (centre)
-      for (int c = 0; c < Dim; ++c) advance_component<Dim, SecondOfHeun>(t, phase, B, c, c, batch, carried, rate, out);
-    else
-      advance_component<Dim, SecondOfHeun>(t, phase, B, a, b, batch, carried, rate, out);
-  };
+  const auto advance = [&](const kernels::Batch &full)
+                           EULASTIC_BODY { advance_batch<Dim, SecondOfHeun>(t, phase, B, location, full, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
-  kernels::Batch batch;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
     int done = 0;
     const auto set_exterior = [&](int begin, int stop) {
@@ -154,11 +173,11 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     };
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
     // Whether any point of a vector does: segments are those of all locations together.
-    const auto evolves = [&](std::ptrdiff_t first, int count) EULASTIC_BODY {
-      if (phi.origin[first] > 0.5) return true;  // as within bodies
+    const auto evolves = [&](std::ptrdiff_t at_first, int count) EULASTIC_BODY {
+      if (phi.origin[at_first] > 0.5) return true;  // as within bodies
       bool any = false;
 #pragma omp simd reduction(| : any)
-      for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + first + i, centre, da, db) >= threshold;
+      for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + at_first + i, centre, da, db) >= threshold;
       return any;
     };
     for (const Segment &s : phase.solid.row(j, k)) {
@@ -185,7 +204,6 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     }
     leave_to(end);
   }
-  if (batch.count > 0) advance(batch);
 }
 
 struct Evolved {
@@ -195,15 +213,16 @@ struct Evolved {
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
                                        FieldBlock &out) {
-  constexpr int block = kernels::block_rows;
+  constexpr int block = kernels::block_rows, count = Dim == 3 ? 4 : 2;
+  const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
+  kernels::Batch batches[count];  // filled through all planes
   Evolved sum;
   for (int j = 0; j < phase.solid.rows_y(); j += block)
-    for (int k = 0; k < phase.solid.rows_z(); ++k) {
-      advance_rows<Dim, SecondOfHeun>(t, phase, B, 0, 0, j, j + block, k, out, sum.centres);
-      for (int a = 0; a < Dim; ++a)
-        for (int b = a + 1; b < Dim; ++b)
-          advance_rows<Dim, SecondOfHeun>(t, phase, B, a, b, j, j + block, k, out, sum.edges);
-    }
+    for (int k = 0; k < phase.solid.rows_z(); ++k)
+      for (int l = 0; l < count; ++l)
+        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, j + block, k, out, batches[l],
+                                        l == 0 ? sum.centres : sum.edges);
+  for (int l = 0; l < count; ++l) advance_batch<Dim, SecondOfHeun>(t, phase, B, locations[l], batches[l], out);
   return sum;
 }
 

@@ -44,8 +44,8 @@ EULASTIC_CLONES void add_sums_3d(const Grid &grid, ConstView D, ConstView p, Exa
   add_sums<3>(grid, D, p, s);
 }
 
-EULASTIC_CLONES void increment_rows(const Grid &grid, double kappa, double g, double inverse_dt, double mean,
-                                    ConstView D, ConstView p, View out) {
+EULASTIC_CLONES void increment_rows(const Grid &grid, kernels::AcmIncrement formula, ConstView D, ConstView p,
+                                    View out) {
   const Int3 n = grid.owned();
   const int gz = grid.dimension() == 3 ? 1 : 0;
   for (int k = -gz; k < n[2] + gz; ++k)
@@ -53,7 +53,7 @@ EULASTIC_CLONES void increment_rows(const Grid &grid, double kappa, double g, do
       const double *DD = D.row(j, k), *pp = p.row(j, k);
       double *dp = out.row(j, k);
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) dp[i] = -inverse_dt * kernels::fma(kappa, DD[i], g * (pp[i] - mean)) - mean;
+      for (int i = -1; i < n[0] + 1; ++i) dp[i] = formula(DD[i], pp[i]);
     }
 }
 
@@ -81,9 +81,9 @@ PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBl
   PetscCall(sums.reduce(grid_->comm(), total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
   sound_speed_ = last_.sound_speed(dt);
-  increment_rows(*grid_, last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count(), divergence[0], pressure[0],
-                 increment[0]);
-  scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12 + 6));
+  formula_ = {last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count()};
+  if (increment) increment_rows(*grid_, formula_, divergence[0], pressure[0], increment[0]);
+  scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12 + (increment ? 6 : 0)));
   PetscFunctionReturn(0);
 }
 

@@ -29,11 +29,13 @@ public:
   explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
+  const kernels::AcmIncrement *formula() const override { return &formula_; }
   double sound_speed() const override { return sound_speed_; }
 
 private:
   const Grid *grid_;
   AcmCoefficients last_;
+  kernels::AcmIncrement formula_{};
   double sound_speed_ = 0;
 };
 

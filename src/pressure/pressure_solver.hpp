@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "kernels/momentum.hpp"
 
 namespace eulastic {
 
@@ -11,10 +12,12 @@ public:
 
   /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on walls.
   /// `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer valid; a
-  /// solver may remove its mean. `increment`: out, one ghost layer valid.
+  /// solver may remove its mean. `increment`: out, one ghost layer valid; may be empty where formula() is not null.
   virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
                                FieldBlock &increment) = 0;
 
+  /// The last increment as a function of D* and p^N, or null.
+  virtual const kernels::AcmIncrement *formula() const { return nullptr; }
   /// rms of D that is good enough; exact solvers and the paper's single step take no notice.
   virtual void set_target(double) {}
   /// Sweeps or iterations since the start; 0 for exact solvers.

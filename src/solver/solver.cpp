@@ -1,5 +1,6 @@
 #include "solver/solver.hpp"
 
+#include "physics/correction.hpp"
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
@@ -42,7 +43,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
   divergence_ = work_ ? work_.part(sweeps_work, 1) : FieldBlock(grid, 1);
-  increment_ = work_ ? work_.part(sweeps_work + 1, 1) : FieldBlock(grid, 1);
+  if (!pressure_solver_->formula()) increment_ = work_ ? work_.part(sweeps_work + 1, 1) : FieldBlock(grid, 1);
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   if (work_) {
     viscous_.rate = work_.part(0, dim);
@@ -53,7 +54,8 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
 
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
+  PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
+  fill_wall_ghosts_velocity(*grid_, spec_.walls, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
@@ -95,7 +97,8 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscFunctionBeginUser;
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
+  PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
+  fill_wall_ghosts_velocity(*grid_, spec_.walls, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
@@ -197,7 +200,8 @@ PetscErrorCode Solver::predict(double dt) {
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
   }
   if (spec_.viscous == ViscousScheme::explicit_euler && !spec_.staggered()) {
-    PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+    PetscCall(
+        predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_, &divergence_));
     ++stages_;
     PetscFunctionReturn(0);
   }
@@ -224,11 +228,16 @@ PetscErrorCode Solver::project(double dt) {
   const double rotation = spec_.staggered() ? 0.5 * spec_.fluid.kinematic_viscosity() : 0;
   const Real3 &h = grid_->spacing();
   const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
-  PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence_));
-  PetscCall(update_centre_ghosts(divergence_, 1));
+  const bool begun = spec_.viscous == ViscousScheme::explicit_euler && !spec_.staggered();
+  PetscCall((begun ? complete_divergence : compute_divergence)(*grid_, density, velocity_star_, divergence_));
+  PetscCall(exchange_->update_wrapped(divergence_, 1));
+  fill_wall_ghosts_even(*grid_, at_centre, divergence_[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));  // (10) or (11)
-  PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.pressure));
+  if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
+    PetscCall(correct_velocity(*grid_, density, dt, rotation, *formula, divergence_, velocity_star_, now_.pressure));
+  else
+    PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }
@@ -296,7 +305,7 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
 
 PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(velocity, width));
+  PetscCall(exchange_->update_wrapped(velocity, width));
   fill_wall_ghosts_velocity(*grid_, spec_.walls, time, velocity, width);
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
 #include "kernels/elastic.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
+#include "physics/advection.hpp"
 #include "physics/momentum.hpp"
 #include "physics/row_scratch.hpp"
 
@@ -52,7 +53,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
     for (int d = 0; d < 3; ++d) kernels::carry_velocity(batch, t.velocity[d], d, at.data(), 3, carried[d]);
     for (int c = first; c < last; ++c)
       move(t, batch, t.tensor[c], 4 + c, rate, [&](double *out) EULASTIC_BODY {
-        kernels::advection_rate<3>(batch, t.tensor[c], velocity, t.inverse.data(), 1e-6, out);
+        advection_rate(batch, t.tensor[c], 3, velocity, t.inverse.data(), 1e-6, out);
       });
   };
   kernels::Batch batch;
@@ -72,14 +73,13 @@ EULASTIC_CLONES void advect(const Fields &t, RowScratch &scratch) {
     for (int a = 0; a < 3; ++a) {
       prefetch(t, row, v[a], a);
       move(t, row, v[a], a, rate,
-           [&](double *out) EULASTIC_BODY { kernels::face_advection_rate<3>(row, v, a, t.inverse.data(), 1e-6, out); });
+           [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, out); });
     }
   });
   in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
     prefetch(t, row, t.fraction[0], 3);
-    move(t, row, t.fraction[0], 3, rate, [&](double *out) EULASTIC_BODY {
-      kernels::centre_advection_rate<3>(row, t.fraction[0], v, t.inverse.data(), 1e-6, out);
-    });
+    move(t, row, t.fraction[0], 3, rate,
+         [&](double *out) EULASTIC_BODY { centre_advection_rate(row, t.fraction[0], v, t.inverse.data(), 1e-6, out); });
   });
   for (int block = 0; block < n[1]; block += kernels::block_rows)
     for (int k = 0; k < n[2]; ++k) {

@@ -1,6 +1,7 @@
 // (12) against brute force, its guards, and what one step of the solver does to the divergence.
 #include "pressure/acm.hpp"
 
+#include "physics/correction.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 

@@ -1,5 +1,6 @@
 // Carried velocities, the predictor's terms, divergence and correction: exact on polynomials, unequal spacings.
 #include "kernels/momentum.hpp"
+#include "physics/correction.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 

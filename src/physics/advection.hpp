@@ -1,0 +1,24 @@
+// -v.grad q by WENO5, a direction at a time. Every loop is in a function of its own: among others, compilers keep what
+// it needs on the stack and not in registers.
+#pragma once
+
+#include "field/field_block.hpp"
+#include "kernels/points.hpp"
+
+namespace eulastic {
+
+/// rate = -v . grad v_a on a row of faces of direction a. v: the face velocities, three ghosts. Here and below
+/// `inverse_spacing`: 1/h of every direction; `epsilon`: 1e-6 (scale of what is carried)^2; `rate`: by cells of the
+/// row.
+void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing, double epsilon,
+                         double *rate);
+
+/// rate = -v . grad q on a row of centres; q has three ghosts, v one.
+void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
+                           double epsilon, double *rate);
+
+/// rate = -v . grad q at the points of a batch; velocity[d], of `dimension` directions, and rate by slots.
+void advection_rate(const kernels::Batch &batch, ConstView q, int dimension, const double *const *velocity,
+                    const double *inverse_spacing, double epsilon, double *rate);
+
+}  // namespace eulastic
