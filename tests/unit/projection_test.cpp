@@ -1,0 +1,129 @@
+// What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
+#include "physics/correction.hpp"
+#include "support/polynomials.hpp"
+#include "support/verbs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+struct Sides {
+  bool flat;
+  int walls;  // bit d: direction d
+};
+
+// A random flow with its ghosts; rows of more than one block in y.
+struct RandomFlow {
+  Grid grid;
+  std::unique_ptr<GhostExchange> exchange;
+  Walls walls;
+  FieldBlock velocity, pressure;
+
+  explicit RandomFlow(const Sides &sides) {
+    GridSpec spec = uneven_box(sides.flat, {11, kernels::block_rows + 5, 6});
+    for (int d = 0; d < 3; ++d)
+      if (sides.walls >> d & 1) spec.boundary[d] = Boundary::wall;
+    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+    exchange = std::make_unique<GhostExchange>(grid);
+    velocity = FieldBlock(grid, grid.dimension());
+    pressure = FieldBlock(grid, 1);
+    Random random(5);
+    for (int a = 0; a < grid.dimension(); ++a)
+      set(grid, velocity[a], at_face[a], [&](double, double, double) { return random(); });
+    set(grid, pressure[0], at_centre, [&](double, double, double) { return 2 + random(); });
+    fill(velocity, 3, false);
+    fill_centre(pressure);
+  }
+  void fill(FieldBlock &v, int width, bool wrapped) {
+    EXPECT_EQ(wrapped ? exchange->update_wrapped(v, width) : exchange->update(v, width), 0);
+    fill_wall_ghosts_velocity(grid, walls, 0, v, width);
+  }
+  void fill_centre(FieldBlock &q) {
+    EXPECT_EQ(exchange->update(q, 1), 0);
+    fill_wall_ghosts_even(grid, at_centre, q[0], 1);
+  }
+};
+
+// Rows of the owned cells, `beside` more at both ends.
+bool same_rows(const Grid &grid, const FieldBlock &a, const FieldBlock &b, int beside) {
+  bool same = true;
+  for (int f = 0; f < a.count(); ++f)
+    for (const Segment &s : grid.rows())
+      same &= std::memcmp(a[f].row(s.j, s.k) - beside, b[f].row(s.j, s.k) - beside,
+                          sizeof(double) * (s.size() + 2 * beside)) == 0;
+  return same;
+}
+
+class Projection : public ::testing::TestWithParam<Sides> {};
+
+TEST_P(Projection, DivergenceByThePredictorHasTheBitsOfItsOwnPass) {
+  RandomFlow flow(GetParam());
+  const Grid &grid = flow.grid;
+  const int wrapped = grid.wraps_x() ? 1 : 0;
+  Fluid fluid;
+  FieldBlock star(grid, grid.dimension()), D(grid, 1), expected(grid, 1);
+  ASSERT_EQ(predict_velocity(grid, fluid, {0, 0.1, 1, {}}, flow.velocity, flow.pressure, {}, star, &D), 0);
+  flow.fill(star, 1, true);
+  ASSERT_EQ(complete_divergence(grid, 1.7, star, D), 0);
+  ASSERT_EQ(compute_divergence(grid, 1.7, star, expected), 0);
+  // The predictor takes the fluid's density, 1; it must not have done all.
+  EXPECT_FALSE(same_rows(grid, D, expected, wrapped));
+  ASSERT_EQ(complete_divergence(grid, 1, star, D), 0);
+  ASSERT_EQ(compute_divergence(grid, 1, star, expected), 0);
+  EXPECT_TRUE(same_rows(grid, D, expected, wrapped));
+}
+
+TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
+  RandomFlow flow(GetParam()), other(GetParam());
+  const Grid &grid = flow.grid;
+  const double rotation = 0.3;
+  const kernels::AcmIncrement formula{0.07, 0.3, 12, 1.9};
+  FieldBlock D(grid, 1), increment(grid, 1);
+  ASSERT_EQ(compute_divergence(grid, 1, flow.velocity, D), 0);
+  flow.fill_centre(D);
+  for (std::ptrdiff_t i = 0; i < D.layout().size; ++i) increment.data()[i] = formula(D.data()[i], flow.pressure.data()[i]);
+  ASSERT_EQ(correct_velocity(grid, 1.7, 0.1, rotation, increment, D, flow.velocity, flow.pressure), 0);
+  ASSERT_EQ(correct_velocity(grid, 1.7, 0.1, rotation, formula, D, other.velocity, other.pressure), 0);
+  EXPECT_TRUE(same_rows(grid, flow.velocity, other.velocity, grid.wraps_x() ? 3 : 0));
+  // One ghost of the pressure in every direction.
+  const Int3 n = grid.owned();
+  const int gz = GetParam().flat ? 0 : 1;
+  for (int k = -gz; k < n[2] + gz; ++k)
+    for (int j = -1; j < n[1] + 1; ++j)
+      EXPECT_EQ(
+          std::memcmp(flow.pressure[0].row(j, k) - 1, other.pressure[0].row(j, k) - 1, sizeof(double) * (n[0] + 2)), 0)
+          << j << ' ' << k;
+}
+
+TEST_P(Projection, RowsWrappedByWhoWroteThemHaveTheBitsOfAnExchange) {
+  RandomFlow flow(GetParam()), other(GetParam());
+  flow.fill(flow.velocity, 3, false);
+  other.velocity.clear();  // ghosts too
+  for (int a = 0; a < flow.grid.dimension(); ++a)
+    for (const Segment &s : flow.grid.rows()) {
+      std::copy_n(flow.velocity[a].row(s.j, s.k), s.size(), other.velocity[a].row(s.j, s.k));
+      if (flow.grid.wraps_x()) flow.grid.wrap_row(other.velocity[a].row(s.j, s.k), 3);
+    }
+  other.fill(other.velocity, 3, true);
+  const Int3 n = flow.grid.owned();
+  const int gz = GetParam().flat ? 0 : 3;
+  for (int a = 0; a < flow.grid.dimension(); ++a)
+    for (int k = -gz; k < n[2] + gz; ++k)
+      for (int j = -3; j < n[1] + 3; ++j)
+        EXPECT_EQ(
+            std::memcmp(flow.velocity[a].row(j, k) - 3, other.velocity[a].row(j, k) - 3, sizeof(double) * (n[0] + 6)),
+            0)
+            << a << ' ' << j << ' ' << k;
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, Projection,
+                         ::testing::Values(Sides{true, 0}, Sides{true, 1}, Sides{true, 2}, Sides{true, 3},
+                                           Sides{false, 0}, Sides{false, 1}, Sides{false, 2}, Sides{false, 4},
+                                           Sides{false, 7}));
+
+}  // namespace
