@@ -41,20 +41,39 @@ EULASTIC_INLINE double weno5_difference(const double *q, std::ptrdiff_t stride, 
   return fma(from_left ? 1. / 6 : -1. / 6, above / below, from_left ? d2 : d3);
 }
 
+/// rate = -v . grad q; `velocity[d]` and `rate` by slots; q needs three ghosts.
+template <int Dim>
+EULASTIC_INLINE void advection_rate(const Batch &batch, ConstView q, const double *const *velocity,
+                                    const double *inverse_spacing, double epsilon, double *rate) noexcept {
+  const double *u = velocity[0], *v = velocity[1], *w = velocity[Dim == 3 ? 2 : 0];
+  const double ix = inverse_spacing[0], iy = inverse_spacing[1], iz = inverse_spacing[2];
+  for_points(batch, q, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+    const double *centre = q.origin + o;
+    double sum = u[i] * ix * weno5_difference(centre, 1, u[i], epsilon);
+    sum = fma(v[i] * iy, weno5_difference(centre, q.sy, v[i], epsilon), sum);
+    if constexpr (Dim == 3) sum = fma(w[i] * iz, weno5_difference(centre, q.sz, w[i], epsilon), sum);
+    rate[i] = -sum;
+  });
+}
+
 /// Which of the directions comes: the first sets the rate, the last one turns its sign.
 enum class Turn { first, between, last };
+constexpr Turn turn(int d, int dimension) {
+  return d == 0 ? Turn::first : d < dimension - 1 ? Turn::between : Turn::last;
+}
 
-/// The part of rate = -v . grad q along one direction, at the points of a segment or batch; q needs three ghosts.
-/// speed(slot) is that component of v, `rate` is by slots, `stride` and 1/h those of the direction.
-template <class Points, class Speed>
-EULASTIC_INLINE void add_advection_rate(const Points &points, ConstView q, Turn turn, std::ptrdiff_t stride,
-                                        Speed speed, double inverse_spacing, double epsilon, double *rate) noexcept {
-  const double *origin = q.origin;
+/// The same on a row, the part along direction d: speed(i) is that component of v.
+template <class Speed>
+EULASTIC_INLINE void add_advection_rate(const Segment &s, ConstView q, int d, Turn turn, Speed speed,
+                                        double inverse_spacing, double epsilon, double *rate) noexcept {
+  const double *row = q.row(s.j, s.k);
+  const std::ptrdiff_t stride = q.stride(d);
   const auto each = [&](auto total) EULASTIC_BODY {
-    for_points(points, q, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
+#pragma omp simd
+    for (int i = s.i_begin; i < s.i_end; ++i) {
       const double along = speed(i);
-      rate[i] = total(along * inverse_spacing, weno5_difference(origin + o, stride, along, epsilon), rate[i]);
-    });
+      rate[i] = total(along * inverse_spacing, weno5_difference(row + i, stride, along, epsilon), rate[i]);
+    }
   };
   if (turn == Turn::first)
     each([](double a, double b, double) EULASTIC_BODY { return a * b; });

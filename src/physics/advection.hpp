@@ -3,7 +3,6 @@
 #pragma once
 
 #include "field/field_block.hpp"
-#include "kernels/points.hpp"
 
 namespace eulastic {
 
@@ -16,9 +15,5 @@ void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const d
 /// rate = -v . grad q on a row of centres; q has three ghosts, v one.
 void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
                            double epsilon, double *rate);
-
-/// rate = -v . grad q at the points of a batch; velocity[d], of `dimension` directions, and rate by slots.
-void advection_rate(const kernels::Batch &batch, ConstView q, int dimension, const double *const *velocity,
-                    const double *inverse_spacing, double epsilon, double *rate);
 
 }  // namespace eulastic

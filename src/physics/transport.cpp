@@ -96,7 +96,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
   const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
   double *next = out[f].origin;
-  advection_rate(batch, B[f], Dim, carried, t.inverse.data(), epsilon, rate);
+  kernels::advection_rate<Dim>(batch, B[f], carried, t.inverse.data(), epsilon, rate);
   const auto stage = [=](std::ptrdiff_t o, double total, double share, double exterior, double least) EULASTIC_BODY {
     // positive_definite.hpp; minus infinity stays, so that it is noticed.
     constexpr double lowest = -std::numeric_limits<double>::max();

@@ -53,7 +53,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
     for (int d = 0; d < 3; ++d) kernels::carry_velocity(batch, t.velocity[d], d, at.data(), 3, carried[d]);
     for (int c = first; c < last; ++c)
       move(t, batch, t.tensor[c], 4 + c, rate, [&](double *out) EULASTIC_BODY {
-        advection_rate(batch, t.tensor[c], 3, velocity, t.inverse.data(), 1e-6, out);
+        kernels::advection_rate<3>(batch, t.tensor[c], velocity, t.inverse.data(), 1e-6, out);
       });
   };
   kernels::Batch batch;

@@ -9,15 +9,11 @@ namespace eulastic::test {
 template <int Dim>
 EULASTIC_INLINE void advection_rate(const Segment &s, ConstView q, const double *const *velocity,
                                     const double *inverse_spacing, double epsilon, double *rate) {
-  using kernels::Turn;
   for (int d = 0; d < Dim; ++d) {
     const double *along = velocity[d];
     kernels::add_advection_rate(
-        s, q,
-        d == 0        ? Turn::first
-        : d < Dim - 1 ? Turn::between
-                      : Turn::last,
-        q.stride(d), [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d], epsilon, rate);
+        s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d], epsilon,
+        rate);
   }
 }
 

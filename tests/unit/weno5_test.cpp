@@ -1,5 +1,4 @@
 // WENO5 against its textbook form, polynomials and smooth data; symmetry, steps, constants, pieces of rows.
-#include "physics/advection.hpp"
 #include "support/advection.hpp"
 #include "support/polynomials.hpp"
 
@@ -238,7 +237,7 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   EXPECT_EQ(std::memcmp(whole.data(), pieces.data(), sizeof(double) * 37), 0);
 }
 
-// Batches have speeds in slots, in the step and in vectors from many rows.
+// Batches go through all directions in one loop, rows through one at a time.
 TEST(Weno5, BatchesHaveTheBitsOfRows) {
   Random random(8);
   GridSpec spec = uneven_box(false, {37, 3, 3});
@@ -255,7 +254,7 @@ TEST(Weno5, BatchesHaveTheBitsOfRows) {
   int done = 0;
   const auto work = [&](const kernels::Batch &batch) {
     const double *left[3] = {carried[0] + done, carried[1] + done, carried[2] + done};
-    eulastic::advection_rate(batch, q[0], 3, left, inverse, 1e-6, batched.data() + done);
+    kernels::advection_rate<3>(batch, q[0], left, inverse, 1e-6, batched.data() + done);
     done = 32;
   };
   kernels::Batch batch, rest;
