@@ -23,15 +23,15 @@ double phase_fields(const Config &config) {
   return (1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6)) * (config.method.staggered() ? 2 : 1);
 }
 
-/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; divergence and increment, with work space
-/// or by themselves; what the parts of the method add; the phases.
+/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; divergence and, but for the paper's
+/// ACM, increment, with work space or by themselves; what the parts of the method add; the phases.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
   const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
   const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
              thinc = method.interface == InterfaceScheme::thinc;
-  double sum = 2 * dimension + 1 + (work ? 6 : 2);
+  double sum = 2 * dimension + 1 + (work ? 6 : method.acm_of_the_paper() ? 1 : 2);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())

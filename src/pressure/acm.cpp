@@ -44,19 +44,6 @@ EULASTIC_CLONES void add_sums_3d(const Grid &grid, ConstView D, ConstView p, Exa
   add_sums<3>(grid, D, p, s);
 }
 
-EULASTIC_CLONES void increment_rows(const Grid &grid, kernels::AcmIncrement formula, ConstView D, ConstView p,
-                                    View out) {
-  const Int3 n = grid.owned();
-  const int gz = grid.dimension() == 3 ? 1 : 0;
-  for (int k = -gz; k < n[2] + gz; ++k)
-    for (int j = -1; j < n[1] + 1; ++j) {
-      const double *DD = D.row(j, k), *pp = p.row(j, k);
-      double *dp = out.row(j, k);
-#pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) dp[i] = formula(DD[i], pp[i]);
-    }
-}
-
 }  // namespace
 
 double AcmCoefficients::sound_speed(double dt) const { return std::sqrt(kappa) / dt; }
@@ -71,7 +58,7 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
   return {s.A1 / s.A2, 0};
 }
 
-PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) {
+PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   const int dim = grid_->dimension();
@@ -82,8 +69,7 @@ PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBl
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
   sound_speed_ = last_.sound_speed(dt);
   formula_ = {last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count()};
-  if (increment) increment_rows(*grid_, formula_, divergence[0], pressure[0], increment[0]);
-  scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12 + (increment ? 6 : 0)));
+  scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12));
   PetscFunctionReturn(0);
 }
 

@@ -27,6 +27,7 @@ AcmCoefficients acm_coefficients(const AcmSums &sums);
 class AcmSolver : public PressureSolver {
 public:
   explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
+  /// Finds formula(); fills no field.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
   const kernels::AcmIncrement *formula() const override { return &formula_; }

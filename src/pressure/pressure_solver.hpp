@@ -12,11 +12,11 @@ public:
 
   /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on walls.
   /// `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer valid; a
-  /// solver may remove its mean. `increment`: out, one ghost layer valid; may be empty where formula() is not null.
+  /// solver may remove its mean. `increment`: out, one ghost layer valid; unused where formula() is not null.
   virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
                                FieldBlock &increment) = 0;
 
-  /// The last increment as a function of D* and p^N, or null.
+  /// The last increment as a function of D* and p^N, which is stored nowhere, or null.
   virtual const kernels::AcmIncrement *formula() const { return nullptr; }
   /// rms of D that is good enough; exact solvers and the paper's single step take no notice.
   virtual void set_target(double) {}

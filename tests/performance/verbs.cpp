@@ -31,6 +31,11 @@ struct Scratch {
   const Fluid &fluid() const { return box.scene.solver.spec().fluid; }
 };
 
+PetscErrorCode predict(Scratch &s, const std::vector<Phase> &phases) {
+  return predict_velocity(s.grid, s.fluid(), {0, s.box.dt, 1, {}}, s.now.velocity, s.now.pressure, phases, s.velocity,
+                          &s.scalar);
+}
+
 // `work(scratch, bytes per cell and round)` gives the verb and how many rounds (stages, sweeps) a call has.
 template <class Make>
 void verb(benchmark::State &state, Filling filling, Make make) {
@@ -54,20 +59,18 @@ void verb(benchmark::State &state, Filling filling, Make make) {
   EULASTIC_NAMED(name)
 #define EULASTIC_VERB(name, bytes, expression) EULASTIC_VERB_IN(name, Filling::all, bytes, expression)
 
-// v, p -> v*
-EULASTIC_VERB(predict_fluid, 4 * 8 + 3 * 16,
-              test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, {}, s.velocity));
-// v, p, phi, B -> v*
-EULASTIC_VERB(predict_solid, 11 * 8 + 3 * 16,
-              test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, s.now.phases, s.velocity));
+// v, p -> v*, D
+EULASTIC_VERB(predict_fluid, 4 * 8 + 4 * 16, predict(s, {}));
+// v, p, phi, B -> v*, D
+EULASTIC_VERB(predict_solid, 11 * 8 + 4 * 16, predict(s, s.now.phases));
 // v -> D
 EULASTIC_VERB(divergence, 3 * 8 + 16, compute_divergence(s.grid, 1, s.now.velocity, s.scalar));
-// D, p for the sums; D, p -> increment
-EULASTIC_VERB(acm, 2 * 8 + 2 * 8 + 16,
-              AcmSolver(s.grid).solve(s.box.dt, s.now.phases[0].fraction, s.now.pressure, s.increment));
-// increment -> v, p in place
+// D, p for the sums
+EULASTIC_VERB(acm, 2 * 8, AcmSolver(s.grid).solve(s.box.dt, s.now.phases[0].fraction, s.now.pressure, s.increment));
+// D -> v, p in place
 EULASTIC_VERB(correction, 8 + 4 * 16,
-              correct_velocity(s.grid, 1, s.box.dt, 0, s.increment, s.scalar, s.velocity, s.now.pressure));
+              correct_velocity(s.grid, 1, s.box.dt, 0, kernels::AcmIncrement{0.1, 0.1, 1, 0}, s.scalar, s.velocity,
+                               s.now.pressure));
 // v, phi -> phi
 EULASTIC_VERB(fraction, 4 * 8 + 16, advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
 // phi
@@ -77,9 +80,7 @@ EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
               test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
 
 // The same among red blood cells; bytes are not counted.
-EULASTIC_VERB_IN(cells_predict, Filling::cells, 0,
-                 test::predict(s.grid, s.fluid(), 0, s.box.dt, s.now.velocity, s.now.pressure, s.now.phases,
-                               s.velocity));
+EULASTIC_VERB_IN(cells_predict, Filling::cells, 0, predict(s, s.now.phases));
 EULASTIC_VERB_IN(cells_fraction, Filling::cells, 0,
                  advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
 EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0,
