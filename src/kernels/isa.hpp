@@ -1,6 +1,6 @@
 // How kernels are compiled: a verb marked EULASTIC_CLONES exists twice, for the baseline (AVX2) and for AVX-512, and
-// the loader picks one; the kernels in it are always inlined, so that they are cloned with it. No contraction and
-// explicit fma only: both clones give the same bits.
+// the loader picks one; the kernels in it are always inlined, so that they are cloned with it. Inlined itself it would
+// be the baseline's. No contraction and explicit fma only: both clones give the same bits.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX512F__) && \

@@ -1,5 +1,5 @@
-// -v.grad q by WENO5, a direction at a time. Every loop is in a function of its own: among others, compilers keep what
-// it needs on the stack and not in registers.
+// -v.grad q by WENO5 along rows, a loop for every direction, in functions of their own: among the other loops of a verb
+// compilers keep on the stack what these need in registers.
 #pragma once
 
 #include "field/field_block.hpp"
