@@ -5,9 +5,12 @@
 
 namespace eulastic::kernels {
 
-/// Mean of q over the 4 points {0, a} x {0, b}.
+/// Sum and mean of q over the 4 points {0, a} x {0, b}.
+EULASTIC_INLINE double sum4(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
+  return (q[0] + q[a]) + (q[b] + q[a + b]);
+}
 EULASTIC_INLINE double average4(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
-  return 0.25 * ((q[0] + q[a]) + (q[b] + q[a + b]));
+  return 0.25 * sum4(q, a, b);
 }
 
 /// Mean of q over the 8 points {0, a} x {0, b} x {0, c}.

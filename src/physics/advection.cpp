@@ -13,13 +13,13 @@ EULASTIC_INLINE void of_faces(const Segment &s, const FieldBlock &v, int a, cons
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t own = v[d].stride(d), back = -q.stride(a);
     const std::ptrdiff_t one = d < a ? own : back, other = d < a ? back : own;  // in the order of directions
-    const auto add = [&](auto speed) EULASTIC_BODY {
-      kernels::add_advection_rate(s, q, d, kernels::turn(d, Dim), speed, inverse_spacing[d], epsilon, rate);
+    const auto add = [&](auto speed, double factor) EULASTIC_BODY {
+      kernels::add_advection_rate(s, q, d, kernels::turn(d, Dim), speed, factor * inverse_spacing[d], epsilon, rate);
     };
     if (d == a)
-      add([=](int i) EULASTIC_BODY { return face[i]; });
+      add([=](int i) EULASTIC_BODY { return face[i]; }, 1);
     else
-      add([=](int i) EULASTIC_BODY { return kernels::average4(face + i, one, other); });
+      add([=](int i) EULASTIC_BODY { return kernels::sum4(face + i, one, other); }, 0.25);
   }
 }
 
@@ -30,8 +30,8 @@ EULASTIC_INLINE void of_centres(const Segment &s, const ConstView &q, const Fiel
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
     kernels::add_advection_rate(
-        s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return 0.5 * (face[i] + face[i + up]); },
-        inverse_spacing[d], epsilon, rate);
+        s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return face[i] + face[i + up]; },
+        0.5 * inverse_spacing[d], epsilon, rate);
   }
 }
 
