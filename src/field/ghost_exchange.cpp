@@ -135,10 +135,12 @@ PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::update_wrapped(FieldBlock &block, int width) {
+PetscErrorCode GhostExchange::update_wrapped(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
+  if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(update_rows(block, width));
+  PetscCall(begin(block, width));
+  PetscCall(end_rows(block, width, nullptr));
   const Int3 &n = block.layout().cells;
   wrap_rows(block, width, [&n](int j, int k) { return j >= 0 && j < n[1] && k >= 0 && k < n[2]; });
   PetscFunctionReturn(0);

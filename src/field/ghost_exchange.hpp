@@ -26,7 +26,7 @@ public:
   /// Both.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both, where whoever wrote the owned rows has wrapped them around a periodic x (Grid::wrap_row).
-  PetscErrorCode update_wrapped(FieldBlock &block, int width);
+  PetscErrorCode update_wrapped(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both, but for what lies across a periodic x that is not split.
   PetscErrorCode update_rows(FieldBlock &block, int width);
 

@@ -40,21 +40,30 @@ struct Reflection {
   double sign, twice_wall;
 };
 
-void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width) {
+void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width,
+             const OccupiedRows *rows = nullptr) {
   const std::ptrdiff_t s = q.stride(d);
-  const int n = grid.layout().cells[d];
+  const int n = grid.layout().cells[d], last = high ? n - 1 : 0;  // before the wall
   const auto [begin, end] = Plane(grid.layout(), d);
   const std::ptrdiff_t step = high ? s : -s;                      // outward
   const std::ptrdiff_t wall = high ? n * s : staggered ? 0 : -s;  // first point on (staggered) or behind the wall
   const std::ptrdiff_t mirror = staggered ? 0 : -step;            // mirror image of that point
   for (int k = begin[2]; k < end[2]; ++k)
     for (int j = begin[1]; j < end[1]; ++j) {
+      if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
       double *row = q.row(j, k) + wall;
       const int first = staggered ? 1 : 0;
       for (int m = first; m < first + width; ++m)
         for (int i = begin[0]; i < end[0]; ++i)
           row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
     }
+}
+
+void reflect_evenly(const Grid &grid, const Staggering &staggering, View field, int width, const OccupiedRows *rows) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true})
+      if (high ? grid.touches_high(d) : grid.touches_low(d))
+        reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
 }  // namespace
@@ -89,16 +98,13 @@ void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time
 }
 
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (int side = 0; side < 2; ++side)
-      if (side ? grid.touches_high(d) : grid.touches_low(d))
-        reflect(grid, field, d, side, staggering[d], {1.0, 0.0}, width);
+  reflect_evenly(grid, staggering, field, width, nullptr);
 }
 
-void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width) {
+void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);
   const auto &components = tensor_components(grid.dimension());
-  for (int c = 0; c < tensor.count(); ++c) fill_wall_ghosts_even(grid, components[c].staggering(), tensor[c], width);
+  for (int c = 0; c < tensor.count(); ++c) reflect_evenly(grid, components[c].staggering(), tensor[c], width, rows);
 }
 
 }  // namespace eulastic

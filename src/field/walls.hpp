@@ -6,6 +6,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/occupied_rows.hpp"
 
 namespace eulastic {
 
@@ -44,7 +45,7 @@ const std::vector<TensorComponent> &tensor_components(int dimension);
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width);
 /// Even reflection of one field of the given staggering.
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width);
-/// All components of a left Cauchy-Green block.
-void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width);
+/// All components of a left Cauchy-Green block; not where `rows`, if it is given, is idle before the wall.
+void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows = nullptr);
 
 }  // namespace eulastic

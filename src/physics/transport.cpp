@@ -23,6 +23,7 @@ struct TransportTerms {
   EvolveRule rule{};
   bool second_of_heun = false;
   const ActiveSegments *stale = nullptr;
+  bool wraps = false;
 };
 
 template <int Dim>
@@ -56,6 +57,7 @@ EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, co
           const double moved = kernels::fma(dt, rate[i], now[i]);
           next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
         }
+        if (t.wraps) t.grid->wrap_row(next, ghosts);
       }
 }
 
@@ -125,6 +127,14 @@ struct Location {
     for (int d = 0; d < 3; ++d) at[d] = a != b && (d == a || d == b);
   }
   bool centre() const { return a == b; }
+  template <int Dim>
+  int first() const {  // of the components
+    return centre() ? 0 : position<Dim>(a, b);
+  }
+  template <int Dim>
+  int last() const {
+    return centre() ? Dim : first<Dim>() + 1;
+  }
 };
 
 // All components of one location at the points of a batch.
@@ -140,27 +150,49 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, 
     advance_component<Dim, SecondOfHeun>(t, phase, B, location.a, location.b, batch, carried, rate, out);
 }
 
-// The components of one location on rows of plane k, but for what is left in `batch`. Adds the points that evolve to
-// `evolved`.
+// What a location leaves for later: vectors not advanced yet, and rows (their offsets) whose ends are written, to be
+// wrapped around a periodic x once they are.
+struct Left {
+  kernels::Batch batch;
+  std::vector<std::ptrdiff_t> rows;
+};
+
+template <int Dim, bool SecondOfHeun>
+EULASTIC_INLINE void advance_left(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
+                                  const Location &location, const kernels::Batch &batch, Left &left, FieldBlock &out) {
+  advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out);
+  if (batch.size < kernels::Batch::width) return;  // the end of a row, of which the rest is left
+  for (const std::ptrdiff_t row : left.rows)
+    for (int f = location.first<Dim>(); f < location.last<Dim>(); ++f)
+      t.grid->wrap_row(out[f].origin + row, Grid::stencil_width);
+  left.rows.clear();
+}
+
+// The components of one location on rows of plane k, but for what is left. Adds the points that evolve to `evolved`.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out,
-                                  kernels::Batch &batch, std::ptrdiff_t &evolved) {
-  constexpr int reach = 3;  // of WENO5
+                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out, Left &left,
+                                  std::ptrdiff_t &evolved) {
+  constexpr int reach = Grid::stencil_width;
   const int a = location.a, b = location.b;
   const bool centre = location.centre();
   const bool(&at)[3] = location.at;
   const ConstView phi = phase.fraction[0];
   const int end = t.grid->points_end(0, at[0]);
-  const int first = centre ? 0 : position<Dim>(a, b), last = centre ? Dim : first + 1;
+  const int first = location.first<Dim>(), last = location.last<Dim>();
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
-  const auto advance = [&](const kernels::Batch &full)
-                           EULASTIC_BODY { advance_batch<Dim, SecondOfHeun>(t, phase, B, location, full, out); };
+  const auto advance = [&](const kernels::Batch &batch)
+                           EULASTIC_BODY { advance_left<Dim, SecondOfHeun>(t, phase, B, location, batch, left, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
-    int done = 0;
+    int done = 0, from = end, to = 0;  // done: so far; from, to: what is written
+    const auto write = [&](int begin, int stop) {
+      from = std::min(from, begin);
+      to = std::max(to, stop);
+    };
     const auto set_exterior = [&](int begin, int stop) {
+      if (begin < stop) write(begin, stop);
       for (int f = first; f < last; ++f) {
         double *next = out[f].row(j, k);
         for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
@@ -199,13 +231,15 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
         done = std::min(i + kernels::Batch::width, stop);
         if (evolves(row + i, done - i)) {
           evolved += done - i;
-          kernels::gather(batch, row, i, done, advance);
+          write(i, done);
+          kernels::gather(left.batch, row, i, done, advance);
         } else {
           set_exterior(i, done);
         }
       }
     }
     leave_to(end);
+    if (t.wraps && from < to && (from < reach || to > end - reach)) left.rows.push_back(row);
   }
 }
 
@@ -218,14 +252,15 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Phase &pha
                                        FieldBlock &out) {
   constexpr int block = kernels::block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
-  kernels::Batch batches[count];  // filled through all planes
+  Left left[count];  // filled through all planes
   Evolved sum;
   for (int j = 0; j < phase.solid.rows_y(); j += block)
     for (int k = 0; k < phase.solid.rows_z(); ++k)
       for (int l = 0; l < count; ++l)
-        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, j + block, k, out, batches[l],
+        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, j + block, k, out, left[l],
                                         l == 0 ? sum.centres : sum.edges);
-  for (int l = 0; l < count; ++l) advance_batch<Dim, SecondOfHeun>(t, phase, B, locations[l], batches[l], out);
+  for (int l = 0; l < count; ++l)
+    advance_left<Dim, SecondOfHeun>(t, phase, B, locations[l], left[l].batch, left[l], out);
   return sum;
 }
 
@@ -237,7 +272,9 @@ EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const Phase &phase, c
 }
 
 TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
-  return {&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}, {}, false};
+  TransportTerms terms{&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}};
+  terms.wraps = grid.wraps_x();
+  return terms;
 }
 
 }  // namespace
@@ -277,6 +314,7 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   terms.rule = stage.rule;
   terms.second_of_heun = stage.second_of_heun;
   terms.stale = stage.stale;
+  terms.wraps &= stage.wraps;
   const bool flat = grid.dimension() == 2;
   const Evolved points = (flat ? tensor_2d : tensor_3d)(terms, phase, tensor, next);
   const double advection = grid.dimension() * (kernels::weno5_flops + 5) + 2;

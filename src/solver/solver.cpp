@@ -253,13 +253,16 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   const OccupiedRows next_rows = std::exchange(next_rows_, phase.rows);
   // Ghosts need an exchange if they needed one in what is swapped in: that may be of another phase.
   const auto rows = [&] { return phase.rows.inside() && !next_rows.inside() ? nullptr : &phase.rows; };
+  const int ghosts = grid_->spec().ghosts;
   if (spec_.interface == InterfaceScheme::thinc) {
     PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
+    PetscCall(exchange_->update(phase.fraction, ghosts, rows()));  // it has moved less than a cell
   } else {
     PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
+    PetscCall(exchange_->update_wrapped(phase.fraction, ghosts, rows()));
   }
-  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts, rows()));  // it has moved less than a cell
+  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts);
   PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
@@ -283,7 +286,8 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     const ActiveSegments *stale = stale_.rows_y() > 0 ? &stale_ : nullptr;
-    PetscCall(transport_tensor(*grid_, {rule, dt, false, stale}, now_.velocity, phase, phase.tensor, next_tensor_));
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, stale, spec_.exterior == SolidExterior::identity},
+                               now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
@@ -298,6 +302,10 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
     PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
+  } else if (rows) {  // transport has wrapped what it wrote
+    PetscCall(exchange_->update_wrapped(tensor, Grid::stencil_width, rows));
+    fill_wall_ghosts_tensor(*grid_, tensor, Grid::stencil_width, rows);
+    PetscFunctionReturn(0);
   }
   PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, rows));
   PetscFunctionReturn(0);
@@ -310,9 +318,9 @@ PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width, const OccupiedRows *rows) {
+PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(field, width, rows));
+  PetscCall(exchange_->update(field, width));
   fill_wall_ghosts_even(*grid_, at_centre, field[0], width);
   PetscFunctionReturn(0);
 }
@@ -320,7 +328,7 @@ PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width, const 
 PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(tensor, width, rows));
-  fill_wall_ghosts_tensor(*grid_, tensor, width);
+  fill_wall_ghosts_tensor(*grid_, tensor, width, rows);
   PetscFunctionReturn(0);
 }
 

@@ -64,7 +64,7 @@ public:
 
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
-  PetscErrorCode update_centre_ghosts(FieldBlock &field, int width, const OccupiedRows *rows = nullptr);
+  PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows = nullptr);
   double speed_scale(double dt) const;
   EvolveRule evolve_rule(const Phase &phase) const;
