@@ -77,7 +77,8 @@ EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
 EULASTIC_CLONES void add_sums_2d(const SumTask &t, ExactSums &sums) { add_sums<2>(t, sums); }
 EULASTIC_CLONES void add_sums_3d(const SumTask &t, ExactSums &sums) { add_sums<3>(t, sums); }
 
-// d = sum c_i q_i - shift and increment += scale d, both in one ghost layer too; D -= sum c_i lap q_i, owned.
+// d = sum c_i q_i - shift and increment += scale d (= in the first), both in one ghost layer too; D -= sum c_i lap q_i,
+// owned.
 struct StepTask {
   const Grid *grid;
   const ConstView *q;
@@ -85,12 +86,12 @@ struct StepTask {
   const double *coefficient;
   InverseSquares h;
   double shift, scale;
-  bool last;  // leaves D and d alone
+  bool first, last;  // the last leaves D and d alone
   ConstView residual;
   View new_residual, new_direction, increment;
 };
 
-template <int Dim, int Directions>
+template <int Dim, int Directions, bool First>
 EULASTIC_INLINE void take_step(const StepTask &t) {
   const Int3 n = t.grid->owned();
   const int gz = Dim == 3 ? 1 : 0;
@@ -115,7 +116,7 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
         double d = -shift;
 #pragma GCC unroll 4
         for (int f = 0; f < Directions; ++f) d = kernels::fma(c[f], q[f][i], d);
-        increment[i] = kernels::fma(scale, d, increment[i]);
+        increment[i] = kernels::fma(scale, d, First ? 0 : increment[i]);
         return d;
       };
       if (t.last) {
@@ -145,7 +146,9 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
 
 template <int Dim>
 EULASTIC_INLINE void take_step(const StepTask &t) {
-  for_directions(t.count, [&](auto count) EULASTIC_BODY { take_step<Dim, count()>(t); });
+  for_directions(t.count, [&](auto count) EULASTIC_BODY {
+    t.first ? take_step<Dim, count(), true>(t) : take_step<Dim, count(), false>(t);
+  });
 }
 
 EULASTIC_CLONES void take_step_2d(const StepTask &t) { take_step<2>(t); }
@@ -173,8 +176,13 @@ PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange,
 }
 
 FieldBlock *AcmSweepSolver::memory() {
+  if (!memory_) return nullptr;
+  const std::size_t size = memory_.layout().size;
+  double *data = memory_.data();
+  std::rotate(data, data + newest_ * size, data + memory_.count() * size);
+  newest_ = 0;
   ghosts_of_memory_ = false;
-  return memory_ ? &memory_ : nullptr;
+  return &memory_;
 }
 
 std::size_t AcmSweepSolver::bytes() const {
@@ -192,12 +200,16 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   bool done = false;
-  PetscCall(start(divergence));
-  increment.fill(0, 0.0);
   if (memory_) {
+    if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
+    ghosts_of_memory_ = true;
     directions_.clear();
-    for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[f]);
-    PetscCall(sweep(false, dt, increment, &done));
+    for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[(newest_ + f) % memory_.count()]);
+    PetscCall(sweep({true, false, divergence, increment}, dt, &done));
+  } else {
+    for (const Segment &s : grid_->rows())
+      std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
+    PetscCall(update_ghosts(residual_, Multigrid::halo));
   }
   for (int s = 1; s <= options_.sweeps_max && !done; ++s) {
     if (multigrid_) {
@@ -207,44 +219,35 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     }
     directions_.assign(1, multigrid_ ? correction_[0] : residual_[0]);
     if (memory_ || s > 1) directions_.push_back(direction_[0]);
-    PetscCall(sweep(s == options_.sweeps_max, dt, increment, &done));
+    PetscCall(sweep({!memory_ && s == 1, s == options_.sweeps_max, residual_, increment}, dt, &done));
     ++sweeps_;
   }
   if (memory_) remember(increment);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::sweep(bool last, double dt, FieldBlock &increment, bool *done) {
+PetscErrorCode AcmSweepSolver::sweep(const Turn &turn, double dt, bool *done) {
   PetscFunctionBeginUser;
   SweepMinimum minimum;
   double mean;
-  PetscCall(find_minimum(&minimum, &mean));
+  PetscCall(find_minimum(turn.residual, &minimum, &mean));
   residual_rms_ = std::sqrt(minimum.square / grid_->cell_count());
-  *done = last || !(residual_rms_ > target_);  // NaN is done
+  *done = turn.last || !(residual_rms_ > target_);  // NaN is done
   const double count = static_cast<double>(directions_.size()), laplacian = 4 * grid_->dimension() + 1;
   PetscCall(PetscLogFlops(grid_->owned_count() * (count * (laplacian + 2) + 2 * sum_count(int(count)) + 2)));
-  step(*done, dt, minimum, mean, increment);
+  step(turn, *done, dt, minimum, mean);
   if (*done) PetscFunctionReturn(0);
   PetscCall(PetscLogFlops(grid_->owned_count() * count * (laplacian + 2)));
   PetscCall(update_ghosts(residual_, Multigrid::halo));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::start(const FieldBlock &divergence) {
-  PetscFunctionBeginUser;
-  for (const Segment &s : grid_->rows()) std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
-  PetscCall(update_ghosts(residual_, Multigrid::halo));
-  if (memory_ && !ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
-  ghosts_of_memory_ = true;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode AcmSweepSolver::find_minimum(SweepMinimum *minimum, double *mean) {
+PetscErrorCode AcmSweepSolver::find_minimum(const FieldBlock &residual, SweepMinimum *minimum, double *mean) {
   PetscFunctionBeginUser;
   const int count = static_cast<int>(directions_.size());
   ExactSums exact(sum_count(count));
   (grid_->dimension() == 2 ? add_sums_2d : add_sums_3d)(
-      {grid_, residual_[0], directions_.data(), count, grid_->inverse_squares()}, exact);
+      {grid_, residual[0], directions_.data(), count, grid_->inverse_squares()}, exact);
   double total[sum_count(most)];
   PetscCall(exact.reduce(grid_->comm(), total));
   SweepSums sums;
@@ -259,12 +262,13 @@ PetscErrorCode AcmSweepSolver::find_minimum(SweepMinimum *minimum, double *mean)
   PetscFunctionReturn(0);
 }
 
-void AcmSweepSolver::step(bool last, double dt, const SweepMinimum &minimum, double mean, FieldBlock &increment) {
+void AcmSweepSolver::step(const Turn &turn, bool last, double dt, const SweepMinimum &minimum, double mean) {
   // The stencils read D, when it is a direction itself, and d: the new ones go elsewhere.
   FieldBlock &new_residual = multigrid_ ? residual_ : correction_;
   (grid_->dimension() == 2 ? take_step_2d : take_step_3d)(
       {grid_, directions_.data(), static_cast<int>(directions_.size()), minimum.coefficient, grid_->inverse_squares(),
-       minimum.coefficient[0] * mean, 1 / dt, last, residual_[0], new_residual[0], scratch_[0], increment[0]});
+       minimum.coefficient[0] * mean, 1 / dt, turn.first, last, turn.residual[0], new_residual[0], scratch_[0],
+       turn.increment[0]});
   if (last) return;
   direction_.swap(scratch_);
   if (!multigrid_) residual_.swap(correction_);
@@ -272,8 +276,8 @@ void AcmSweepSolver::step(bool last, double dt, const SweepMinimum &minimum, dou
 
 void AcmSweepSolver::remember(const FieldBlock &increment) {
   const std::size_t size = memory_.layout().size;
-  std::memmove(memory_.data() + size, memory_.data(), sizeof(double) * size * (memory_.count() - 1));
-  std::memcpy(memory_.data(), increment.data(), sizeof(double) * size);
+  newest_ = (newest_ + memory_.count() - 1) % memory_.count();
+  std::memcpy(memory_.data() + newest_ * size, increment.data(), sizeof(double) * size);
 }
 
 }  // namespace eulastic

@@ -36,10 +36,15 @@ public:
 
 private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);
-  PetscErrorCode start(const FieldBlock &divergence);
-  PetscErrorCode sweep(bool last, double dt, FieldBlock &increment, bool *done);
-  PetscErrorCode find_minimum(SweepMinimum *minimum, double *mean);
-  void step(bool last, double dt, const SweepMinimum &minimum, double mean, FieldBlock &increment);
+  /// One of the sweeps of a solve: which, the D it starts from, and the increment so far.
+  struct Turn {
+    bool first, last;
+    const FieldBlock &residual;
+    FieldBlock &increment;
+  };
+  PetscErrorCode sweep(const Turn &turn, double dt, bool *done);
+  PetscErrorCode find_minimum(const FieldBlock &residual, SweepMinimum *minimum, double *mean);
+  void step(const Turn &turn, bool last, double dt, const SweepMinimum &minimum, double mean);
   void remember(const FieldBlock &increment);
 
   const Grid *grid_ = nullptr;
@@ -47,7 +52,8 @@ private:
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
   FieldBlock work_, residual_, correction_, direction_, scratch_;  ///< the first holds the others
-  FieldBlock memory_;                                              ///< the newest increment first
+  FieldBlock memory_;                                              ///< the newest increment is newest_
+  int newest_ = 0;                                                 ///< then those after it, around the block
   std::vector<ConstView> directions_;                              ///< of this sweep
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
