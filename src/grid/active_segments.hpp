@@ -3,6 +3,8 @@
 
 #include "grid/occupied_rows.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 /// Segments ordered by row. Rows cover the points of edge fields: one more than the cells at high walls; those of
@@ -34,6 +36,11 @@ public:
   /// Whether there is such a row, without segments.
   bool idle(int j, int k) const noexcept {
     return j >= begin_[1] && j < begin_[1] + rows_y_ && row(j, k).begin() == row(j, k).end();
+  }
+  /// Whether none of the rows j_begin <= j < j_end of plane k has segments; of those that there are.
+  bool idle_rows(int j_begin, int j_end, int k) const noexcept {
+    const int r = rows_y_ * (k - begin_[2]) - begin_[1];
+    return first_[r + j_begin] == first_[r + std::min(j_end, begin_[1] + rows_y_)];
   }
   const std::vector<Segment> &all() const noexcept { return segments_; }
   int rows_y() const noexcept { return rows_y_; }

@@ -69,6 +69,8 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
   std::vector<Span> along_y(rows * (n[2] + 2 * ghosts[2]), {0, 0});  // what is within reach in x and y
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
     for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
+      const bool owned = j >= 0 && j < n[1] && k >= 0 && k < n[2];
+      if (before.inside_ && !owned) continue;  // nothing has come so far
       const bool was_idle = before.idle(j, k);
       if (was_idle && !split_x) continue;
       const double *row = value.row(j, k);

@@ -16,7 +16,8 @@ public:
 
   /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
   PetscErrorCode find(const Grid &grid, ConstView value);
-  /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read.
+  /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read, ghost
+  /// rows neither if all was inside().
   PetscErrorCode follow(const Grid &grid, ConstView value);
 
   /// Outside it row (j, k) and all that stencils join to it are zero: as far as there are ghosts, one as edges belong

@@ -51,8 +51,10 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
           kernels::add_mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, force[a]);
       }
     };
+    const int j_end = std::min(j_begin + kernels::block_rows, grid.owned()[1]);
+    if (phase.stressed.idle_rows(j_begin, j_end, k)) continue;
     kernels::Batch batch;
-    for (int j = j_begin; j < std::min(j_begin + kernels::block_rows, grid.owned()[1]); ++j)
+    for (int j = j_begin; j < j_end; ++j)
       for (const Segment &s : phase.stressed.row(j, k)) {
         if (Dim == 3) {
           const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line

@@ -185,6 +185,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const auto advance = [&](const kernels::Batch &batch)
                            EULASTIC_BODY { advance_left<Dim, SecondOfHeun>(t, phase, B, location, batch, left, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
+  if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.solid.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
     int done = 0, from = end, to = 0;  // done: so far; from, to: what is written
     const auto write = [&](int begin, int stop) {

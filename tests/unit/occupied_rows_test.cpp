@@ -68,7 +68,16 @@ TEST(OccupiedRows, WhatIsFarFromEverythingIsNotReadAgain) {
   s.value[0](24, 20, 0) = 1;
   ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
   EXPECT_EQ(s.rows.cells(), 0);
-  s.value[0](24, -1, 0) = 1;  // from beyond
+  s.value[0](24, -1, 0) = 1;  // from beyond, where nothing was near
+  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  EXPECT_TRUE(s.rows.idle(0, 0));
+  s.value[0](24, 39, 0) = 1;
+  ASSERT_EQ(s.rows.find(s.grid, s.value[0]), 0);
+  EXPECT_FALSE(s.rows.inside());
+  s.value[0](24, -1, 0) = 0;
+  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  EXPECT_TRUE(s.rows.idle(0, 0));
+  s.value[0](24, -1, 0) = 1;  // from beyond, where something is near
   ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
   EXPECT_FALSE(s.rows.idle(0, 0));
 }

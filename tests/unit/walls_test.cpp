@@ -235,6 +235,37 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
   }
 }
 
+TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
+  for (int d = 0; d < 3; ++d) {
+    Grid grid;
+    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({24, 26, 28}, 1 << d)), 0);
+    FieldBlock phi(grid, 1), tensor(grid, 6);
+    Int3 body{12, 12, 12};
+    body[d] = 5;
+    phi[0](body[0], body[1], body[2]) = 1;
+    OccupiedRows rows;
+    ASSERT_EQ(rows.find(grid, phi[0]), 0);
+    for (const Segment &s : grid.rows())
+      for (int f = 0; f < 6; ++f)
+        for (int i = 0; i < s.i_end; ++i) tensor[f](i, s.j, s.k) = 1 + f;
+    fill_wall_ghosts_tensor(grid, tensor, 3, &rows);
+    const auto ghost = [&](int f, Int3 at, int index) {
+      at[d] = index;
+      return tensor[f](at[0], at[1], at[2]);
+    };
+    const int high = grid.cells()[d] + 1;  // behind the wall wherever a component sits
+    Int3 away = body;
+    away[(d + 1) % 3] = 22;
+    for (int f = 0; f < 6; ++f) {
+      EXPECT_EQ(ghost(f, body, -1), 1 + f) << d;
+      if (d == 0) continue;  // a row is one piece along x
+      EXPECT_EQ(ghost(f, body, high), 0) << d;
+      if (d == 2) continue;
+      EXPECT_EQ(ghost(f, away, -1), 0) << d;
+    }
+  }
+}
+
 TEST(WallMotion, OscillatesAsACosine) {
   const WallMotion motion{{3, 0, -4}, 2, .5};
   const Real3 now = motion.at(.25);
