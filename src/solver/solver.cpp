@@ -272,22 +272,26 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
-// `before` is where the B of the phase differed from I; what lies outside it stays I untouched. The first stage is read
-// no further than that of now: the rest of it may be anything.
+// `before` is where the B of the phase differed from I; what lies outside it stays I untouched. Where B is
+// extended the first stage is read no further than that of now: the rest of it may be anything. Else I is read around
+// it.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                    const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
+  const bool wraps = spec_.exterior == SolidExterior::identity;  // else once B is extended
   if (spec_.staggered()) {
+    const ActiveSegments *first = wraps ? nullptr : &phase.strained;
     PetscCall(
-        transport_tensor(*grid_, {rule, dt, false, &phase.strained}, now_.velocity, phase, phase.tensor, next_tensor_));
+        transport_tensor(*grid_, {rule, dt, false, first, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
-    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next_tensor_, phase.tensor));
+    PetscCall(
+        transport_tensor(*grid_, {rule, dt, true, &before, wraps}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     const ActiveSegments *stale = stale_.rows_y() > 0 ? &stale_ : nullptr;
-    PetscCall(transport_tensor(*grid_, {rule, dt, false, stale, spec_.exterior == SolidExterior::identity},
-                               now_.velocity, phase, phase.tensor, next_tensor_));
+    PetscCall(
+        transport_tensor(*grid_, {rule, dt, false, stale, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
