@@ -139,8 +139,7 @@ PetscErrorCode GhostExchange::update_wrapped(FieldBlock &block, int width, const
   PetscFunctionBeginUser;
   if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(begin(block, width));
-  PetscCall(end_rows(block, width, nullptr));
+  PetscCall(update_rows(block, width));
   const Int3 &n = block.layout().cells;
   wrap_rows(block, width, [&n](int j, int k) { return j >= 0 && j < n[1] && k >= 0 && k < n[2]; });
   PetscFunctionReturn(0);
