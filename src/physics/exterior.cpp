@@ -202,8 +202,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
             if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
             if (neighbours & high && leads_in(here, stride[d])) lines |= high;
           }
-          entries.push_back({static_cast<PetscInt>(here - mask), static_cast<unsigned char>(neighbours),
-                             static_cast<unsigned char>(lines)});
+          entries.emplace_back(here - mask, neighbours, lines);
         }
       }
   }

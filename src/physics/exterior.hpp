@@ -45,6 +45,11 @@ private:
     PetscInt offset;           ///< from the field's first double
     unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
     unsigned char lines;       ///< those of them with two points more behind: there linear extension is possible
+    /// Written in place: parts put on the stack and read in one would wait for the caches.
+    Entry(std::ptrdiff_t at, unsigned from, unsigned along) noexcept
+        : offset(static_cast<PetscInt>(at)),
+          neighbours(static_cast<unsigned char>(from)),
+          lines(static_cast<unsigned char>(along)) {}
   };
   struct Location {
     Staggering staggering{};

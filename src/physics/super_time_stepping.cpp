@@ -27,27 +27,19 @@ kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscos
           mu_tilde * dt * stage_time(j - 1, stages) * dt};
 }
 
-// The part of every row that any phase stresses, whole vectors where the row is long enough.
-std::vector<Segment> stressed_parts(const Grid &grid, const std::vector<Phase> &phases) {
-  std::vector<Segment> parts = grid.rows();
-  for (Segment &part : parts) {
-    const int cells = part.i_end;
-    int begin = cells, end = 0;
-    for (const Phase &phase : phases) {
-      const ActiveSegments::Range range = phase.stressed.row(part.j, part.k);
-      if (range.first == range.last) continue;
-      begin = std::min(begin, range.first->i_begin);
-      end = std::max(end, (range.last - 1)->i_end);
-    }
-    part.i_end = std::min((end + 7) / 8 * 8, cells);
-    part.i_begin = std::min(begin / 8 * 8, part.i_end);
+// Whether any phase stresses an owned row.
+std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phases) {
+  std::vector<char> stressed;
+  for (const Segment &row : grid.rows()) {
+    const auto stresses = [&](const Phase &phase) { return !phase.stressed.idle(row.j, row.k); };
+    stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
   }
-  return parts;
+  return stressed;
 }
 
 struct StageFields {
   const FieldBlock *rate, *slope;
-  const std::vector<Segment> *stressed;  // one part per owned row; elsewhere slope is 0. Null: no slope at all
+  const std::vector<char> *stressed;  // owned rows; in the others slope is 0. Null: no slope at all
   FieldBlock *now, *before;
 };
 
@@ -99,20 +91,11 @@ template <int Dim>
 EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const InverseSquares &h, const StageFields &f,
                                int a, ConstView w, View out, const Segment &row) {
   const ConstView m = (*f.rate)[a];
-  if (!f.stressed) {
-    kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
-    return;
-  }
-  const ConstView m1 = (*f.slope)[a];
   const bool owned = row.i_begin == 0 && row.i_end == n[0] && row.j >= 0 && row.j < n[1] && row.k >= 0 && row.k < n[2];
-  const Segment part = owned ? (*f.stressed)[row.j + std::size_t(n[1]) * row.k] : row;
-  if (part.size() == 0) {
+  if (!f.stressed || (owned && !(*f.stressed)[row.j + std::size_t(n[1]) * row.k]))
     kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
-    return;
-  }
-  kernels::rkl_stage<Dim, false>({row.i_begin, part.i_begin, row.j, row.k}, c, w, m, m, h, out);
-  kernels::rkl_stage<Dim, true>(part, c, w, m, m1, h, out);
-  kernels::rkl_stage<Dim, false>({part.i_end, row.i_end, row.j, row.k}, c, w, m, m, h, out);
+  else
+    kernels::rkl_stage<Dim, true>(row, c, w, m, (*f.slope)[a], h, out);
 }
 
 // What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind walls.
@@ -145,26 +128,37 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
     }
 }
 
-// Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way.
+// Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. In
+// 3-D they go through blocks of rows, in which every stage is a row behind the one before it too: what they have in
+// common stays in the second-level cache. The first asks for the next plane.
 template <int Dim>
 EULASTIC_INLINE void stages_in_one_pass(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
                                         const StageFields &f) {
   constexpr int last = Dim - 1;
   const Int3 n = grid.owned();
+  const int begin = Dim == 3 ? -sides.low(1, pass.depth - 1) : 0, end = Dim == 3 ? n[1] + pass.depth - 1 : 1;
   for (int a = 0; a < Dim; ++a)
-    for (int first = -sides.low(last, pass.depth - 1); first < n[last] + pass.depth - 1; ++first)
-      for (int s = 0; s < pass.depth; ++s) {
-        const int slice = first - s, layers = pass.depth - 1 - s;
-        if (slice < -sides.low(last, layers) || slice >= n[last] + sides.high(last, layers)) continue;
-        const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
-        const int j_begin = Dim == 3 ? -sides.low(1, layers) : slice;
-        const int j_end = Dim == 3 ? n[1] + sides.high(1, layers) : slice + 1;
-        for (int j = j_begin; j < j_end; ++j) {
-          const Segment row{-sides.low(0, layers), n[0] + sides.high(0, layers), j, Dim == 3 ? slice : 0};
-          surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
-          stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+    for (int block = begin; block < end; block += kernels::block_rows)
+      for (int first = -sides.low(last, pass.depth - 1); first < n[last] + pass.depth - 1; ++first)
+        for (int s = 0; s < pass.depth; ++s) {
+          const int slice = first - s, layers = pass.depth - 1 - s;
+          if (slice < -sides.low(last, layers) || slice >= n[last] + sides.high(last, layers)) continue;
+          const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
+          const int j_begin = Dim == 3 ? std::max(block - s, -sides.low(1, layers)) : slice;
+          const int j_end =
+              Dim == 3 ? std::min(block + kernels::block_rows - s, n[1] + sides.high(1, layers)) : slice + 1;
+          for (int j = j_begin; j < j_end; ++j) {
+            const Segment row{-sides.low(0, layers), n[0] + sides.high(0, layers), j, Dim == 3 ? slice : 0};
+            if (Dim == 3 && s == 0) {
+              kernels::prefetch(w.row(j, slice + 2), n[0]);
+              kernels::prefetch(out.row(j, slice + 1), n[0]);
+              kernels::prefetch((*f.rate)[a].row(j, slice + 1), n[0]);
+              if (f.stressed) kernels::prefetch((*f.slope)[a].row(j, slice + 1), n[0]);
+            }
+            surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
+            stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+          }
         }
-      }
 }
 
 EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
@@ -219,10 +213,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   const Sides sides(grid);
   const int depth = depth_of_passes(grid, sides);
   PetscCall(exchange.update_rows(work.rate, depth - 1));
-  std::vector<Segment> stressed;
+  std::vector<char> stressed;
   if (work.slope) {
     PetscCall(exchange.update_rows(work.slope, depth - 1));
-    stressed = stressed_parts(grid, phases);
+    stressed = stressed_rows(grid, phases);
   }
   const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
   Pass pass;
