@@ -10,13 +10,6 @@ constexpr int low_bits = 40;
 
 }  // namespace
 
-__int128 BodySums::fixed(double term) noexcept {
-  if (!(std::abs(term) <= 0x1p30)) term = 0x1p30;  // a run that has gone wrong: others say so, here nothing overflows
-  const double scaled = term * 0x1p48;
-  // Above 2^53 a double is an integer already.
-  return std::abs(scaled) < 0x1p53 ? static_cast<__int128>(std::llrint(scaled)) : static_cast<__int128>(scaled);
-}
-
 PetscErrorCode BodySums::reduce(MPI_Comm comm) {
   PetscFunctionBeginUser;
   std::vector<std::int64_t> words(2 * sums_.size());

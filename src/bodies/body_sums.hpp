@@ -3,6 +3,7 @@
 
 #include "field/field_block.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,7 +20,12 @@ public:
   double value(int body, int s) const noexcept;
 
 private:
-  static __int128 fixed(double term) noexcept;
+  static __int128 fixed(double term) noexcept {
+    if (!(std::abs(term) <= 0x1p30)) term = 0x1p30;  // a run that has gone wrong: others say so, here nothing overflows
+    const double scaled = term * 0x1p48;
+    // Above 2^53 a double is an integer already.
+    return std::abs(scaled) < 0x1p53 ? static_cast<__int128>(std::llrint(scaled)) : static_cast<__int128>(scaled);
+  }
 
   int per_body_;
   std::vector<__int128> sums_;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <vector>
 
 namespace eulastic {
 namespace {
@@ -24,62 +24,79 @@ struct Candidate {
   }
 };
 
-// The neighbour of local cell c whose label counts, label 0 if there is none. `from`, `to`: cells that exist.
-Candidate best_neighbour(const Int3 &c, const Int3 &from, const Int3 &to, ConstView phi, ConstView label) {
-  Candidate best;
-  for (int k = std::max(c[2] - 1, from[2]); k <= std::min(c[2] + 1, to[2]); ++k)
-    for (int j = std::max(c[1] - 1, from[1]); j <= std::min(c[1] + 1, to[1]); ++j)
-      for (int i = std::max(c[0] - 1, from[0]); i <= std::min(c[0] + 1, to[0]); ++i) {
-        const int steps = std::abs(i - c[0]) + std::abs(j - c[1]) + std::abs(k - c[2]);
-        const Candidate other{label(i, j, k), phi(i, j, k), steps == 1};
-        if (steps == 0 || other.label == 0) continue;
-        if (best.label == 0 || other.better_than(best)) best = other;
-      }
-  return best;
-}
+// A cell whose label is not known yet, and what its neighbours say of it.
+struct Open {
+  Int3 cell;
+  double label;
+};
 
-void spread_one_layer(const Grid &grid, ConstView phi, ConstView label, View next) {
+// Cells that exist, a layer of ghosts included.
+struct Reach {
   Int3 from{}, to{};
-  for (int d = 0; d < 3; ++d) {
-    const bool ghosts = grid.layout().ghosts[d] > 0;
-    from[d] = ghosts && !grid.touches_low(d) ? -1 : 0;
-    to[d] = grid.owned()[d] - (ghosts && !grid.touches_high(d) ? 0 : 1);
-  }
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      const double own = label(i, row.j, row.k);
-      next(i, row.j, row.k) = own;
-      if (own > 0 || phi(i, row.j, row.k) <= label_threshold) continue;
-      const Candidate best = best_neighbour({i, row.j, row.k}, from, to, phi, label);
-      if (best.label > 0 || own == 0) next(i, row.j, row.k) = best.label;
+
+  explicit Reach(const Grid &grid) {
+    for (int d = 0; d < 3; ++d) {
+      const bool ghosts = grid.layout().ghosts[d] > 0;
+      from[d] = ghosts && !grid.touches_low(d) ? -1 : 0;
+      to[d] = grid.owned()[d] - (ghosts && !grid.touches_high(d) ? 0 : 1);
     }
+  }
+};
+
+// The neighbour of local cell c whose label counts, label 0 if there is none. Named face neighbours come first.
+Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, ConstView label) {
+  Candidate best;
+  const auto consider = [&](int i, int j, int k, bool face) {
+    const double value = label(i, j, k);
+    if (value == 0) return;
+    const Candidate other{value, phi(i, j, k), face};
+    if (best.label == 0 || other.better_than(best)) best = other;
+  };
+  for (int d = 0; d < 3; ++d)
+    for (const int side : {-1, 1}) {
+      Int3 at = c;
+      at[d] += side;
+      if (at[d] >= reach.from[d] && at[d] <= reach.to[d]) consider(at[0], at[1], at[2], true);
+    }
+  if (best.label > 0) return best;
+  for (int k = std::max(c[2] - 1, reach.from[2]); k <= std::min(c[2] + 1, reach.to[2]); ++k)
+    for (int j = std::max(c[1] - 1, reach.from[1]); j <= std::min(c[1] + 1, reach.to[1]); ++j)
+      for (int i = std::max(c[0] - 1, reach.from[0]); i <= std::min(c[0] + 1, reach.to[0]); ++i)
+        if ((i != c[0]) + (j != c[1]) + (k != c[2]) > 1) consider(i, j, k, false);
+  return best;
 }
 
 }  // namespace
 
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, FieldBlock work, Phase *phase) {
-  static_assert(layers % 2 == 0, "the label ends in its own memory");
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   PetscCall(exchange.update(phase->fraction, 1));
-  const View phi = phase->fraction[0];
-  const auto for_each = [&](auto &&change) {
-    const View label = phase->label[0];
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) change(phi(i, row.j, row.k), label(i, row.j, row.k));
-  };
-  for_each([](double fraction, double &label) {
-    if (fraction <= label_threshold)
-      label = 0;
-    else if (fraction <= 0.5)
-      label = -label;
-  });
+  const ConstView phi = phase->fraction[0];
+  const View label = phase->label[0];
+  std::vector<Open> open;
+  for (const Segment &row : grid.rows()) {
+    const double *fraction = phi.row(row.j, row.k);
+    double *own = label.row(row.j, row.k);
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      if (fraction[i] <= label_threshold)
+        own[i] = 0;
+      else if (fraction[i] <= 0.5)
+        own[i] = -own[i];
+      if (fraction[i] > label_threshold && own[i] <= 0) open.push_back({{i, row.j, row.k}, own[i]});
+    }
+  }
+  const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1));
-    spread_one_layer(grid, phi, phase->label[0], work[0]);
-    phase->label.swap(work);
+    for (Open &o : open) {
+      const Candidate best = best_neighbour(o.cell, reach, phi, label);
+      if (best.label > 0 || o.label == 0) o.label = best.label;
+    }
+    for (const Open &o : open) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
+    open.erase(std::remove_if(open.begin(), open.end(), [](const Open &o) { return o.label > 0; }), open.end());
   }
-  for_each([](double, double &label) { label = std::abs(label); });
+  for (const Open &o : open) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
   PetscFunctionReturn(0);
 }
 

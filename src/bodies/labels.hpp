@@ -14,8 +14,7 @@ inline constexpr double label_threshold = 1e-12;  ///< a cell with less phi has 
 /// Updates phase->label on owned cells (and one ghost layer of fraction); to be called, on a schedule that is part of
 /// the run, before the interface has moved by more than half a cell since the last call. Layers taken anew: four. A
 /// cell takes the label of a face neighbour before that of an edge or corner neighbour, then of the one with the
-/// largest phi, then the smallest label; beyond four layers it keeps its own, if it has one. `work`: one field of any
-/// values.
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, FieldBlock work, Phase *phase);
+/// largest phi, then the smallest label; beyond four layers it keeps its own, if it has one.
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase);
 
 }  // namespace eulastic

@@ -48,16 +48,23 @@ void for_each_strain(const Grid &grid, const std::vector<Phase> &phases, int bod
   }
 }
 
-// Cells from the reference to the nearest image of a local cell.
+// References, those along periodic directions within the box: what offset() starts from.
+std::vector<Int3> within_box(const Grid &grid, std::vector<Int3> references) {
+  for (Int3 &cell : references)
+    for (int d = 0; d < grid.dimension(); ++d) {
+      const int n = grid.cells()[d];
+      if (!grid.is_wall(d)) cell[d] = (cell[d] % n + n) % n;
+    }
+  return references;
+}
+
+// Cells from a reference within the box to the nearest image of a local cell.
 Real3 offset(const Grid &grid, const Int3 &reference, const Int3 &cell) {
   Real3 x{};
   for (int d = 0; d < grid.dimension(); ++d) {
-    const int n = grid.cells()[d];
+    const int n = grid.cells()[d], half = n / 2;
     int distance = grid.layout().begin[d] + cell[d] - reference[d];
-    if (!grid.is_wall(d)) {
-      distance = (distance + n / 2) % n;
-      distance += (distance < 0 ? n : 0) - n / 2;
-    }
+    if (!grid.is_wall(d)) distance += distance < -half ? n : distance >= n - half ? -n : 0;
     x[d] = distance;
   }
   return x;
@@ -152,8 +159,9 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   BodySums sums(bodies(), position_sums);
+  const std::vector<Int3> references = within_box(grid, references_);
   for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
-    const Real3 x = offset(grid, references_[b], {i, j, k});
+    const Real3 x = offset(grid, references[b], {i, j, k});
     sums.add(b, 0, phi);
     for (int d = 0; d < grid.dimension(); ++d) sums.add(b, first_moment + d, phi * x[d]);
   });
@@ -188,8 +196,9 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       MPI_Allreduce(MPI_IN_PLACE, most.data(), static_cast<int>(most.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
   const Largest largest{most[0], most[1], {most.begin() + 2, most.end()}};
   BodySums sums(bodies(), all_sums);
+  const std::vector<Int3> references = within_box(grid, references_);
   for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
-    const Real3 x = offset(grid, references_[b], {i, j, k});
+    const Real3 x = offset(grid, references[b], {i, j, k});
     sums.add(b, 0, phi);
     for (int d = 0; d < dimension; ++d) {
       sums.add(b, first_moment + d, phi * x[d]);

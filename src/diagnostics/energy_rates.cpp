@@ -11,26 +11,70 @@ namespace {
 
 enum Sum { momentum_x, momentum_y, momentum_z, wall_power, elastic_power, extended_power, extended_energy, sums };
 
-struct Strides {
-  explicit Strides(ConstView view) : of{view.stride(0), view.stride(1), view.stride(2)} {}
-  std::ptrdiff_t of[3];
+// A row of a phase, and v along it.
+struct Row {
+  const double *phi, *B[6], *v[3] = {};
+  int begin, end;
+  std::ptrdiff_t stride[3];
+  kernels::MooneyRivlin law;
+
+  Row(const Phase &phase, const Segment &row)
+      : phi(phase.fraction[0].row(row.j, row.k)), begin(row.i_begin), end(row.i_end), law(law_of(phase.material)) {
+    for (int c = 0; c < 6; ++c) B[c] = phase.tensor[std::min(c, phase.tensor.count() - 1)].row(row.j, row.k);
+    for (int d = 0; d < 3; ++d) stride[d] = phase.fraction[0].stride(d);
+  }
 };
 
-// sigma_e : grad v of the cells of a row.
-template <int Dim>
-void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
-  const kernels::MooneyRivlin law = law_of(phase.material);
-  const ConstView phi = phase.fraction[0];
-  const Strides stride(phi);
-  const double inverse[3] = {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
-  for (int i = row.i_begin; i < row.i_end; ++i) {
-    out[i] = 0;
-    if (phi(i, row.j, row.k) == 0) continue;
-    const double *v[3] = {};
-    for (int d = 0; d < Dim; ++d) v[d] = &velocity[d](i, row.j, row.k);
-    const CellTensor B(phase.tensor, i, row.j, row.k);
-    out[i] = phi(i, row.j, row.k) * kernels::power_density<Dim>(B.component, v, stride.of, inverse, law);
+// out = phi density(i), 0 where there is no solid.
+template <class Density>
+EULASTIC_INLINE void times_fraction(const double *phi, int begin, int end, double *out, Density density) {
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    const double whole = density(i);
+    out[i] = phi[i] == 0 ? 0 : phi[i] * whole;
   }
+}
+
+template <int Dim, bool WithSecond>
+EULASTIC_INLINE void energy_row(const Row &row, double *out) {
+  times_fraction(row.phi, row.begin, row.end, out, [&row](int i) EULASTIC_BODY {
+    return kernels::energy_density<Dim, WithSecond>(row.B, i, row.stride, row.law);
+  });
+}
+
+EULASTIC_CLONES void energy_2d(const Row &row, double *out) {
+  row.law.k2 == 0 ? energy_row<2, false>(row, out) : energy_row<2, true>(row, out);
+}
+EULASTIC_CLONES void energy_3d(const Row &row, double *out) {
+  row.law.k2 == 0 ? energy_row<3, false>(row, out) : energy_row<3, true>(row, out);
+}
+
+// phi sigma_e : grad v, by vectors that hold any solid.
+template <int Dim>
+EULASTIC_INLINE void power_row(const Row &row, const double *inverse, double *out) {
+  constexpr int width = 8;
+  std::fill(out + row.begin, out + row.end, 0.0);
+  for (int begin = row.begin; begin < row.end; begin += width) {
+    const int end = std::min(begin + width, row.end);
+    bool any = false;
+#pragma omp simd reduction(| : any)
+    for (int i = begin; i < end; ++i) any |= row.phi[i] != 0;
+    if (!any) continue;
+    times_fraction(row.phi, begin, end, out, [&](int i) EULASTIC_BODY {
+      return kernels::power_density<Dim>(row.B, row.v, i, row.stride, inverse, row.law);
+    });
+  }
+}
+
+EULASTIC_CLONES void power_2d(const Row &row, const double *inverse, double *out) { power_row<2>(row, inverse, out); }
+EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out) { power_row<3>(row, inverse, out); }
+
+void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
+  Row at(phase, row);
+  for (int d = 0; d < grid.dimension(); ++d) at.v[d] = velocity[d].row(row.j, row.k);
+  const Real3 &h = grid.spacing();
+  const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
+  (grid.dimension() == 2 ? power_2d : power_3d)(at, inverse, out);
 }
 
 // Speed times traction of every tangential face beside a moving wall.
@@ -81,7 +125,7 @@ void add_elastic(const Grid &grid, const FieldBlock &velocity, const Phase &phas
   for (const Segment &row : grid.rows()) {
     const double *phi = phase.fraction[0].row(row.j, row.k);
     strain_energy(grid, phase, row, energy.data());
-    (grid.dimension() == 2 ? stress_power<2> : stress_power<3>)(grid, phase, velocity, row, power.data());
+    stress_power(grid, phase, velocity, row, power.data());
     sums->add_row(elastic_power, power.data(), n, first);
     for (int i = 0; i < n; ++i)
       if (phi[i] >= evolved) power[i] = energy[i] = 0;
@@ -93,15 +137,7 @@ void add_elastic(const Grid &grid, const FieldBlock &velocity, const Phase &phas
 }  // namespace
 
 void strain_energy(const Grid &grid, const Phase &phase, const Segment &row, double *out) {
-  const kernels::MooneyRivlin law = law_of(phase.material);
-  const ConstView phi = phase.fraction[0];
-  const Strides stride(phi);
-  for (int i = row.i_begin; i < row.i_end; ++i) {
-    const CellTensor B(phase.tensor, i, row.j, row.k);
-    const double density = grid.dimension() == 2 ? kernels::energy_density<2>(B.component, stride.of, law)
-                                                 : kernels::energy_density<3>(B.component, stride.of, law);
-    out[i] = phi(i, row.j, row.k) * density;
-  }
+  (grid.dimension() == 2 ? energy_2d : energy_3d)(Row(phase, row), out);
 }
 
 PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,

@@ -1,5 +1,7 @@
 #include "physics/limits.hpp"
 
+#include "kernels/isa.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,17 +21,32 @@ constexpr double pi = 3.14159265358979323846;
 double over(double a, double b) { return b > 0 ? a / b : infinite; }
 
 struct RowExtremes {
-  double largest = 0, bad = 0;
+  double largest = 0;
+  bool bad = false;  ///< there are infinities or NaN
 };
 
-RowExtremes row_extremes(const double *q, int begin, int end) {
-  RowExtremes r;
+// Of |value(i)|.
+template <class Value>
+EULASTIC_INLINE RowExtremes extremes_of(int begin, int end, Value value) {
+  double largest = 0;
+  bool bad = false;
+#pragma omp simd reduction(max : largest) reduction(| : bad)
   for (int i = begin; i < end; ++i) {
-    const double a = std::fabs(q[i]);
-    r.largest = a > r.largest ? a : r.largest;
-    r.bad += !(a <= std::numeric_limits<double>::max());
+    const double a = __builtin_fabs(value(i));
+    largest = a > largest ? a : largest;
+    bad |= !(a <= std::numeric_limits<double>::max());
   }
-  return r;
+  return {largest, bad};
+}
+
+EULASTIC_CLONES RowExtremes row_extremes(const double *q, int begin, int end) {
+  return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return q[i]; });
+}
+
+// Of tr B; 2-D: B_zz = 1, zz is null.
+EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, const double *zz, int begin, int end) {
+  if (!zz) return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + 1.0; });
+  return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + zz[i]; });
 }
 
 }  // namespace
@@ -78,13 +95,13 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
         return;
       }
   };
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j)
-      for (int d = 0; d < velocity.count(); ++d) {
+  for (int d = 0; d < velocity.count(); ++d)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
         const double *row = velocity[d].row(j, k);
         const RowExtremes r = row_extremes(row, 0, n[0]);
         largest[d] = std::max(largest[d], r.largest);
-        if (r.bad > 0) mark(row, 0, n[0], j, k);
+        if (r.bad) mark(row, 0, n[0], j, k);
       }
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const Phase &phase = phases[p];
@@ -92,19 +109,14 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
     for (const Segment &s : phase.solid.all()) {
       if (s.j >= n[1] || s.k >= n[2]) continue;
       const int end = std::min(s.i_end, n[0]);
-      const bool flat = grid.dimension() == 2;
-      const double *xx = phase.tensor[0].row(s.j, s.k), *yy = phase.tensor[1].row(s.j, s.k);
-      const double *zz = flat ? xx : phase.tensor[2].row(s.j, s.k);
-      double bad = 0;
-      for (int i = s.i_begin; i < end; ++i) {
-        const double trace = xx[i] + yy[i] + (flat ? 1.0 : zz[i]);
-        most = trace > most ? trace : most;
-        bad += !(std::fabs(trace) <= std::numeric_limits<double>::max());
-      }
-      if (bad > 0) {
+      const auto row = [&](int f) { return phase.tensor[f].row(s.j, s.k); };
+      const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
+      const RowExtremes r = trace_extremes(xx, yy, zz, s.i_begin, end);
+      most = std::max(most, r.largest);
+      if (r.bad) {
         mark(xx, s.i_begin, end, s.j, s.k);
         mark(yy, s.i_begin, end, s.j, s.k);
-        mark(zz, s.i_begin, end, s.j, s.k);
+        if (zz) mark(zz, s.i_begin, end, s.j, s.k);
       }
     }
     largest[4 + p] = most;

@@ -79,9 +79,7 @@ private:
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
-  /// Work space between the steps.
-  FieldBlock idle_field() { return (work_ ? work_ : velocity_star_).part(0, 1); }
-  FieldBlock idle_tensor(int components);
+  FieldBlock idle_tensor(int components);  ///< work space between the steps
 
   const Grid *grid_ = nullptr;
   SolverSpec spec_;

@@ -213,7 +213,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
     for (int d = 0; d < 3; ++d) centre[d] = wrap(start[d] + n * step[d], spec.length[d]);
     for (Scene *s : {&scene, &silent}) {
       s->move(sphere, {{centre, {}}});
-      ASSERT_EQ(carry_labels(s->grid, exchange, FieldBlock(s->grid, 1), &s->phases[0]), 0);
+      ASSERT_EQ(carry_labels(s->grid, exchange, &s->phases[0]), 0);
       ASSERT_EQ(s->tracker.follow(s->grid, s->phases), 0);
     }
     const BodyMeasure body = scene.measure()[0];
@@ -263,7 +263,7 @@ TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
       Phase fresh;
       ASSERT_EQ(fill_phase(scene.grid, sphere, places_at(n), 1, &fresh), 0);
       scene.move(sphere, places_at(n));
-      ASSERT_EQ(carry_labels(scene.grid, exchange, FieldBlock(scene.grid, 1), &scene.phases[0]), 0);
+      ASSERT_EQ(carry_labels(scene.grid, exchange, &scene.phases[0]), 0);
       const ConstView expected = std::as_const(fresh.label)[0], label = std::as_const(scene.phases[0].label)[0];
       int wrong = 0;
       for (const Segment &row : scene.grid.rows())
@@ -298,7 +298,7 @@ TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
       for (const Segment &row : scene->grid.rows())
         for (int i = row.i_begin; i < row.i_end; ++i)
           phase.fraction[0](i, row.j, row.k) = phi_of(first, global(i, row)) + phi_of(second, global(i, row));
-      ASSERT_EQ(carry_labels(scene->grid, exchange, FieldBlock(scene->grid, 1), &phase), 0);
+      ASSERT_EQ(carry_labels(scene->grid, exchange, &phase), 0);
       int wrong = 0;
       for (const Segment &row : scene->grid.rows())
         for (int i = row.i_begin; i < row.i_end; ++i) {
