@@ -3,8 +3,6 @@
 #include "base/events.hpp"
 #include "physics/row_scratch.hpp"
 
-#include <algorithm>
-
 namespace eulastic {
 namespace {
 
@@ -33,27 +31,48 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, doub
     }
 }
 
-// `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane, and one more.
+// `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane. x works its increments out by
+// itself: reading them across the vectors that were just written, it would wait for the caches.
 EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, double dt_over_density, double rotation,
                                              kernels::AcmIncrement formula, const FieldBlock &divergence,
                                              FieldBlock &velocity, FieldBlock &pressure, RowScratch &increments) {
   const Int3 n = grid.owned();
-  const int gz = grid.dimension() == 3 ? 1 : 0;
-  for (int k = -gz; k < n[2] + gz; ++k)
+  const Real3 &h = grid.spacing();
+  const bool flat = grid.dimension() == 2;
+  for (int k = flat ? 0 : -1; k < n[2] + (flat ? 0 : 1); ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       const double *D = divergence[0].row(j, k);
-      double *p = pressure[0].row(j, k), *dp = increments.row(n[1] + 2), *below = increments.row(j + 1);
+      double *p = pressure[0].row(j, k), *dp = increments.row(j + 1);
+      const auto increment_at = [=](int i) EULASTIC_BODY { return formula(D[i], p[i]); };
+      const auto move = [=](int i) EULASTIC_BODY {
+        const double increment = increment_at(i);
+        p[i] += kernels::fma(-rotation, D[i], increment);
+        return increment;
+      };
+      const bool owned = k >= 0 && k < n[2] && j >= 0 && j < n[1];
+      if (owned) {
+        double *u = velocity[0].row(j, k);
+        const double factor = dt_over_density / h[0];
 #pragma omp simd
-      for (int i = -1; i < n[0] + 1; ++i) {
-        dp[i] = formula(D[i], p[i]);
-        p[i] += kernels::fma(-rotation, D[i], dp[i]);
+        for (int i = 0; i < n[0]; ++i) u[i] = kernels::fma(-factor, increment_at(i) - increment_at(i - 1), u[i]);
+        if (grid.wraps_x()) grid.wrap_row(u, Grid::stencil_width);
       }
-      if (k >= 0 && k < n[2] && j >= 0 && j < n[1]) {
-        const double *neighbour[3] = {dp - 1, increments.row(j), below};
-        for (int a = 0; a < grid.dimension(); ++a)
-          correct_row(grid, dt_over_density / grid.spacing()[a], dp, neighbour[a], velocity[a].row(j, k));
+      for (const int i : {-1, n[0]}) dp[i] = move(i);
+      if (owned && !flat) {
+        double *w = velocity[2].row(j, k);
+        const double factor = dt_over_density / h[2];
+#pragma omp simd
+        for (int i = 0; i < n[0]; ++i) {
+          const double increment = move(i);
+          w[i] = kernels::fma(-factor, increment - dp[i], w[i]);
+          dp[i] = increment;
+        }
+        if (grid.wraps_x()) grid.wrap_row(w, Grid::stencil_width);
+      } else {
+#pragma omp simd
+        for (int i = 0; i < n[0]; ++i) dp[i] = move(i);
       }
-      std::copy(dp - 1, dp + n[0] + 1, below - 1);
+      if (owned) correct_row(grid, dt_over_density / h[1], dp, increments.row(j), velocity[1].row(j, k));
     }
 }
 
@@ -74,7 +93,7 @@ PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, dou
                                 FieldBlock &velocity, FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  RowScratch increments(grid, grid.owned()[1] + 3);
+  RowScratch increments(grid, grid.owned()[1] + 2);
   correct_rows_by_formula(grid, dt / density, rotation, increment, divergence, velocity, pressure, increments);
   scope.flops(grid.owned_count() * (3 * grid.dimension() + 3 + 6));
   PetscFunctionReturn(0);
