@@ -13,14 +13,18 @@ enum Sum { momentum_x, momentum_y, momentum_z, wall_power, elastic_power, extend
 
 // A row of a phase, and v along it.
 struct Row {
-  const double *phi, *B[6], *v[3] = {};
+  const double *phi, *v[3] = {};
+  CellTensor B;  // of its cell 0
   int begin, end;
   std::ptrdiff_t stride[3];
   kernels::MooneyRivlin law;
 
   Row(const Phase &phase, const Segment &row)
-      : phi(phase.fraction[0].row(row.j, row.k)), begin(row.i_begin), end(row.i_end), law(law_of(phase.material)) {
-    for (int c = 0; c < 6; ++c) B[c] = phase.tensor[std::min(c, phase.tensor.count() - 1)].row(row.j, row.k);
+      : phi(phase.fraction[0].row(row.j, row.k)),
+        B(phase.tensor, 0, row.j, row.k),
+        begin(row.i_begin),
+        end(row.i_end),
+        law(law_of(phase.material)) {
     for (int d = 0; d < 3; ++d) stride[d] = phase.fraction[0].stride(d);
   }
 };
@@ -38,7 +42,7 @@ EULASTIC_INLINE void times_fraction(const double *phi, int begin, int end, doubl
 template <int Dim, bool WithSecond>
 EULASTIC_INLINE void energy_row(const Row &row, double *out) {
   times_fraction(row.phi, row.begin, row.end, out, [&row](int i) EULASTIC_BODY {
-    return kernels::energy_density<Dim, WithSecond>(row.B, i, row.stride, row.law);
+    return kernels::energy_density<Dim, WithSecond>(row.B.component, i, row.stride, row.law);
   });
 }
 
@@ -61,7 +65,7 @@ EULASTIC_INLINE void power_row(const Row &row, const double *inverse, double *ou
     for (int i = begin; i < end; ++i) any |= row.phi[i] != 0;
     if (!any) continue;
     times_fraction(row.phi, begin, end, out, [&](int i) EULASTIC_BODY {
-      return kernels::power_density<Dim>(row.B, row.v, i, row.stride, inverse, row.law);
+      return kernels::power_density<Dim>(row.B.component, row.v, i, row.stride, inverse, row.law);
     });
   }
 }
