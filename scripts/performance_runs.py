@@ -36,10 +36,10 @@ def on_ranks(ranks, command):
     return [str(word) for word in ([*launcher, "-n", ranks] if ranks > 1 else []) + list(command)]
 
 
-def run_benchmarks(program, pattern, ranks=1, repetitions=5, more=()):
-    """({"peak": Gflop/s, "triad": GB/s} of all ranks, {benchmark: {counter: median of the repetitions}})."""
+def run_benchmarks(program, pattern, ranks=1, repetitions=5, more=(), threads=1):
+    """({"peak": Gflop/s, "triad": GB/s} of all cores, {benchmark: {counter: median of the repetitions}})."""
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
-        command = [program, f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
+        command = [program, f"--threads={threads}", f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
                    f"--benchmark_out={file.name}", "--benchmark_out_format=json", "--benchmark_color=false", *more]
         done = subprocess.run(on_ranks(ranks, command), stdout=sys.stderr, env=ENVIRONMENT)
         if done.returncode:

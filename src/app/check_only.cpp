@@ -148,14 +148,15 @@ private:
       const double stages = rkl_stages(viscous, 1);
       ns = 70 + 8 * stages + (phases > 0 ? 10 * stages : 0) + 250 * phases;
     }
-    const double seconds = 1e-9 * ns * n[0] * n[1] * n[2] * steps / ranks;
+    const int cores = ranks * config_.threads;
+    const double seconds = 1e-9 * ns * n[0] * n[1] * n[2] * steps / cores;
     const char *unit = "seconds";
     double time = seconds;
     if (seconds >= 100) time = seconds / 60, unit = "minutes";
     if (seconds >= 6000) time = seconds / 3600, unit = "hours";
     if (seconds >= 360000) time = seconds / 86400, unit = "days";
-    report.line("wall time (estimate)", "%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit, ranks,
-                ranks > 1 ? "s" : "", 1e-3 * ns);
+    report.line("wall time (estimate)", "%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit, cores,
+                cores > 1 ? "s" : "", 1e-3 * ns);
   }
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
 

@@ -77,6 +77,7 @@ struct Config {
   SampleControl samples;
   CheckpointControl checkpoint;
   GuardControl guard;
+  int threads = 1;  ///< per rank
   bool check_only = false;
 
   /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.

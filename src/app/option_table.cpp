@@ -24,6 +24,8 @@ void add_grid(Rows &rows, Config &config) {
   for (int d = 0; d < 3; ++d)
     rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
                   std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
+  rows.integers("threads", &config.threads, 1, {1, false, 1024},
+                "threads per rank, which share its planes of cells, in 2-D rows");
   rows.allow_change(processors);
 }
 

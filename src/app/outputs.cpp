@@ -259,6 +259,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];
   summary.cells = static_cast<long>(grid_->cell_count());
   summary.ranks = grid_->ranks();
+  summary.threads = config_.threads;
   summary.steps = static_cast<long>(state.step);
   summary.time = state.time;
   summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;

@@ -9,9 +9,12 @@
 #include "app/time_step_control.hpp"
 #include "base/events.hpp"
 #include "base/progress.hpp"
+#include "grid/threads.hpp"
 #include "io/fail_together.hpp"
 #include "io/run_directory.hpp"
 #include "io/text_file.hpp"
+
+#include <sched.h>
 
 namespace eulastic {
 namespace {
@@ -36,6 +39,17 @@ bool finished(const State &state, const TimeControl &time, std::string *reason) 
 
 void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", warning.c_str());
+}
+
+// Threads that would take turns: Open MPI binds a rank to one core unless told otherwise.
+std::string thread_warning(int threads) {
+  cpu_set_t allowed;
+  if (threads == 1 || sched_getaffinity(0, sizeof allowed, &allowed) != 0) return "";
+  const int processors = CPU_COUNT(&allowed);
+  if (processors >= threads) return "";
+  return "-threads " + std::to_string(threads) + ": this rank may use " + std::to_string(processors) +
+         " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
+         " gives a rank as many as it has threads";
 }
 
 // Of the scene at the start.
@@ -159,6 +173,8 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   catch_signals();
   PetscCall(check_sizes(PETSC_COMM_WORLD, config, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
+  set_threads(config.threads);
+  print_warning(PETSC_COMM_WORLD, thread_warning(config.threads));
   Grid grid;
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   RunDirectory directory;

@@ -10,6 +10,10 @@ constexpr int low_bits = 40;
 
 }  // namespace
 
+void BodySums::add(const BodySums &other) noexcept {
+  for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] += other.sums_[s];
+}
+
 PetscErrorCode BodySums::reduce(MPI_Comm comm) {
   PetscFunctionBeginUser;
   std::vector<std::int64_t> words(2 * sums_.size());

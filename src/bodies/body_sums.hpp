@@ -15,6 +15,8 @@ public:
   BodySums(int bodies, int per_body) : per_body_(per_body), sums_(std::size_t(bodies) * per_body) {}
 
   void add(int body, int s, double term) noexcept { sums_[std::size_t(body) * per_body_ + s] += fixed(term); }
+  /// Adds the sums of `other`, of as many.
+  void add(const BodySums &other) noexcept;
   /// Sums over all ranks with one Allreduce of two words per sum; for at most 2^23 ranks.
   PetscErrorCode reduce(MPI_Comm comm);
   double value(int body, int s) const noexcept;

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "field/walls.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,18 +26,20 @@ bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
 void add_body(const Grid &grid, const PlacedBody &body, double name, View fraction, View label) {
   const Int3 &first = grid.layout().begin;
   const auto owned = [&](int d) { return body.ranges(d, first[d], first[d] + grid.owned()[d]); };
+  const auto add_plane = [&](const PlacedBody::Range &x, const PlacedBody::Range &y, int shift, int k) {
+    for (int j = y.begin; j < y.end; ++j)
+      for (int i = x.begin; i < x.end; ++i) {
+        const double phi = body.fraction({i + x.shift, j + y.shift, k + shift});
+        const Int3 c{i - first[0], j - first[1], k - first[2]};
+        if (phi <= fraction(c[0], c[1], c[2])) continue;
+        fraction(c[0], c[1], c[2]) = phi;
+        label(c[0], c[1], c[2]) = name;
+      }
+  };
   for (const PlacedBody::Range &z : owned(2))
     for (const PlacedBody::Range &y : owned(1))
       for (const PlacedBody::Range &x : owned(0))
-        for (int k = z.begin; k < z.end; ++k)
-          for (int j = y.begin; j < y.end; ++j)
-            for (int i = x.begin; i < x.end; ++i) {
-              const double phi = body.fraction({i + x.shift, j + y.shift, k + z.shift});
-              const Int3 c{i - first[0], j - first[1], k - first[2]};
-              if (phi <= fraction(c[0], c[1], c[2])) continue;
-              fraction(c[0], c[1], c[2]) = phi;
-              label(c[0], c[1], c[2]) = name;
-            }
+        in_parallel(row_parts(grid), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
 }
 
 // Body b goes to *phase_of(b).

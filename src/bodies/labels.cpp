@@ -1,6 +1,7 @@
 #include "bodies/labels.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,16 +67,10 @@ Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, Const
   return best;
 }
 
-}  // namespace
-
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
-  PetscCall(exchange.update(phase->fraction, 1));
-  const ConstView phi = phase->fraction[0];
-  const View label = phase->label[0];
+// Labels of the cells of a part that keep theirs; those of emptied ones are dropped. Returns the others.
+std::vector<Open> open_cells(const Grid &grid, const RowPart &part, ConstView phi, View label) {
   std::vector<Open> open;
-  for (const Segment &row : grid.rows()) {
+  for (const Segment &row : part.rows(grid)) {
     const double *fraction = phi.row(row.j, row.k);
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -86,17 +81,36 @@ PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *ph
       if (fraction[i] > label_threshold && own[i] <= 0) open.push_back({{i, row.j, row.k}, own[i]});
     }
   }
+  return open;
+}
+
+}  // namespace
+
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  PetscCall(exchange.update(phase->fraction, 1));
+  const ConstView phi = phase->fraction[0];
+  const View label = phase->label[0];
+  std::vector<std::vector<Open>> open(row_parts(grid));
+  in_row_parts(grid, [&](const RowPart &part) { open[part.number] = open_cells(grid, part, phi, label); });
   const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1));
-    for (Open &o : open) {
-      const Candidate best = best_neighbour(o.cell, reach, phi, label);
-      if (best.label > 0 || o.label == 0) o.label = best.label;
-    }
-    for (const Open &o : open) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
-    open.erase(std::remove_if(open.begin(), open.end(), [](const Open &o) { return o.label > 0; }), open.end());
+    in_row_parts(grid, [&](const RowPart &part) {
+      for (Open &o : open[part.number]) {
+        const Candidate best = best_neighbour(o.cell, reach, phi, label);
+        if (best.label > 0 || o.label == 0) o.label = best.label;
+      }
+    });
+    in_row_parts(grid, [&](const RowPart &part) {
+      std::vector<Open> &own = open[part.number];
+      for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
+      own.erase(std::remove_if(own.begin(), own.end(), [](const Open &o) { return o.label > 0; }), own.end());
+    });
   }
-  for (const Open &o : open) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
+  for (const std::vector<Open> &own : open)
+    for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,12 @@ constexpr double degrees = 180 / 3.14159265358979323846;
 constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13;
 constexpr int all_sums = 14, position_sums = 4;
 
-// Calls visit(body index, phi, i, j, k) for every owned cell with a label.
+// Calls visit(body index, phi, i, j, k) for every cell of a part with a label.
 template <class Visit>
-void for_each_cell(const Grid &grid, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
+void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
   for (const Phase &phase : phases) {
     const ConstView fraction = phase.fraction[0], label = phase.label[0];
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : part.rows(grid))
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
         if (body >= 0 && body < bodies) visit(body, fraction(i, row.j, row.k), i, row.j, row.k);
@@ -27,15 +28,15 @@ void for_each_cell(const Grid &grid, const std::vector<Phase> &phases, int bodie
   }
 }
 
-// Calls visit(body index, phi W, tr B or 0 where phi < 1/2) for every owned cell with a label.
+// Calls visit(body index, phi W, tr B or 0 where phi < 1/2) for every cell of a part with a label.
 template <class Visit>
-void for_each_strain(const Grid &grid, const std::vector<Phase> &phases, int bodies, const RowEnergy &energy,
-                     Visit &&visit) {
+void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies,
+                     const RowEnergy &energy, Visit &&visit) {
   std::vector<double> density(grid.owned()[0]);
   for (const Phase &phase : phases) {
     const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor[0], yy = phase.tensor[1],
                     zz = phase.tensor[grid.dimension() == 3 ? 2 : 0];
-    for (const Segment &row : grid.rows()) {
+    for (const Segment &row : part.rows(grid)) {
       energy(grid, phase, row, density.data());
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
@@ -46,6 +47,18 @@ void for_each_strain(const Grid &grid, const std::vector<Phase> &phases, int bod
       }
     }
   }
+}
+
+// `per_body` sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
+template <class Add>
+PetscErrorCode sum_bodies(const Grid &grid, const Add &add, BodySums *sums) {
+  PetscFunctionBeginUser;
+  const int parts = row_parts(grid);
+  std::vector<BodySums> found(parts, *sums);
+  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), found[part]); });
+  for (const BodySums &some : found) sums->add(some);
+  PetscCall(sums->reduce(grid.comm()));
+  PetscFunctionReturn(0);
 }
 
 // References, those along periodic directions within the box: what offset() starts from.
@@ -160,12 +173,14 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
   VerbScope scope(Verb::bodies);
   BodySums sums(bodies(), position_sums);
   const std::vector<Int3> references = within_box(grid, references_);
-  for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
-    const Real3 x = offset(grid, references[b], {i, j, k});
-    sums.add(b, 0, phi);
-    for (int d = 0; d < grid.dimension(); ++d) sums.add(b, first_moment + d, phi * x[d]);
-  });
-  PetscCall(sums.reduce(grid.comm()));
+  const auto add = [&](const RowPart &part, BodySums &some) {
+    for_each_cell(grid, part, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+      const Real3 x = offset(grid, references[b], {i, j, k});
+      some.add(b, 0, phi);
+      for (int d = 0; d < grid.dimension(); ++d) some.add(b, first_moment + d, phi * x[d]);
+    });
+  };
+  PetscCall(sum_bodies(grid, add, &sums));
   for (int b = 0; b < bodies(); ++b)
     for (int d = 0; d < grid.dimension(); ++d) {
       const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
@@ -184,35 +199,44 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
     const double *face = &velocity[d](i, j, k);
     return (face[0] + face[velocity[d].stride(d)]) / 2;
   };
-  std::vector<double> most(2 + bodies(), 0.0);  // speed, energy density, tr B of every body
-  for_each_cell(grid, phases, bodies(), [&](int, double, int i, int j, int k) {
-    for (int d = 0; d < dimension; ++d) most[0] = std::max(most[0], std::abs(centred(d, i, j, k)));
+  // Speed, energy density, tr B of every body.
+  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2 + bodies(), 0.0));
+  in_row_parts(grid, [&](const RowPart &part) {
+    std::vector<double> &some = found[part.number];
+    for_each_cell(grid, part, phases, bodies(), [&](int, double, int i, int j, int k) {
+      for (int d = 0; d < dimension; ++d) some[0] = std::max(some[0], std::abs(centred(d, i, j, k)));
+    });
+    for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double trace) {
+      some[1] = std::max(some[1], std::abs(density));
+      some[2 + b] = std::max(some[2 + b], trace);
+    });
   });
-  for_each_strain(grid, phases, bodies(), energy, [&](int b, double density, double trace) {
-    most[1] = std::max(most[1], std::abs(density));
-    most[2 + b] = std::max(most[2 + b], trace);
-  });
+  std::vector<double> most = found[0];
+  for (const std::vector<double> &some : found)
+    for (std::size_t m = 0; m < some.size(); ++m) most[m] = std::max(most[m], some[m]);
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, most.data(), static_cast<int>(most.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
   const Largest largest{most[0], most[1], {most.begin() + 2, most.end()}};
   BodySums sums(bodies(), all_sums);
   const std::vector<Int3> references = within_box(grid, references_);
-  for_each_cell(grid, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
-    const Real3 x = offset(grid, references[b], {i, j, k});
-    sums.add(b, 0, phi);
-    for (int d = 0; d < dimension; ++d) {
-      sums.add(b, first_moment + d, phi * x[d]);
-      sums.add(b, second_moment + d, phi * x[d] * x[d]);
-      if (largest.speed > 0) sums.add(b, momentum + d, phi * (centred(d, i, j, k) / largest.speed));
-    }
-    sums.add(b, second_moment + 3, phi * x[1] * x[2]);
-    sums.add(b, second_moment + 4, phi * x[0] * x[2]);
-    sums.add(b, second_moment + 5, phi * x[0] * x[1]);
-  });
-  for_each_strain(grid, phases, bodies(), energy, [&](int b, double density, double) {
-    if (largest.energy > 0) sums.add(b, strain, density / largest.energy);
-  });
-  PetscCall(sums.reduce(grid.comm()));
+  const auto add = [&](const RowPart &part, BodySums &some) {
+    for_each_cell(grid, part, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+      const Real3 x = offset(grid, references[b], {i, j, k});
+      some.add(b, 0, phi);
+      for (int d = 0; d < dimension; ++d) {
+        some.add(b, first_moment + d, phi * x[d]);
+        some.add(b, second_moment + d, phi * x[d] * x[d]);
+        if (largest.speed > 0) some.add(b, momentum + d, phi * (centred(d, i, j, k) / largest.speed));
+      }
+      some.add(b, second_moment + 3, phi * x[1] * x[2]);
+      some.add(b, second_moment + 4, phi * x[0] * x[2]);
+      some.add(b, second_moment + 5, phi * x[0] * x[1]);
+    });
+    for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double) {
+      if (largest.energy > 0) some.add(b, strain, density / largest.energy);
+    });
+  };
+  PetscCall(sum_bodies(grid, add, &sums));
   result->clear();
   for (int b = 0; b < bodies(); ++b) {
     result->push_back(evaluate(grid, sums, b, references_[b], largest));

@@ -122,11 +122,12 @@ private:
   double viscosity_;
 };
 
-void add_elastic(const Grid &grid, const FieldBlock &velocity, const Phase &phase, double evolved, ExactSums *sums) {
+void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase, double evolved,
+                 ExactSums *sums) {
   if (!phase.material.elastic()) return;
   const int n = grid.owned()[0], first = grid.layout().begin[0];
   std::vector<double> power(n), energy(n);
-  for (const Segment &row : grid.rows()) {
+  for (const Segment &row : part.rows(grid)) {
     const double *phi = phase.fraction[0].row(row.j, row.k);
     strain_energy(grid, phase, row, energy.data());
     stress_power(grid, phase, velocity, row, power.data());
@@ -148,19 +149,21 @@ PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity
                                     const EnergyNumbers &numbers, EnergyRates *rates) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
-  ExactSums all(sums);
-  const int n = grid.owned()[0], first = grid.layout().begin[0];
-  for (int c = 0; c < grid.dimension(); ++c)
-    if (numbers.force[c] != 0)
-      for (const Segment &row : grid.rows()) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
-  const WallPower walls(grid, velocity, phases, numbers.viscosity);
-  for (int d = 0; numbers.walls && d < grid.dimension(); ++d)
-    for (const bool high : {false, true})
-      if (high ? grid.touches_high(d) : grid.touches_low(d))
-        walls.add(d, high, numbers.walls->motion[d][high].at(numbers.time), &all);
-  for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(grid, velocity, phases[p], numbers.evolved[p], &all);
+  const auto add = [&](const RowPart &part, ExactSums &all) {
+    const int n = grid.owned()[0], first = grid.layout().begin[0];
+    for (int c = 0; c < grid.dimension(); ++c)
+      if (numbers.force[c] != 0)
+        for (const Segment &row : part.rows(grid)) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      add_elastic(grid, part, velocity, phases[p], numbers.evolved[p], &all);
+    const WallPower walls(grid, velocity, phases, numbers.viscosity);
+    for (int d = 0; part.first && numbers.walls && d < grid.dimension(); ++d)
+      for (const bool high : {false, true})
+        if (high ? grid.touches_high(d) : grid.touches_low(d))
+          walls.add(d, high, numbers.walls->motion[d][high].at(numbers.time), &all);
+  };
   double sum[sums];
-  PetscCall(all.reduce(grid.comm(), sum));
+  PetscCall(sum_row_parts(grid, sums, add, sum));
   const double volume = grid.cell_volume();
   rates->force_power = 0;
   for (int c = 0; c < 3; ++c) rates->force_power += numbers.density * numbers.force[c] * sum[momentum_x + c] * volume;

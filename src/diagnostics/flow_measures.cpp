@@ -112,33 +112,39 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
   const int dimension = grid.dimension(), n = grid.owned()[0], first = grid.layout().begin[0];
-  ExactSums sums(first_of_phases + 2 * static_cast<int>(phases.size()));
-  double maximum[maxima] = {};
-  RowMeasures measure(grid, velocity);
-  std::vector<double> energy(n);
-  for (const Segment &row : grid.rows()) {
-    for (int c = 0; c < dimension; ++c) {
-      const double *q = velocity[c].row(row.j, row.k);
-      sums.add_row(momentum_x + c, q, n, first);
-      maximum[c] = largest(q, n, maximum[c]);
+  std::vector<std::array<double, maxima>> found(row_parts(grid));
+  const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
+    std::array<double, maxima> most{};
+    RowMeasures measure(grid, velocity);
+    std::vector<double> energy(n);
+    for (const Segment &row : part.rows(grid)) {
+      for (int c = 0; c < dimension; ++c) {
+        const double *q = velocity[c].row(row.j, row.k);
+        sums.add_row(momentum_x + c, q, n, first);
+        most[c] = largest(q, n, most[c]);
+      }
+      sums.add_row(speed_squared, measure.squared_speed(row), n, first);
+      most[max_speed_squared] = largest(measure.squared_speed_at_centre(row), n, most[max_speed_squared]);
+      const double *divergence = measure.divergence(row);
+      most[max_divergence] = largest(divergence, n, most[max_divergence]);
+      sums.add_row(divergence_squared, measure.squared(divergence), n, first);
+      sums.add_row(gradient_squared, measure.squared_gradient(row), n, first);
+      for (std::size_t p = 0; p < phases.size(); ++p) {
+        const double *phi = phases[p].fraction[0].row(row.j, row.k);
+        strain_energy(grid, phases[p], row, energy.data());
+        sums.add_row(first_of_phases + 2 * static_cast<int>(p), phi, n, first);
+        sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
+      }
     }
-    sums.add_row(speed_squared, measure.squared_speed(row), n, first);
-    maximum[max_speed_squared] = largest(measure.squared_speed_at_centre(row), n, maximum[max_speed_squared]);
-    const double *divergence = measure.divergence(row);
-    maximum[max_divergence] = largest(divergence, n, maximum[max_divergence]);
-    sums.add_row(divergence_squared, measure.squared(divergence), n, first);
-    sums.add_row(gradient_squared, measure.squared_gradient(row), n, first);
-    for (std::size_t p = 0; p < phases.size(); ++p) {
-      const double *phi = phases[p].fraction[0].row(row.j, row.k);
-      strain_energy(grid, phases[p], row, energy.data());
-      sums.add_row(first_of_phases + 2 * static_cast<int>(p), phi, n, first);
-      sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
-    }
-  }
+    found[part.number] = most;
+  };
   scope.flops(grid.owned_count() * (dimension * (10 + 4 * dimension) + phases.size() * (2 * dimension + 3)));
   std::vector<double> sum(first_of_phases + 2 * phases.size());
-  PetscCall(sums.reduce(grid.comm(), sum.data()));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maximum, maxima, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add, sum.data()));
+  std::array<double, maxima> maximum{};
+  for (const auto &some : found)
+    for (int m = 0; m < maxima; ++m) maximum[m] = std::max(maximum[m], some[m]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maximum.data(), maxima, MPI_DOUBLE, MPI_MAX, grid.comm()));
 
   FlowMeasures &m = *measures;
   const double volume = grid.cell_volume(), cells = grid.cell_count();

@@ -80,6 +80,10 @@ void Superaccumulator::add(const double *values, int n) noexcept {
   }
 }
 
+void Superaccumulator::add(const Superaccumulator &other) noexcept {
+  for (int w = 0; w < words; ++w) word_[w] += other.word_[w];
+}
+
 double Superaccumulator::value() const noexcept {
   if (word_[limbs] != 0) return std::numeric_limits<double>::quiet_NaN();
   std::array<std::int64_t, limbs + 1> digit{};
@@ -133,6 +137,13 @@ void ExactSums::add_row(int s, const double *values, int n, std::int64_t first) 
     const int length = std::min<int>(n - i, block - static_cast<int>((first + i) % block));
     add(s, lane_sum(values + i, length, first + i));
     i += length;
+  }
+}
+
+void ExactSums::add(ExactSums &other) noexcept {
+  for (std::size_t s = 0; s < sums_.size(); ++s) {
+    other.flush(static_cast<int>(s));
+    sums_[s].add(other.sums_[s]);
   }
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,8 @@ public:
   /// alike.
   static constexpr int several = 64;
   void add(const double *values, int n) noexcept;
+  /// Adds what the other one has.
+  void add(const Superaccumulator &other) noexcept;
   /// The correctly rounded sum of everything added, NaN if any term was not finite.
   double value() const noexcept;
 
@@ -50,6 +53,8 @@ public:
   /// Adds values[0..n), a piece of a row that starts at absolute x index `first`. Pieces of one block on one rank
   /// must be added together (a whole block or all of the row) for the same bits.
   void add_row(int s, const double *values, int n, std::int64_t first) noexcept;
+  /// Adds the sums of `other`, of as many.
+  void add(ExactSums &other) noexcept;
   /// Sums over all ranks with one Allreduce, returns `count` doubles and starts again from zero.
   PetscErrorCode reduce(MPI_Comm comm, double *result);
 
@@ -63,6 +68,18 @@ private:
   std::vector<Superaccumulator> sums_;
   std::vector<Waiting> waiting_;
 };
+
+/// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
+template <class Add>
+PetscErrorCode sum_row_parts(const Grid &grid, int count, const Add &add, double *result) {
+  PetscFunctionBeginUser;
+  const int parts = row_parts(grid);
+  std::vector<ExactSums> sums(parts, ExactSums(count));
+  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), sums[part]); });
+  for (int part = 1; part < parts; ++part) sums[0].add(sums[part]);
+  PetscCall(sums[0].reduce(grid.comm(), result));
+  PetscFunctionReturn(0);
+}
 
 /// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks
 /// (MPI_SUM on uint64). `salt` tells fields apart.

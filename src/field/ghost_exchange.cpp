@@ -1,6 +1,7 @@
 #include "field/ghost_exchange.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 
@@ -116,15 +117,19 @@ void GhostExchange::wrap_rows(FieldBlock &block, int width, Skip skip) const {
     return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
   };
   const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
-  for (int f = 0; f < block.count(); ++f)
-    for (int k = k_begin; k < k_end; ++k)
-      for (int j = j_begin; j < j_end; ++j) {
-        if (skip(j, k)) continue;
-        double *row = block[f].row(j, k);
-        const double *later = row + ahead * own.sy;
-        for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
-        grid_->wrap_row(row, width);
-      }
+  const int parts = row_parts(*grid_);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece planes(k_end - k_begin, part, parts);
+    for (int f = 0; f < block.count(); ++f)
+      for (int k = k_begin + int(planes.begin); k < k_begin + int(planes.end); ++k)
+        for (int j = j_begin; j < j_end; ++j) {
+          if (skip(j, k)) continue;
+          double *row = block[f].row(j, k);
+          const double *later = row + ahead * own.sy;
+          for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
+          grid_->wrap_row(row, width);
+        }
+  });
 }
 
 PetscErrorCode GhostExchange::end(FieldBlock &block, int width, const OccupiedRows *rows) {

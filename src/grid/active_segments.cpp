@@ -1,5 +1,7 @@
 #include "grid/active_segments.hpp"
 
+#include "grid/threads.hpp"
+
 #include <algorithm>
 #include <cstring>
 
@@ -7,6 +9,14 @@ namespace eulastic {
 namespace {
 
 constexpr int vector_length = 8;
+
+// to |= from, bytes; where they are the same, the later ones are read before they are written.
+void join(std::size_t n, const unsigned char *from, unsigned char *to) {
+  for (std::size_t i = 0; i < n; ++i) to[i] |= from[i];
+}
+void compare(std::size_t n, unsigned char wanted, unsigned char *flags) {
+  for (std::size_t i = 0; i < n; ++i) flags[i] = flags[i] == wanted;
+}
 
 }  // namespace
 
@@ -34,25 +44,48 @@ void ActiveSegments::build_all(const Grid &grid) {
     }
 }
 
-// Runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last points of a
-// run that ends within a vector would be done one by one.
-void ActiveSegments::append_row(const unsigned char *marked, int j, int k) {
+// Adds the runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last
+// points of a run that ends within a vector would be done one by one.
+void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const {
 #ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
-  segments_.push_back({begin_[0], begin_[0] + points_x_, j, k});
-  first_.push_back(static_cast<int>(segments_.size()));
+  segments->push_back({begin_[0], begin_[0] + points_x_, j, k});
   return;
 #endif
-  const std::size_t row_begin = segments_.size();
+  const std::size_t row_begin = segments->size();
   for (int i = 0; marked && i < points_x_; i += vector_length) {
     const int count = std::min(vector_length, points_x_ - i);
     if (std::memchr(marked + i, 1, count) == nullptr) continue;
     const int begin = begin_[0] + i, end = begin + count;
-    if (segments_.size() > row_begin && segments_.back().i_end == begin)
-      segments_.back().i_end = end;
+    if (segments->size() > row_begin && segments->back().i_end == begin)
+      segments->back().i_end = end;
     else
-      segments_.push_back({begin, end, j, k});
+      segments->push_back({begin, end, j, k});
   }
-  first_.push_back(static_cast<int>(segments_.size()));
+}
+
+// append(j, k, scratch row, segments) adds those of one row, counted from 0; here all rows, planes in parallel.
+template <class Append>
+void ActiveSegments::append_rows(int parts, const Append &append) {
+  struct Found {
+    std::vector<Segment> segments;
+    std::vector<int> ends;  // of every row
+  };
+  std::vector<Found> found(parts);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece planes(rows_z_, part, parts);
+    Found &own = found[part];
+    std::vector<unsigned char> scratch(points_x_);
+    for (int k = static_cast<int>(planes.begin); k < static_cast<int>(planes.end); ++k)
+      for (int j = 0; j < rows_y_; ++j) {
+        append(j, k, scratch.data(), &own.segments);
+        own.ends.push_back(static_cast<int>(own.segments.size()));
+      }
+  });
+  for (const Found &own : found) {
+    const int before = static_cast<int>(segments_.size());
+    for (const int end : own.ends) first_.push_back(before + end);
+    segments_.insert(segments_.end(), own.segments.begin(), own.segments.end());
+  }
 }
 
 // Points where the flags of all centres within reach together give `wanted`, which idle rows alone do not. Reach by
@@ -61,17 +94,11 @@ template <class Flag>
 void ActiveSegments::build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted,
                                 int low, int high) {
   const bool flat = grid.dimension() == 2, skip = flag(0.0) != wanted;
-  const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low;
+  const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low, parts = row_parts(grid);
   const std::size_t width = points_x_, plane = width * rows_y_;
-  std::vector<unsigned char> flags(width + reach), marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
+  std::vector<unsigned char> marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
   mask_.resize(plane * (rows_z_ + reach_z));  // what is within reach along x and y, on the rows that are `marked`
-  const auto touch = [&](int row, int k) {
-    unsigned char *mask = mask_.data() + k * plane + row * width, &known = marked[k * std::size_t(rows_y_) + row];
-    if (!known) std::fill_n(mask, width, 0);
-    known = 1;
-    return mask;
-  };
-  for (int k = 0; k < rows_z_ + reach_z; ++k)
+  const auto mark_plane = [&](int k, std::vector<unsigned char> &flags) {
     for (int j = 0; j < rows_y_ + reach; ++j) {
       const int from_j = begin_[1] + j - low, from_k = begin_[2] + k - low_z;
       if (skip && rows.idle(from_j, from_k)) continue;
@@ -86,27 +113,33 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, const Occupie
       if (any == 0) continue;
       for (int done = 1, step; done <= reach; done += step) {  // of reach + 1 flags
         step = std::min(done, reach + 1 - done);
-        for (std::size_t i = 0; i + step < flags.size(); ++i) flags[i] |= flags[i + step];
+        join(flags.size() - step, flags.data() + step, flags.data());
       }
       for (int row = std::max(0, j - reach); row <= std::min(j, rows_y_ - 1); ++row) {
-        unsigned char *mask = touch(row, k);
-        for (std::size_t i = 0; i < width; ++i) mask[i] |= flags[i];
+        unsigned char *mask = mask_.data() + k * plane + row * width, &known = marked[k * std::size_t(rows_y_) + row];
+        if (!known) std::fill_n(mask, width, 0);
+        known = 1;
+        join(width, flags.data(), mask);
       }
     }
-  for (int k = 0; k < rows_z_; ++k)
-    for (int j = 0; j < rows_y_; ++j) {
-      for (int d = 1; d <= reach_z; ++d) {
-        if (!marked[(k + d) * std::size_t(rows_y_) + j]) continue;
-        unsigned char *mask = touch(j, k);
-        for (std::size_t i = 0; i < width; ++i) mask[i] |= mask[i + d * plane];
-      }
-      unsigned char *mask = nullptr;
-      if (marked[k * std::size_t(rows_y_) + j]) {
-        mask = touch(j, k);
-        for (std::size_t i = 0; i < width; ++i) mask[i] = mask[i] == wanted;
-      }
-      append_row(mask, begin_[1] + j, begin_[2] + k);
+  };
+  in_parallel(parts, parts, [&](int part) {
+    const Piece planes(rows_z_ + reach_z, part, parts);
+    std::vector<unsigned char> flags(width + reach);
+    for (std::size_t k = planes.begin; k < planes.end; ++k) mark_plane(static_cast<int>(k), flags);
+  });
+  append_rows(parts, [&](int j, int k, unsigned char *sum, std::vector<Segment> *segments) {
+    bool any = false;
+    for (int d = 0; d <= reach_z; ++d) {
+      if (!marked[(k + d) * std::size_t(rows_y_) + j]) continue;
+      if (!any) std::fill_n(sum, width, 0);
+      any = true;
+      const unsigned char *mask = mask_.data() + (k + d) * plane + j * width;
+      join(width, mask, sum);
     }
+    if (any) compare(width, static_cast<unsigned char>(wanted), sum);
+    append_row(any ? sum : nullptr, begin_[1] + j, begin_[2] + k, segments);
+  });
 }
 
 void ActiveSegments::build(const Grid &grid, ConstView value, const OccupiedRows &rows, double threshold, int low,
@@ -124,25 +157,23 @@ void ActiveSegments::build_band(const Grid &grid, ConstView value, const Occupie
       grid, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
 }
 
-void ActiveSegments::build_faces(const ActiveSegments &cells) {
+void ActiveSegments::build_faces(const Grid &grid, const ActiveSegments &cells) {
   const Int3 begin = cells.begin_;
   start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
-  mask_.resize(points_x_);
-  for (int k = begin[2]; k < begin[2] + rows_z_; ++k)
-    for (int j = begin[1]; j < begin[1] + rows_y_; ++j) {
-      std::fill(mask_.begin(), mask_.end(), 0);
-      const auto paint = [&](int row_j, int row_k) {
-        for (const Segment &s : cells.row(row_j, row_k))
-          std::fill_n(mask_.begin() + (s.i_begin - begin[0]), std::min(s.size() + 1, begin[0] + points_x_ - s.i_begin),
-                      1);
-      };
-      paint(j, k);
-      if (j > begin[1]) paint(j - 1, k);
-      if (k > begin[2]) paint(j, k - 1);
-      append_row(mask_.data(), j, k);
-      for (std::size_t s = first_[first_.size() - 2]; s < segments_.size(); ++s)  // one face more than cells, not eight
-        while (!mask_[segments_[s].i_end - 1 - begin[0]]) --segments_[s].i_end;
-    }
+  append_rows(row_parts(grid), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
+    std::fill_n(mask, points_x_, 0);
+    const auto paint = [&](int row_j, int row_k) {
+      for (const Segment &s : cells.row(begin[1] + row_j, begin[2] + row_k))
+        std::fill_n(mask + (s.i_begin - begin[0]), std::min(s.size() + 1, begin[0] + points_x_ - s.i_begin), 1);
+    };
+    paint(j, k);
+    if (j > 0) paint(j - 1, k);
+    if (k > 0) paint(j, k - 1);
+    const std::size_t first = segments->size();
+    append_row(mask, begin[1] + j, begin[2] + k, segments);
+    for (std::size_t s = first; s < segments->size(); ++s)  // one face more than cells, not eight
+      while (!mask[(*segments)[s].i_end - 1 - begin[0]]) --(*segments)[s].i_end;
+  });
 }
 
 }  // namespace eulastic

@@ -25,7 +25,7 @@ public:
   /// and some more. `value` needs margin + 1 ghosts.
   void build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin);
   /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
-  void build_faces(const ActiveSegments &cells);
+  void build_faces(const Grid &grid, const ActiveSegments &cells);
   /// Everything.
   void build_all(const Grid &grid);
 
@@ -53,7 +53,9 @@ private:
   template <class Flag>
   void build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low,
                   int high);
-  void append_row(const unsigned char *marked, int j, int k);
+  void append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const;
+  template <class Append>
+  void append_rows(int parts, const Append &append);
 
   Int3 begin_{};  ///< first point
   int rows_y_ = 0, rows_z_ = 0, points_x_ = 0;

@@ -1,5 +1,7 @@
 #include "grid/occupied_rows.hpp"
 
+#include "grid/threads.hpp"
+
 #include <algorithm>
 
 namespace eulastic {
@@ -67,7 +69,7 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
   const std::size_t rows = n[1];
   spans_.assign(rows * n[2], {0, 0});
   std::vector<Span> along_y(rows * (n[2] + 2 * ghosts[2]), {0, 0});  // what is within reach in x and y
-  for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
+  const auto read_plane = [&](int k) {
     for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
       const bool owned = j >= 0 && j < n[1] && k >= 0 && k < n[2];
       if (before.inside_ && !owned) continue;  // nothing has come so far
@@ -85,6 +87,12 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
       for (int y = std::max(j - reach, 0); y < std::min(j + reach + 1, n[1]); ++y)
         join(found, &along_y[y + rows * (k + ghosts[2])]);
     }
+  };
+  const int planes = n[2] + 2 * ghosts[2], parts = row_parts(grid);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece own(planes, part, parts);
+    for (std::size_t k = own.begin; k < own.end; ++k) read_plane(int(k) - ghosts[2]);
+  });
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
     for (int z = std::max(k - reach_z, 0); z < std::min(k + reach_z + 1, n[2]); ++z)
       for (int y = 0; y < n[1]; ++y) join(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * z]);

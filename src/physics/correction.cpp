@@ -1,7 +1,8 @@
 #include "physics/correction.hpp"
 
 #include "base/events.hpp"
-#include "physics/row_scratch.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
 
 namespace eulastic {
 namespace {
@@ -13,14 +14,13 @@ EULASTIC_INLINE void correct_row(const Grid &grid, double factor, const double *
   if (grid.wraps_x()) grid.wrap_row(v, Grid::stencil_width);
 }
 
-EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, double rotation,
+EULASTIC_CLONES void correct_rows(const Grid &grid, const RowPart &part, double dt_over_density, double rotation,
                                   const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
                                   FieldBlock &pressure) {
   const Int3 n = grid.owned();
-  const int gz = grid.dimension() == 3 ? 1 : 0;
   const ConstView q = increment[0];
-  for (int k = -gz; k < n[2] + gz; ++k)
-    for (int j = -1; j < n[1] + 1; ++j) {
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       double *p = pressure[0].row(j, k);
       const double *dp = q.row(j, k), *D = divergence[0].row(j, k);
 #pragma omp simd
@@ -31,16 +31,32 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, double dt_over_density, doub
     }
 }
 
+// The increments below a part that is not the first, before p changes.
+EULASTIC_CLONES void find_increments_below(const Grid &grid, const RowPart &part, kernels::AcmIncrement formula,
+                                           const FieldBlock &divergence, const FieldBlock &pressure,
+                                           RowScratch &increments) {
+  const int n = grid.owned()[0];
+  const bool flat = grid.dimension() == 2;
+  for (int j = flat ? part.j_begin - 1 : part.j_begin; j < (flat ? part.j_begin : part.j_end); ++j) {
+    const int k = flat ? 0 : part.k_begin - 1;
+    const double *D = divergence[0].row(j, k), *p = pressure[0].row(j, k);
+    double *dp = increments.row(j + 1);
+#pragma omp simd
+    for (int i = 0; i < n; ++i) dp[i] = formula(D[i], p[i]);
+  }
+}
+
 // `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane. x works its increments out by
 // itself: reading them across the vectors that were just written, it would wait for the caches.
-EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, double dt_over_density, double rotation,
-                                             kernels::AcmIncrement formula, const FieldBlock &divergence,
-                                             FieldBlock &velocity, FieldBlock &pressure, RowScratch &increments) {
+EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, const RowPart &part, double dt_over_density,
+                                             double rotation, kernels::AcmIncrement formula,
+                                             const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure,
+                                             RowScratch &increments) {
   const Int3 n = grid.owned();
   const Real3 &h = grid.spacing();
   const bool flat = grid.dimension() == 2;
-  for (int k = flat ? 0 : -1; k < n[2] + (flat ? 0 : 1); ++k)
-    for (int j = -1; j < n[1] + 1; ++j) {
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *D = divergence[0].row(j, k);
       double *p = pressure[0].row(j, k), *dp = increments.row(j + 1);
       const auto increment_at = [=](int i) EULASTIC_BODY { return formula(D[i], p[i]); };
@@ -83,7 +99,9 @@ PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, dou
                                 FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  correct_rows(grid, dt / density, rotation, increment, divergence, velocity, pressure);
+  in_row_parts(grid, [&](const RowPart &part) {
+    correct_rows(grid, part.with_ghosts(grid), dt / density, rotation, increment, divergence, velocity, pressure);
+  });
   scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
   PetscFunctionReturn(0);
 }
@@ -93,8 +111,18 @@ PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, dou
                                 FieldBlock &velocity, FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  RowScratch increments(grid, grid.owned()[1] + 2);
-  correct_rows_by_formula(grid, dt / density, rotation, increment, divergence, velocity, pressure, increments);
+  const int parts = row_parts(grid);
+  std::vector<RowScratch> increments;
+  for (int part = 0; part < parts; ++part) increments.emplace_back(grid, grid.owned()[1] + 2);
+  in_parallel(parts, parts, [&](int p) {
+    const RowPart part = row_part(grid, p, parts).with_ghosts(grid);
+    if (!part.first) find_increments_below(grid, part, increment, divergence, pressure, increments[p]);
+  });
+  in_parallel(parts, parts, [&](int p) {
+    const RowPart part = row_part(grid, p, parts).with_ghosts(grid);
+    correct_rows_by_formula(grid, part, dt / density, rotation, increment, divergence, velocity, pressure,
+                            increments[p]);
+  });
   scope.flops(grid.owned_count() * (3 * grid.dimension() + 3 + 6));
   PetscFunctionReturn(0);
 }

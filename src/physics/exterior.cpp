@@ -1,11 +1,13 @@
 #include "physics/exterior.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace eulastic {
 namespace {
@@ -66,6 +68,12 @@ EULASTIC_CLONES unsigned find_layer(int n, const unsigned char *row, std::ptrdif
   return any;
 }
 
+// The first point from i on that is found, or n.
+int next_found(const unsigned char *found, int i, int n) {
+  const void *at = std::memchr(found + i, 1, n - i);
+  return at ? static_cast<int>(static_cast<const unsigned char *>(at) - found) : n;
+}
+
 // Whether all edges around the centre phi[0] evolve.
 bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimension, double least) {
   for (int a = 0; a < dimension; ++a)
@@ -87,14 +95,13 @@ double extended(const double *b, std::ptrdiff_t step, bool linear) {
 // Components on the same points, `size` doubles apart: the mean over the neighbours that count. Returns the flops: of
 // n values one each, seven more of a line.
 template <int Fields, class Entries>
-double extend_fields(const Entries &entries, int dimension, const std::ptrdiff_t *stride, std::ptrdiff_t size,
-                     double *B) {
+double extend_fields(const Entries &entries, Piece piece, int dimension, const std::ptrdiff_t *stride,
+                     std::ptrdiff_t size, double *B) {
   std::int64_t flops = 0;
   const std::ptrdiff_t slice = stride[dimension - 1];
-  const std::size_t points = entries.size();
-  for (std::size_t n = 0; n < points; ++n) {
+  for (std::size_t n = piece.begin; n < piece.end; ++n) {
     const auto &entry = entries[n];
-    const double *later = B + entries[std::min(n + 32, points - 1)].offset;
+    const double *later = B + entries[std::min(n + 32, piece.end - 1)].offset;
     for (int f = 0; f < Fields; ++f)  // not foreseen by processors
       for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
     double *b = B + entry.offset;
@@ -136,18 +143,20 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
       }
   }
   linear_ = phase.material.linear;
-  mask_.resize(static_cast<std::size_t>(grid.layout().size));
-  for (Location &location : locations_) build_location(grid, phase, &location);
+  const int team = row_parts(grid);
+  masks_.resize(team);
+  in_parallel(team, static_cast<int>(locations_.size()),
+              [&](int l) { build_location(grid, phase, &masks_[l % team], &locations_[l]); });
   PetscFunctionReturn(0);
 }
 
-void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Location *location) {
+void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *layer_of, Location *location) const {
   const ConstView fraction = phase.fraction[0];
   const EvolveRule &rule = evolve_rule_of(phase.material);
   const Layout &layout = grid.layout();
   const Staggering &at = location->staggering;
-  std::fill(mask_.begin(), mask_.end(), outside);
-  unsigned char *mask = mask_.data();
+  layer_of->assign(static_cast<std::size_t>(layout.size), outside);
+  unsigned char *mask = layer_of->data();
   std::ptrdiff_t step[2] = {0, 0};
   int steps = 0;
   const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
@@ -188,8 +197,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
         if (n <= 0) continue;
         unsigned char *row = mask + layout.offset(begin, j, k);
         if (find_layer(n, row, stride[1], stride[2], static_cast<unsigned char>(L), found.data()) == 0) continue;
-        for (int i = 0; i < n; ++i) {
-          if (!found[i]) continue;
+        for (int i = next_found(found.data(), 0, n); i < n; i = next_found(found.data(), i + 1, n)) {
           unsigned char *here = row + i;
           *here = static_cast<unsigned char>(L);
           if (linear_ && !owned.contains({begin + i, j, k})) continue;
@@ -208,20 +216,33 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Locati
   }
 }
 
+// Part `part` of what a layer holds. Returns the flops.
+double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int layer, int part, int parts,
+                                    double *B) const {
+  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+  double flops = 0;
+  for (const Location &location : locations_) {  // the diagonals, which share their points, then the others
+    const std::vector<Entry> &entries = location.layer[layer - 1];
+    const Piece piece(entries.size(), part, parts);
+    const int fields = &location == &locations_[0] ? dimension : 1;
+    if (fields == 1) flops += extend_fields<1>(entries, piece, dimension, stride, layout.size, B);
+    if (fields == 2) flops += extend_fields<2>(entries, piece, dimension, stride, layout.size, B);
+    if (fields == 3) flops += extend_fields<3>(entries, piece, dimension, stride, layout.size, B);
+    B += fields * layout.size;
+  }
+  return flops;
+}
+
 PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
-  const Layout &layout = grid.layout();
-  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
-  const int dimension = grid.dimension();
+  const int parts = row_parts(grid);
+  std::vector<double> flops(parts);
   for (int L = 1; L <= layers; ++L) {
-    double *B = tensor.data();  // the diagonals, which share their points, then the others
-    const auto diagonals = dimension == 3 ? extend_fields<3, std::vector<Entry>> : extend_fields<2, std::vector<Entry>>;
-    double flops = diagonals(locations_[0].layer[L - 1], dimension, stride, layout.size, B);
-    B += dimension * layout.size;
-    for (std::size_t n = 1; n < locations_.size(); ++n, B += layout.size)
-      flops += extend_fields<1>(locations_[n].layer[L - 1], dimension, stride, layout.size, B);
-    scope.flops(flops);
+    in_parallel(parts, parts, [&](int part) {
+      flops[part] = extend_layer(grid.dimension(), grid.layout(), L, part, parts, tensor.data());
+    });
+    for (const double some : flops) scope.flops(some);
     if (linear_ && L < layers) PetscCall(exchange.update(tensor, 3));
   }
   PetscFunctionReturn(0);

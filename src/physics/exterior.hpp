@@ -55,11 +55,13 @@ private:
     Staggering staggering{};
     std::array<std::vector<Entry>, layers> layer;
   };
-  void build_location(const Grid &grid, const Phase &phase, Location *location);
+  using Mask = std::vector<unsigned char>;
+  void build_location(const Grid &grid, const Phase &phase, Mask *layer_of, Location *location) const;
+  double extend_layer(int dimension, const Layout &layout, int layer, int part, int parts, double *B) const;
 
   bool linear_ = false;
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
-  std::vector<unsigned char> mask_;
+  std::vector<Mask> masks_;  ///< one per thread
 };
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 #include "physics/interface.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/thinc.hpp"
 
 #include <algorithm>
@@ -42,21 +43,33 @@ std::vector<Segment> inside(const ActiveSegments &active, const Box &box) {
 }
 
 template <int Dim>
-EULASTIC_INLINE void sweep_band(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
-  const std::ptrdiff_t step = t.stride[0];
-  for (const Segment &s : inside(cells, t.cells.grown(t.direction, 1, 1)))
-    kernels::interface_slope<Dim>(s, t.phi, t.stride, t.slope.row(s.j, s.k));
-  for (const Segment &s : inside(faces, t.cells.grown(t.direction, 0, 1)))
-    kernels::interface_flux(s, t.phi, t.slope, t.velocity, step, t.rate, t.flux.row(s.j, s.k));
-  for (const Segment &s : inside(cells, t.cells))
-    kernels::apply_flux(s, t.flux, t.velocity, t.solid, step, t.rate, t.phi.row(s.j, s.k));
+EULASTIC_INLINE void find_slopes(const Sweep &t, const Segment *begin, const Segment *end) {
+  for (const Segment *s = begin; s < end; ++s)
+    kernels::interface_slope<Dim>(*s, t.phi, t.stride, t.slope.row(s->j, s->k));
 }
 
-EULASTIC_CLONES void sweep_2d(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
-  sweep_band<2>(t, cells, faces);
+EULASTIC_CLONES void slopes_2d(const Sweep &t, const Segment *begin, const Segment *end) {
+  find_slopes<2>(t, begin, end);
 }
-EULASTIC_CLONES void sweep_3d(const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
-  sweep_band<3>(t, cells, faces);
+EULASTIC_CLONES void slopes_3d(const Sweep &t, const Segment *begin, const Segment *end) {
+  find_slopes<3>(t, begin, end);
+}
+EULASTIC_CLONES void find_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+  for (const Segment *s = begin; s < end; ++s)
+    kernels::interface_flux(*s, t.phi, t.slope, t.velocity, t.stride[0], t.rate, t.flux.row(s->j, s->k));
+}
+EULASTIC_CLONES void apply_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+  for (const Segment *s = begin; s < end; ++s)
+    kernels::apply_flux(*s, t.flux, t.velocity, t.solid, t.stride[0], t.rate, t.phi.row(s->j, s->k));
+}
+
+void sweep_band(const Grid &grid, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+  const auto pass = [&](auto kernel, const ActiveSegments &active, const Box &box) {
+    in_parts_of(inside(active, box), grid, [&](const Segment *begin, const Segment *end) { kernel(t, begin, end); });
+  };
+  pass(grid.dimension() == 2 ? slopes_2d : slopes_3d, cells, t.cells.grown(t.direction, 1, 1));
+  pass(find_fluxes, faces, t.cells.grown(t.direction, 0, 1));
+  pass(apply_fluxes, cells, t.cells);
 }
 
 // phi of the cell behind each wall is that of the cell before it; also behind the wall of a neighbour.
@@ -115,17 +128,16 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const View phi = fraction[0], solid = work_[2];
   reflect_at_walls(*grid_, phi);
   cells_.build_band(*grid_, phi, rows, dimension);
-  faces_.build_faces(cells_);
-  for (const Segment &s : cells_.all())
-    for (int i = s.i_begin; i < s.i_end; ++i) solid(i, s.j, s.k) = phi(i, s.j, s.k) > 0.5;
+  faces_.build_faces(*grid_, cells_);
+  in_parts_of(cells_.all(), *grid_, [&](const Segment *begin, const Segment *end) {
+    for (const Segment *s = begin; s < end; ++s)
+      for (int i = s->i_begin; i < s->i_end; ++i) solid(i, s->j, s->k) = phi(i, s->j, s->k) > 0.5;
+  });
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
     Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, work_[0], work_[1], solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
-    if (dimension == 2)
-      sweep_2d(sweep, cells_, faces_);
-    else
-      sweep_3d(sweep, cells_, faces_);
+    sweep_band(*grid_, sweep, cells_, faces_);
     reflect_at_walls(*grid_, phi);
   }
   const double slope_flops = dimension == 2 ? kernels::interface_slope_flops_2d : kernels::interface_slope_flops_3d;

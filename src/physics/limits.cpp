@@ -1,5 +1,6 @@
 #include "physics/limits.hpp"
 
+#include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
 #include <algorithm>
@@ -49,6 +50,53 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
   return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + zz[i]; });
 }
 
+// Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
+std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, const FieldBlock &velocity,
+                                     const std::vector<Phase> &phases) {
+  const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
+  const RowPart rows = row_part(grid, part, parts);
+  std::vector<double> largest(4 + phases.size());
+  largest[3] = -infinite;
+  const auto mark = [&](const double *row, int i0, int i1, int j, int k) {
+    for (int i = i0; i < i1; ++i)
+      if (!std::isfinite(row[i])) {
+        const double cell = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
+        largest[3] = std::max(largest[3], -cell);
+        return;
+      }
+  };
+  for (int d = 0; d < velocity.count(); ++d)
+    for (int k = rows.k_begin; k < rows.k_end; ++k)
+      for (int j = rows.j_begin; j < rows.j_end; ++j) {
+        const double *row = velocity[d].row(j, k);
+        const RowExtremes r = row_extremes(row, 0, n[0]);
+        largest[d] = std::max(largest[d], r.largest);
+        if (r.bad) mark(row, 0, n[0], j, k);
+      }
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    const Phase &phase = phases[p];
+    const std::vector<Segment> &solid = phase.solid.all();
+    const Piece piece(solid.size(), part, parts);
+    double most = 3;
+    for (std::size_t at = piece.begin; at < piece.end; ++at) {
+      const Segment &s = solid[at];
+      if (s.j >= n[1] || s.k >= n[2]) continue;
+      const int end = std::min(s.i_end, n[0]);
+      const auto row = [&](int f) { return phase.tensor[f].row(s.j, s.k); };
+      const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
+      const RowExtremes r = trace_extremes(xx, yy, zz, s.i_begin, end);
+      most = std::max(most, r.largest);
+      if (r.bad) {
+        mark(xx, s.i_begin, end, s.j, s.k);
+        mark(yy, s.i_begin, end, s.j, s.k);
+        if (zz) mark(zz, s.i_begin, end, s.j, s.k);
+      }
+    }
+    largest[4 + p] = most;
+  }
+  return largest;
+}
+
 }  // namespace
 
 double FlowExtremes::max_speed() const { return std::max({speed[0], speed[1], speed[2]}); }
@@ -84,43 +132,12 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
-  std::vector<double> largest(4 + phases.size());  // speeds, - first bad cell, traces: all by maximum
-  largest[3] = -infinite;
-  const auto mark = [&](const double *row, int i0, int i1, int j, int k) {
-    for (int i = i0; i < i1; ++i)
-      if (!std::isfinite(row[i])) {
-        const double cell = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
-        largest[3] = std::max(largest[3], -cell);
-        return;
-      }
-  };
-  for (int d = 0; d < velocity.count(); ++d)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const double *row = velocity[d].row(j, k);
-        const RowExtremes r = row_extremes(row, 0, n[0]);
-        largest[d] = std::max(largest[d], r.largest);
-        if (r.bad) mark(row, 0, n[0], j, k);
-      }
-  for (std::size_t p = 0; p < phases.size(); ++p) {
-    const Phase &phase = phases[p];
-    double most = 3;
-    for (const Segment &s : phase.solid.all()) {
-      if (s.j >= n[1] || s.k >= n[2]) continue;
-      const int end = std::min(s.i_end, n[0]);
-      const auto row = [&](int f) { return phase.tensor[f].row(s.j, s.k); };
-      const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
-      const RowExtremes r = trace_extremes(xx, yy, zz, s.i_begin, end);
-      most = std::max(most, r.largest);
-      if (r.bad) {
-        mark(xx, s.i_begin, end, s.j, s.k);
-        mark(yy, s.i_begin, end, s.j, s.k);
-        if (zz) mark(zz, s.i_begin, end, s.j, s.k);
-      }
-    }
-    largest[4 + p] = most;
-  }
+  const int parts = row_parts(grid);
+  std::vector<std::vector<double>> found(parts);
+  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases); });
+  std::vector<double> largest = found[0];
+  for (const std::vector<double> &some : found)
+    for (std::size_t n = 0; n < some.size(); ++n) largest[n] = std::max(largest[n], some[n]);
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
   extremes->speed = {largest[0], largest[1], largest[2]};

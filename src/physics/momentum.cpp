@@ -1,11 +1,12 @@
 #include "physics/momentum.hpp"
 
 #include "base/events.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/mooney_rivlin.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/advection.hpp"
-#include "physics/row_scratch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,10 +27,10 @@ struct PredictorTerms {
   Real3 force, inverse, inverse_squared;
 };
 
-// force += scale div(sigma), the law's stress, on the stressed segments of rows of plane k.
+// force += scale div(sigma), the law's stress, on the stressed segments of rows j_begin <= j < j_end of plane k.
 template <int Dim>
-EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int k,
-                                   FieldBlock &force) {
+EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin,
+                                   int j_end, int k, FieldBlock &force) {
   // Block position of a tensor component, see tensor_components().
   const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
   for (const Phase &phase : phases) {
@@ -51,7 +52,6 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
           kernels::add_mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, force[a]);
       }
     };
-    const int j_end = std::min(j_begin + kernels::block_rows, grid.owned()[1]);
     if (phase.stressed.idle_rows(j_begin, j_end, k)) continue;
     kernels::Batch batch;
     for (int j = j_begin; j < j_end; ++j)
@@ -104,14 +104,15 @@ EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const Fie
 }
 
 template <int Dim, bool RateOnly>
-EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratch &scratch) {
+EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &scratch) {
   const FieldBlock &v = *t.velocity;
   const ConstView p = (*t.pressure)[0];
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
-  for (int block = 0; block < n[1]; block += kernels::block_rows)
-    for (int k = 0; k < n[2]; ++k) {
-      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
+  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k) {
+      const int end = std::min(block + kernels::block_rows, part.j_end);
+      for (int j = block; j < end; ++j) {
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
           if (Dim == 3) {  // the next plane, of the stencil and of the result
@@ -131,37 +132,41 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, FieldBlock &out, RowScratc
                                                              t.dt, out[a].row(j, k));
         }
       }
-      elastic_force<Dim>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, k, out);
+      elastic_force<Dim>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, end, k, out);
       if (RateOnly) continue;
-      const int end = std::min(block + kernels::block_rows, n[1]);
       close_low_faces<Dim>(*t.grid, block, end, k, out);
       if (t.grid->wraps_x())
         for (int a = 0; a < Dim; ++a)
           for (int j = block; j < end; ++j) t.grid->wrap_row(out[a].row(j, k), 1);
       const int before = Dim == 3 ? k - 1 : k;  // where the faces above are known, but for the last row's
-      if (t.divergence && before >= 0)
-        divergence_rows<Dim>(*t.grid, t.density, out, 0, std::max(block - 1, 0), end - 1, before, *t.divergence);
+      if (t.divergence && before >= part.k_begin)
+        divergence_rows<Dim>(*t.grid, t.density, out, 0, std::max(block - 1, part.j_begin), end - 1, before,
+                             *t.divergence);
     }
 }
 
-EULASTIC_CLONES void predict_2d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) {
-  t.rate_only ? predict<2, true>(t, out, s) : predict<2, false>(t, out, s);
+EULASTIC_CLONES void predict_2d(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &s) {
+  t.rate_only ? predict<2, true>(t, part, out, s) : predict<2, false>(t, part, out, s);
 }
-EULASTIC_CLONES void predict_3d(const PredictorTerms &t, FieldBlock &out, RowScratch &s) {
-  t.rate_only ? predict<3, true>(t, out, s) : predict<3, false>(t, out, s);
+EULASTIC_CLONES void predict_3d(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &s) {
+  t.rate_only ? predict<3, true>(t, part, out, s) : predict<3, false>(t, part, out, s);
 }
 
 template <int Dim>
-EULASTIC_INLINE void elastic_rows(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
-  for (int block = 0; block < grid.owned()[1]; block += kernels::block_rows)
-    for (int k = 0; k < grid.owned()[2]; ++k) elastic_force<Dim>(grid, phases, scale, block, k, force);
+EULASTIC_INLINE void elastic_rows(const Grid &grid, const RowPart &part, double scale, const std::vector<Phase> &phases,
+                                  FieldBlock &force) {
+  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      elastic_force<Dim>(grid, phases, scale, block, std::min(block + kernels::block_rows, part.j_end), k, force);
 }
 
-EULASTIC_CLONES void elastic_2d(const Grid &g, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
-  elastic_rows<2>(g, scale, phases, force);
+EULASTIC_CLONES void elastic_2d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,
+                                FieldBlock &force) {
+  elastic_rows<2>(g, part, scale, phases, force);
 }
-EULASTIC_CLONES void elastic_3d(const Grid &g, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
-  elastic_rows<3>(g, scale, phases, force);
+EULASTIC_CLONES void elastic_3d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,
+                                FieldBlock &force) {
+  elastic_rows<3>(g, part, scale, phases, force);
 }
 
 // Flops per component of the velocity.
@@ -178,23 +183,29 @@ double elastic_flops(int dimension, const std::vector<Phase> &phases) {
 
 // All rows, or those that predict() leaves.
 template <int Dim>
-EULASTIC_INLINE void divergence_everywhere(const Grid &grid, double density, const FieldBlock &v, bool left_only,
-                                           FieldBlock &out) {
+EULASTIC_INLINE void divergence_everywhere(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,
+                                           bool left_only, FieldBlock &out) {
   const Int3 n = grid.owned();
-  for (int k = 0; k < n[2]; ++k) {
-    const int inner = left_only && (Dim == 2 || k < n[2] - 1) ? n[1] - 1 : 0;
-    if (!grid.wraps_x()) divergence_rows<Dim>(grid, density, v, n[0] - 1, 0, inner, k, out);
-    divergence_rows<Dim>(grid, density, v, 0, inner, n[1], k, out);
+  for (int k = part.k_begin; k < part.k_end; ++k) {
+    const int inner = left_only && (Dim == 2 || k < part.k_end - 1) ? part.j_end - 1 : part.j_begin;
+    if (!grid.wraps_x()) divergence_rows<Dim>(grid, density, v, n[0] - 1, part.j_begin, inner, k, out);
+    divergence_rows<Dim>(grid, density, v, 0, inner, part.j_end, k, out);
   }
 }
 
-EULASTIC_CLONES void divergence_2d(const Grid &g, double density, const FieldBlock &v, bool left_only,
-                                   FieldBlock &out) {
-  divergence_everywhere<2>(g, density, v, left_only, out);
+EULASTIC_CLONES void divergence_2d(const Grid &g, const RowPart &part, double density, const FieldBlock &v,
+                                   bool left_only, FieldBlock &out) {
+  divergence_everywhere<2>(g, part, density, v, left_only, out);
 }
-EULASTIC_CLONES void divergence_3d(const Grid &g, double density, const FieldBlock &v, bool left_only,
-                                   FieldBlock &out) {
-  divergence_everywhere<3>(g, density, v, left_only, out);
+EULASTIC_CLONES void divergence_3d(const Grid &g, const RowPart &part, double density, const FieldBlock &v,
+                                   bool left_only, FieldBlock &out) {
+  divergence_everywhere<3>(g, part, density, v, left_only, out);
+}
+
+void run_divergence(const Grid &grid, double density, const FieldBlock &v, bool left_only, FieldBlock &out) {
+  in_row_parts(grid, [&](const RowPart &part) {
+    (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, part, density, v, left_only, out);
+  });
 }
 
 double divergence_flops(int dimension) { return 3 * dimension - 1; }
@@ -202,7 +213,8 @@ double divergence_flops(int dimension) { return 3 * dimension - 1; }
 // Cells of which predict() knows all faces.
 double inner_count(const Grid &grid) {
   const Int3 n = grid.owned();
-  return double(n[0] - (grid.wraps_x() ? 0 : 1)) * (n[1] - 1) * (grid.dimension() == 3 ? n[2] - 1 : 1);
+  const int x = n[0] - (grid.wraps_x() ? 0 : 1), parts = row_parts(grid);
+  return grid.dimension() == 3 ? double(x) * (n[1] - 1) * (n[2] - parts) : double(x) * (n[1] - parts);
 }
 
 void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
@@ -227,8 +239,10 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
                              fluid.body_force.at(step.force_time),
                              {1 / h[0], 1 / h[1], 1 / h[2]},
                              {1 / h[0] * (1 / h[0]), 1 / h[1] * (1 / h[1]), 1 / h[2] * (1 / h[2])}};
-  RowScratch scratch(grid, 1);
-  (dim == 2 ? predict_2d : predict_3d)(terms, out, scratch);
+  in_row_parts(grid, [&](const RowPart &part) {
+    RowScratch scratch(grid, 1);
+    (dim == 2 ? predict_2d : predict_3d)(terms, part, out, scratch);
+  });
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, phases)));
@@ -257,7 +271,7 @@ PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vect
   PetscFunctionBeginUser;
   VerbScope scope(Verb::momentum);
   const bool flat = grid.dimension() == 2;
-  (flat ? elastic_2d : elastic_3d)(grid, scale, phases, force);
+  in_row_parts(grid, [&](const RowPart &part) { (flat ? elastic_2d : elastic_3d)(grid, part, scale, phases, force); });
   scope.flops(grid.dimension() * elastic_flops(grid.dimension(), phases));
   PetscFunctionReturn(0);
 }
@@ -266,7 +280,7 @@ PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldB
                                   FieldBlock &divergence) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::divergence);
-  (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, density, velocity_star, false, divergence);
+  run_divergence(grid, density, velocity_star, false, divergence);
   scope.flops(grid.owned_count() * divergence_flops(grid.dimension()));
   PetscFunctionReturn(0);
 }
@@ -275,7 +289,7 @@ PetscErrorCode complete_divergence(const Grid &grid, double density, const Field
                                    FieldBlock &divergence) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::divergence);
-  (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, density, velocity_star, true, divergence);
+  run_divergence(grid, density, velocity_star, true, divergence);
   scope.flops((grid.owned_count() - inner_count(grid)) * divergence_flops(grid.dimension()));
   PetscFunctionReturn(0);
 }

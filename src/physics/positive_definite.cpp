@@ -1,6 +1,7 @@
 #include "physics/positive_definite.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
@@ -41,10 +42,12 @@ PetscErrorCode limit_shear(const Grid &grid, const EvolveRule &rule, const Phase
     const Staggering at = components[f].staggering();
     const Edges edges{phase.fraction[0],   tensor[a],           tensor[b], tensor[f],
                       tensor[f].stride(a), tensor[f].stride(b), rule.edge};
-    for (const Segment &s : phase.solid.all()) {
-      if (s.j >= grid.points_end(1, at[1]) || s.k >= grid.points_end(2, at[2])) continue;
-      limit_row(edges, {s.i_begin, std::min(s.i_end, grid.points_end(0, at[0])), s.j, s.k});
-    }
+    in_parts_of(phase.solid.all(), grid, [&](const Segment *begin, const Segment *end) {
+      for (const Segment *s = begin; s < end; ++s) {
+        if (s->j >= grid.points_end(1, at[1]) || s->k >= grid.points_end(2, at[2])) continue;
+        limit_row(edges, {s->i_begin, std::min(s->i_end, grid.points_end(0, at[0])), s->j, s->k});
+      }
+    });
     scope.flops(phase.solid.points() * 16);
   }
   PetscFunctionReturn(0);

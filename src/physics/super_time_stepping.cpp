@@ -1,10 +1,13 @@
 #include "physics/super_time_stepping.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/super_time_stepping.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 namespace eulastic {
 namespace {
@@ -128,55 +131,85 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
     }
 }
 
+// A block of rows of a component in one pass; in 2-D all rows.
+struct alignas(64) Block {
+  int component, j_begin;
+  const std::atomic<int> *below = nullptr;  // slices that the block of lower rows has done; null: there is none
+  std::atomic<int> done{};
+};
+
+// The first slice of a pass, of the first stage, and one past the last slice of its last stage.
+int first_slice(const Grid &grid, const Sides &sides, int depth) { return -sides.low(grid.dimension() - 1, depth - 1); }
+int end_slice(const Grid &grid, int depth) { return grid.owned()[grid.dimension() - 1] + depth - 1; }
+
+// In the order in which they are done: a block of a component reads what the one below it has written, and may follow
+// it slice by slice: neither writes what the other has not yet read then.
+std::vector<Block> blocks_of(const Grid &grid, const Sides &sides, int depth) {
+  const bool flat = grid.dimension() == 2;
+  const int begin = flat ? 0 : -sides.low(1, depth - 1), end = flat ? 1 : grid.owned()[1] + depth - 1;
+  const int count = (end - begin + kernels::block_rows - 1) / kernels::block_rows;
+  std::vector<Block> blocks(std::size_t(count) * grid.dimension());
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (int b = 0; b < count; ++b) {
+      Block &block = blocks[a * count + b];
+      block.component = a;
+      block.j_begin = begin + b * kernels::block_rows;
+      block.done = first_slice(grid, sides, depth);
+      if (b > 0) block.below = &blocks[a * count + b - 1].done;
+    }
+  return blocks;
+}
+
 // Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. In
-// 3-D they go through blocks of rows, in which every stage is a row behind the one before it too: what they have in
-// common stays in the second-level cache. The first asks for the next plane.
+// 3-D every stage is a row behind the one before it too: what they have in common stays in the second-level cache. The
+// first asks for the next plane.
 template <int Dim>
-EULASTIC_INLINE void stages_in_one_pass(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                                        const StageFields &f) {
+EULASTIC_INLINE void stages_of_block(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
+                                     const StageFields &f, Block &block) {
   constexpr int last = Dim - 1;
   const Int3 n = grid.owned();
-  const int begin = Dim == 3 ? -sides.low(1, pass.depth - 1) : 0, end = Dim == 3 ? n[1] + pass.depth - 1 : 1;
-  for (int a = 0; a < Dim; ++a)
-    for (int block = begin; block < end; block += kernels::block_rows)
-      for (int first = -sides.low(last, pass.depth - 1); first < n[last] + pass.depth - 1; ++first)
-        for (int s = 0; s < pass.depth; ++s) {
-          const int slice = first - s, layers = pass.depth - 1 - s;
-          if (slice < -sides.low(last, layers) || slice >= n[last] + sides.high(last, layers)) continue;
-          const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
-          const int j_begin = Dim == 3 ? std::max(block - s, -sides.low(1, layers)) : slice;
-          const int j_end =
-              Dim == 3 ? std::min(block + kernels::block_rows - s, n[1] + sides.high(1, layers)) : slice + 1;
-          for (int j = j_begin; j < j_end; ++j) {
-            const Segment row{-sides.low(0, layers), n[0] + sides.high(0, layers), j, Dim == 3 ? slice : 0};
-            if (Dim == 3 && s == 0) {
-              kernels::prefetch(w.row(j, slice + 2), n[0]);
-              kernels::prefetch(out.row(j, slice + 1), n[0]);
-              kernels::prefetch((*f.rate)[a].row(j, slice + 1), n[0]);
-              if (f.stressed) kernels::prefetch((*f.slope)[a].row(j, slice + 1), n[0]);
-            }
-            surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
-            stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
-          }
+  const int a = block.component;
+  for (int first = block.done; first < end_slice(grid, pass.depth); ++first) {
+    while (block.below && block.below->load(std::memory_order_acquire) <= first) std::this_thread::yield();
+    for (int s = 0; s < pass.depth; ++s) {
+      const int slice = first - s, layers = pass.depth - 1 - s;
+      if (slice < -sides.low(last, layers) || slice >= n[last] + sides.high(last, layers)) continue;
+      const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
+      const int j_begin = Dim == 3 ? std::max(block.j_begin - s, -sides.low(1, layers)) : slice;
+      const int j_end =
+          Dim == 3 ? std::min(block.j_begin + kernels::block_rows - s, n[1] + sides.high(1, layers)) : slice + 1;
+      for (int j = j_begin; j < j_end; ++j) {
+        const Segment row{-sides.low(0, layers), n[0] + sides.high(0, layers), j, Dim == 3 ? slice : 0};
+        if (Dim == 3 && s == 0) {
+          kernels::prefetch(w.row(j, slice + 2), n[0]);
+          kernels::prefetch(out.row(j, slice + 1), n[0]);
+          kernels::prefetch((*f.rate)[a].row(j, slice + 1), n[0]);
+          if (f.stressed) kernels::prefetch((*f.slope)[a].row(j, slice + 1), n[0]);
         }
+        surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
+        stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+      }
+    }
+    block.done.store(first + 1, std::memory_order_release);
+  }
 }
 
 EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f) {
-  stages_in_one_pass<2>(grid, pass, h, sides, f);
+                               const StageFields &f, Block &block) {
+  stages_of_block<2>(grid, pass, h, sides, f, block);
 }
 EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f) {
-  stages_in_one_pass<3>(grid, pass, h, sides, f);
+                               const StageFields &f, Block &block) {
+  stages_of_block<3>(grid, pass, h, sides, f, block);
 }
 
-// to = scale a + b at all owned points, wrapped by one; b may be null.
-EULASTIC_CLONES void scale_add(const Grid &grid, double scale, const FieldBlock &a, const FieldBlock *b,
-                               FieldBlock &to) {
+// to = scale a + b at all points of the part, wrapped by one; b may be null.
+EULASTIC_CLONES void scale_add_part(const Grid &grid, const RowPart &part, double scale, const FieldBlock &a,
+                                    const FieldBlock *b, FieldBlock &to) {
   const Int3 n = grid.owned();
   for (int c = 0; c < to.count(); ++c)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j) {
         const double *x = a[c].row(j, k);
         double *out = to[c].row(j, k);
         if (b) {
@@ -188,6 +221,10 @@ EULASTIC_CLONES void scale_add(const Grid &grid, double scale, const FieldBlock 
         }
         if (grid.wraps_x()) grid.wrap_row(out, 1);
       }
+}
+
+void scale_add(const Grid &grid, double scale, const FieldBlock &a, const FieldBlock *b, FieldBlock &to) {
+  in_row_parts(grid, [&](const RowPart &part) { scale_add_part(grid, part, scale, a, b, to); });
 }
 
 }  // namespace
@@ -233,8 +270,12 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     }
     PetscCall(exchange.update_rows(work.now, pass.depth));
     if (j > 2 && pass.depth > 2) PetscCall(exchange.update_rows(work.before, pass.depth - 1));
-    (grid.dimension() == 2 ? stages_2d : stages_3d)(
-        grid, pass, h, sides, {&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before});
+    const StageFields fields{&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before};
+    std::vector<Block> blocks = blocks_of(grid, sides, pass.depth);
+    const auto advance = [&](int b) {
+      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, blocks[b]);
+    };
+    in_parallel(row_parts(grid), static_cast<int>(blocks.size()), advance);
     if (pass.depth % 2) work.now.swap(work.before);
   }
   scale_add(grid, 1, work.now, &velocity, velocity_star);

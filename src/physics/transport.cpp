@@ -1,74 +1,28 @@
 #include "physics/transport.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
-#include "physics/advection.hpp"
-#include "physics/row_scratch.hpp"
 
 #include <algorithm>
-
 #include <limits>
 
 namespace eulastic {
 namespace {
 
-constexpr double epsilon = 1e-6;  // WENO5: phi and B are of order 1
+constexpr double epsilon = 1e-6;  // WENO5: B is of order 1
 
 struct TransportTerms {
   const Grid *grid;
   double dt;
   const FieldBlock *velocity;
   Real3 inverse;
-  EvolveRule rule{};
-  bool second_of_heun = false;
-  const ActiveSegments *stale = nullptr;
-  bool wraps = false;
+  EvolveRule rule;
+  bool second_of_heun;
+  const ActiveSegments *stale;
+  bool wraps;
 };
-
-template <int Dim>
-EULASTIC_INLINE void advect_rows(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
-                                 FieldBlock &out, RowScratch &scratch) {
-  const Int3 n = t.grid->owned();
-  const ConstView phi = phase.fraction[0];
-  const double dt = t.dt;
-  const int ghosts = t.grid->layout().ghosts[0];
-  const FieldBlock &v = *t.velocity;
-  double *rate = scratch.row(0);
-  for (int block = 0; block < n[1]; block += kernels::block_rows)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
-        const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
-        const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
-        double *next = out[0].row(j, k);
-        for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
-        for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
-        const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
-        if (row.size() <= 0) continue;
-        if (Dim == 3) {  // the next plane
-          kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
-          for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
-          kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
-        }
-        centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
-        const double *now = phi.row(j, k);
-#pragma omp simd
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const double moved = kernels::fma(dt, rate[i], now[i]);
-          next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
-        }
-        if (t.wraps) t.grid->wrap_row(next, ghosts);
-      }
-}
-
-EULASTIC_CLONES void advect_2d(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
-                               FieldBlock &out, RowScratch &s) {
-  advect_rows<2>(t, phase, next_rows, out, s);
-}
-EULASTIC_CLONES void advect_3d(const TransportTerms &t, const Phase &phase, const OccupiedRows &next_rows,
-                               FieldBlock &out, RowScratch &s) {
-  advect_rows<3>(t, phase, next_rows, out, s);
-}
 
 // Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
 EULASTIC_INLINE double fraction_at(const double *phi, bool diagonal, std::ptrdiff_t a, std::ptrdiff_t b) {
@@ -249,75 +203,55 @@ struct Evolved {
 };
 
 template <int Dim, bool SecondOfHeun>
-EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                       FieldBlock &out) {
+EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &part, const Phase &phase,
+                                       const FieldBlock &B, FieldBlock &out) {
   constexpr int block = kernels::block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
   Left left[count];  // filled through all planes
   Evolved sum;
-  for (int j = 0; j < phase.solid.rows_y(); j += block)
-    for (int k = 0; k < phase.solid.rows_z(); ++k)
+  const Int3 &n = t.grid->owned();  // rows at high walls belong to the last part
+  const int j_end = part.j_end == n[1] ? phase.solid.rows_y() : part.j_end;
+  const int k_end = part.k_end == n[2] ? phase.solid.rows_z() : part.k_end;
+  for (int j = part.j_begin; j < j_end; j += block)
+    for (int k = part.k_begin; k < k_end; ++k)
       for (int l = 0; l < count; ++l)
-        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, j + block, k, out, left[l],
+        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
                                         l == 0 ? sum.centres : sum.edges);
   for (int l = 0; l < count; ++l)
     advance_left<Dim, SecondOfHeun>(t, phase, B, locations[l], left[l].batch, left[l], out);
   return sum;
 }
 
-EULASTIC_CLONES Evolved tensor_2d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
-  return t.second_of_heun ? advance_tensor<2, true>(t, phase, B, out) : advance_tensor<2, false>(t, phase, B, out);
+EULASTIC_CLONES Evolved tensor_2d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
+                                  FieldBlock &out) {
+  return t.second_of_heun ? advance_tensor<2, true>(t, part, phase, B, out)
+                          : advance_tensor<2, false>(t, part, phase, B, out);
 }
-EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const Phase &phase, const FieldBlock &B, FieldBlock &out) {
-  return t.second_of_heun ? advance_tensor<3, true>(t, phase, B, out) : advance_tensor<3, false>(t, phase, B, out);
-}
-
-TransportTerms make_terms(const Grid &grid, double dt, const FieldBlock &velocity) {
-  TransportTerms terms{&grid, dt, &velocity, {1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]}};
-  terms.wraps = grid.wraps_x();
-  return terms;
+EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
+                                  FieldBlock &out) {
+  return t.second_of_heun ? advance_tensor<3, true>(t, part, phase, B, out)
+                          : advance_tensor<3, false>(t, part, phase, B, out);
 }
 
 }  // namespace
-
-PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
-                               const OccupiedRows &next_rows, FieldBlock &next) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::solid_fraction);
-  RowScratch scratch(grid, 1);
-  const TransportTerms terms = make_terms(grid, dt, velocity);
-  if (grid.dimension() == 2)
-    advect_2d(terms, phase, next_rows, next, scratch);
-  else
-    advect_3d(terms, phase, next_rows, next, scratch);
-  scope.flops(double(phase.rows.cells()) * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::solid_fraction);
-  const ConstView phi = phase.fraction[0];
-  phase.solid.build(grid, phi, phase.rows, rule.centre, 1, 0);
-  if (rule.layers > 0)
-    phase.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
-  else
-    phase.strained = phase.solid;
-  phase.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
-  TransportTerms terms = make_terms(grid, stage.dt, velocity);
-  terms.rule = stage.rule;
-  terms.second_of_heun = stage.second_of_heun;
-  terms.stale = stage.stale;
-  terms.wraps &= stage.wraps;
+  const Real3 &h = grid.spacing();
+  const TransportTerms terms{&grid,       stage.dt,
+                             &velocity,   {1 / h[0], 1 / h[1], 1 / h[2]},
+                             stage.rule,  stage.second_of_heun,
+                             stage.stale, stage.wraps && grid.wraps_x()};
   const bool flat = grid.dimension() == 2;
-  const Evolved points = (flat ? tensor_2d : tensor_3d)(terms, phase, tensor, next);
+  const int parts = row_parts(grid);
+  std::vector<Evolved> found(parts);
+  in_parallel(parts, parts, [&](int part) {
+    found[part] = (flat ? tensor_2d : tensor_3d)(terms, row_part(grid, part, parts), phase, tensor, next);
+  });
+  Evolved points;
+  for (const Evolved &some : found) points = {points.centres + some.centres, points.edges + some.edges};
   const double advection = grid.dimension() * (kernels::weno5_flops + 5) + 2;
   const double diagonal = flat ? kernels::stretch_diagonal_flops_2d : kernels::stretch_diagonal_flops_3d;
   const double shear = flat ? kernels::stretch_shear_flops_2d : kernels::stretch_shear_flops_3d;

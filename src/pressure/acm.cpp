@@ -1,6 +1,7 @@
 #include "pressure/acm.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
@@ -13,13 +14,14 @@ namespace {
 constexpr int sum_count = 6;  // A1, A2, A3, B1, B2 of (13) and <p> of (6)
 
 template <int Dim>
-EULASTIC_INLINE void add_sums(const Grid &grid, ConstView divergence, ConstView pressure, ExactSums &sums) {
+EULASTIC_INLINE void add_sums(const Grid &grid, const RowPart &part, ConstView divergence, ConstView pressure,
+                              ExactSums &sums) {
   const Int3 n = grid.owned();
   const std::int64_t begin = grid.layout().begin[0];
   const InverseSquares h = grid.inverse_squares();
   const std::ptrdiff_t sy = divergence.sy, sz = divergence.sz;
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *D = divergence.row(j, k), *p = pressure.row(j, k);
       kernels::prefetch_plane<Dim>(D, n[0], sy, sz);
       kernels::prefetch_plane<Dim>(p, n[0], sy, sz);
@@ -37,11 +39,11 @@ EULASTIC_INLINE void add_sums(const Grid &grid, ConstView divergence, ConstView 
     }
 }
 
-EULASTIC_CLONES void add_sums_2d(const Grid &grid, ConstView D, ConstView p, ExactSums &s) {
-  add_sums<2>(grid, D, p, s);
+EULASTIC_CLONES void add_sums_2d(const Grid &grid, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<2>(grid, part, D, p, s);
 }
-EULASTIC_CLONES void add_sums_3d(const Grid &grid, ConstView D, ConstView p, ExactSums &s) {
-  add_sums<3>(grid, D, p, s);
+EULASTIC_CLONES void add_sums_3d(const Grid &grid, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<3>(grid, part, D, p, s);
 }
 
 }  // namespace
@@ -62,10 +64,13 @@ PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBl
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   const int dim = grid_->dimension();
-  ExactSums sums(sum_count);
-  (dim == 2 ? add_sums_2d : add_sums_3d)(*grid_, divergence[0], pressure[0], sums);
   double total[sum_count];
-  PetscCall(sums.reduce(grid_->comm(), total));
+  PetscCall(sum_row_parts(
+      *grid_, sum_count,
+      [&](const RowPart &part, ExactSums &sums) {
+        (dim == 2 ? add_sums_2d : add_sums_3d)(*grid_, part, divergence[0], pressure[0], sums);
+      },
+      total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
   sound_speed_ = last_.sound_speed(dt);
   formula_ = {last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count()};

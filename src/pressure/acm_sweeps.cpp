@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/walls.hpp"
+#include "grid/threads.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
@@ -38,13 +39,13 @@ struct SumTask {
 constexpr int sum_count(int directions) { return 2 + directions + directions * (directions + 1) / 2; }
 
 template <int Dim, int Directions>
-EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
+EULASTIC_INLINE void add_sums(const SumTask &t, const RowPart &part, ExactSums &sums) {
   const Int3 n = t.grid->owned();
   const std::int64_t begin = t.grid->layout().begin[0];
   const InverseSquares h = t.h;
   const std::ptrdiff_t sy = t.residual.sy, sz = t.residual.sz;
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *D = t.residual.row(j, k), *q[Directions];
       for (int f = 0; f < Directions; ++f) {
         q[f] = t.q[f].row(j, k);
@@ -70,12 +71,12 @@ EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_sums(const SumTask &t, ExactSums &sums) {
-  for_directions(t.count, [&](auto count) EULASTIC_BODY { add_sums<Dim, count()>(t, sums); });
+EULASTIC_INLINE void add_sums(const SumTask &t, const RowPart &part, ExactSums &sums) {
+  for_directions(t.count, [&](auto count) EULASTIC_BODY { add_sums<Dim, count()>(t, part, sums); });
 }
 
-EULASTIC_CLONES void add_sums_2d(const SumTask &t, ExactSums &sums) { add_sums<2>(t, sums); }
-EULASTIC_CLONES void add_sums_3d(const SumTask &t, ExactSums &sums) { add_sums<3>(t, sums); }
+EULASTIC_CLONES void add_sums_2d(const SumTask &t, const RowPart &part, ExactSums &sums) { add_sums<2>(t, part, sums); }
+EULASTIC_CLONES void add_sums_3d(const SumTask &t, const RowPart &part, ExactSums &sums) { add_sums<3>(t, part, sums); }
 
 // d = sum c_i q_i - shift and increment += scale d (= in the first), both in one ghost layer too; D -= sum c_i lap q_i,
 // owned.
@@ -92,17 +93,16 @@ struct StepTask {
 };
 
 template <int Dim, int Directions, bool First>
-EULASTIC_INLINE void take_step(const StepTask &t) {
+EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
   const Int3 n = t.grid->owned();
-  const int gz = Dim == 3 ? 1 : 0;
   constexpr int ahead = 16;  // rows
   const InverseSquares h = t.h;
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
   double c[Directions];
   std::copy_n(t.coefficient, Directions, c);
-  for (int k = -gz; k < n[2] + gz; ++k)
-    for (int j = -1; j < n[1] + 1; ++j) {
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *q[Directions];
       for (int f = 0; f < Directions; ++f) {
         q[f] = t.q[f].row(j, k);
@@ -145,14 +145,14 @@ EULASTIC_INLINE void take_step(const StepTask &t) {
 }
 
 template <int Dim>
-EULASTIC_INLINE void take_step(const StepTask &t) {
+EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
   for_directions(t.count, [&](auto count) EULASTIC_BODY {
-    t.first ? take_step<Dim, count(), true>(t) : take_step<Dim, count(), false>(t);
+    t.first ? take_step<Dim, count(), true>(t, part) : take_step<Dim, count(), false>(t, part);
   });
 }
 
-EULASTIC_CLONES void take_step_2d(const StepTask &t) { take_step<2>(t); }
-EULASTIC_CLONES void take_step_3d(const StepTask &t) { take_step<3>(t); }
+EULASTIC_CLONES void take_step_2d(const StepTask &t, const RowPart &part) { take_step<2>(t, part); }
+EULASTIC_CLONES void take_step_3d(const StepTask &t, const RowPart &part) { take_step<3>(t, part); }
 
 }  // namespace
 
@@ -245,11 +245,12 @@ PetscErrorCode AcmSweepSolver::sweep(const Turn &turn, double dt, bool *done) {
 PetscErrorCode AcmSweepSolver::find_minimum(const FieldBlock &residual, SweepMinimum *minimum, double *mean) {
   PetscFunctionBeginUser;
   const int count = static_cast<int>(directions_.size());
-  ExactSums exact(sum_count(count));
-  (grid_->dimension() == 2 ? add_sums_2d : add_sums_3d)(
-      {grid_, residual[0], directions_.data(), count, grid_->inverse_squares()}, exact);
+  const SumTask task{grid_, residual[0], directions_.data(), count, grid_->inverse_squares()};
+  const auto add = [&](const RowPart &part, ExactSums &exact) {
+    (grid_->dimension() == 2 ? add_sums_2d : add_sums_3d)(task, part, exact);
+  };
   double total[sum_count(most)];
-  PetscCall(exact.reduce(grid_->comm(), total));
+  PetscCall(sum_row_parts(*grid_, sum_count(count), add, total));
   SweepSums sums;
   sums.directions = count;
   int s = 0;
@@ -265,19 +266,30 @@ PetscErrorCode AcmSweepSolver::find_minimum(const FieldBlock &residual, SweepMin
 void AcmSweepSolver::step(const Turn &turn, bool last, double dt, const SweepMinimum &minimum, double mean) {
   // The stencils read D, when it is a direction itself, and d: the new ones go elsewhere.
   FieldBlock &new_residual = multigrid_ ? residual_ : correction_;
-  (grid_->dimension() == 2 ? take_step_2d : take_step_3d)(
-      {grid_, directions_.data(), static_cast<int>(directions_.size()), minimum.coefficient, grid_->inverse_squares(),
-       minimum.coefficient[0] * mean, 1 / dt, turn.first, last, turn.residual[0], new_residual[0], scratch_[0],
-       turn.increment[0]});
+  const StepTask task{grid_,
+                      directions_.data(),
+                      static_cast<int>(directions_.size()),
+                      minimum.coefficient,
+                      grid_->inverse_squares(),
+                      minimum.coefficient[0] * mean,
+                      1 / dt,
+                      turn.first,
+                      last,
+                      turn.residual[0],
+                      new_residual[0],
+                      scratch_[0],
+                      turn.increment[0]};
+  in_row_parts(*grid_, [&](const RowPart &part) {
+    (grid_->dimension() == 2 ? take_step_2d : take_step_3d)(task, part.with_ghosts(*grid_));
+  });
   if (last) return;
   direction_.swap(scratch_);
   if (!multigrid_) residual_.swap(correction_);
 }
 
 void AcmSweepSolver::remember(const FieldBlock &increment) {
-  const std::size_t size = memory_.layout().size;
   newest_ = (newest_ + memory_.count() - 1) % memory_.count();
-  std::memcpy(memory_.data() + newest_ * size, increment.data(), sizeof(double) * size);
+  memory_.part(newest_, 1).copy_from(increment);
 }
 
 }  // namespace eulastic

@@ -1,5 +1,8 @@
 #include "pressure/multigrid.hpp"
 
+#include "grid/threads.hpp"
+#include "grid/row_scratch.hpp"
+
 #include <algorithm>
 
 namespace eulastic {
@@ -15,30 +18,33 @@ namespace {
 
 const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 0.8, 1.6}};
 constexpr double gathered_cells = 4096;  // from here on messages cost more than cells
-constexpr int margin = 8;
 
 template <int Dim>
-EULASTIC_INLINE void relax_rows(const MultigridLevel &level, double factor, ConstView q, ConstView r, View out) {
-  const Int3 n = level.grid().owned();
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) kernels::relax<Dim>({0, n[0], j, k}, q, r, level.coefficients(j, k), factor, out);
+EULASTIC_INLINE void relax_rows(const MultigridLevel &level, const RowPart &part, double factor, ConstView q,
+                                ConstView r, View out) {
+  const int n = level.grid().owned()[0];
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j)
+      kernels::relax<Dim>({0, n, j, k}, q, r, level.coefficients(j, k), factor, out);
 }
 
-EULASTIC_CLONES void relax_2d(const MultigridLevel &l, double factor, ConstView q, ConstView r, View out) {
-  relax_rows<2>(l, factor, q, r, out);
+EULASTIC_CLONES void relax_2d(const MultigridLevel &l, const RowPart &part, double factor, ConstView q, ConstView r,
+                              View out) {
+  relax_rows<2>(l, part, factor, q, r, out);
 }
-EULASTIC_CLONES void relax_3d(const MultigridLevel &l, double factor, ConstView q, ConstView r, View out) {
-  relax_rows<3>(l, factor, q, r, out);
+EULASTIC_CLONES void relax_3d(const MultigridLevel &l, const RowPart &part, double factor, ConstView q, ConstView r,
+                              View out) {
+  relax_rows<3>(l, part, factor, q, r, out);
 }
 
 template <int Dim>
-EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, ConstView r, const Int3 &n, View out,
-                                   double *sum) {
+EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, ConstView r, int n, const RowPart &part,
+                                   View out, double *sum) {
   const auto &[x, y, z] = fine.lines;
   // One fine cell more than there are children: a last cell without a partner has the weight 0 for it.
-  const int begin = x.first, end = x.first + x.stride * n[0] + (x.weight[2].back() > 0);
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
+  const int begin = x.first, end = x.first + x.stride * n + (x.weight[2].back() > 0);
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       for (int i = begin; i < end; ++i) sum[i] = 0;
       for (int c = 0; c < 3; ++c)
         for (int b = 0; b < 3; ++b) {
@@ -51,34 +57,36 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
         }
       double *coarse = out.row(j, k);
       if (x.stride == 1) {
-        for (int i = 0; i < n[0]; ++i) coarse[i] = sum[i];
+        for (int i = 0; i < n; ++i) coarse[i] = sum[i];
         continue;
       }
-      kernels::join_pairs(n[0], sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
-      if (x.weight[2].back() > 0) coarse[n[0] - 1] += x.weight[2].back() * sum[end - 1];
+      kernels::join_pairs(n, sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
+      if (x.weight[2].back() > 0) coarse[n - 1] += x.weight[2].back() * sum[end - 1];
     }
 }
 
-EULASTIC_CLONES void restrict_2d(const MultigridLevel &f, double a, ConstView r, const Int3 &n, View out, double *s) {
-  restrict_rows<2>(f, a, r, n, out, s);
+EULASTIC_CLONES void restrict_2d(const MultigridLevel &f, double a, ConstView r, int n, const RowPart &part, View out,
+                                 double *sum) {
+  restrict_rows<2>(f, a, r, n, part, out, sum);
 }
-EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r, const Int3 &n, View out, double *s) {
-  restrict_rows<3>(f, a, r, n, out, s);
+EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r, int n, const RowPart &part, View out,
+                                 double *sum) {
+  restrict_rows<3>(f, a, r, n, part, out, sum);
 }
 
 EULASTIC_INLINE void blend_along_y(const LineTransfer &y, int j, ConstView e, int k, int begin, int end, double *out) {
   kernels::blend(begin, end, e.row(y.parent[j], k), e.row(y.neighbour[j], k), y.share[j], out);
 }
 
-// out = factor r + interpolated e; e has `coarse_cells` owned cells in x. `row`: three scratch rows.
-EULASTIC_CLONES void prolong_rows(const MultigridLevel &fine, int coarse_cells, double factor, ConstView r, ConstView e,
-                                  View out, double *const *row) {
+// out = factor r + interpolated e; e has `coarse_cells` owned cells in x. `scratch`: three rows.
+EULASTIC_CLONES void prolong_rows(const MultigridLevel &fine, const RowPart &part, int coarse_cells, double factor,
+                                  ConstView r, ConstView e, View out, const RowScratch &scratch) {
   const Int3 n = fine.grid().owned();
   const auto &[x, y, z] = fine.lines;
   const int begin = -1, end = coarse_cells + 1;
-  double *near = row[0], *far = row[1], *line = row[2];
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
+  double *near = scratch.row(0), *far = scratch.row(1), *line = scratch.row(2);
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
       blend_along_y(y, j, e, z.parent[k], begin, end, near);
       if (z.share[k] > 0) {
         blend_along_y(y, j, e, z.neighbour[k], begin, end, far);
@@ -136,7 +144,6 @@ PetscErrorCode Multigrid::create(const Grid &grid) {
     next->scratch = FieldBlock(next->grid(), 1);
     levels_.push_back(std::move(next));
   }
-  for (std::vector<double> &row : row_) row.assign(levels_[0]->grid().cells()[0] + 2 * margin, 0.0);
   PetscFunctionReturn(0);
 }
 
@@ -171,7 +178,10 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
   prolong(level, rhs, next, solution);
   PetscCall(level.exchange().update(solution, 1));
   for (const double after : relaxations(level).after) {
-    (level.grid().dimension() == 2 ? relax_2d : relax_3d)(level, after * level.step(), solution[0], rhs[0], scratch[0]);
+    in_row_parts(level.grid(), [&](const RowPart &part) {
+      const double factor = after * level.step();
+      (level.grid().dimension() == 2 ? relax_2d : relax_3d)(level, part, factor, solution[0], rhs[0], scratch[0]);
+    });
     solution.swap(scratch);
     PetscCall(level.exchange().update(solution, 1));
   }
@@ -180,15 +190,21 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
 
 void Multigrid::restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse) {
   const double factor = relaxations(fine).before * fine.step();
-  (fine.grid().dimension() == 2 ? restrict_2d : restrict_3d)(fine, factor, rhs[0], coarse.grid().owned(), coarse.rhs[0],
-                                                             row_[0].data() + margin);
+  const int parts = row_parts(fine.grid()), n = coarse.grid().owned()[0];
+  in_parallel(parts, parts, [&](int part) {
+    const RowScratch sum(fine.grid(), 1);
+    (fine.grid().dimension() == 2 ? restrict_2d : restrict_3d)(
+        fine, factor, rhs[0], n, row_part(coarse.grid(), part, parts), coarse.rhs[0], sum.row(0));
+  });
 }
 
 void Multigrid::prolong(const MultigridLevel &fine, const FieldBlock &rhs, const MultigridLevel &coarse,
                         FieldBlock &solution) {
   const double factor = relaxations(fine).before * fine.step();
-  double *const rows[3] = {row_[0].data() + margin, row_[1].data() + margin, row_[2].data() + margin};
-  prolong_rows(fine, coarse.grid().owned()[0], factor, rhs[0], coarse.solution[0], solution[0], rows);
+  in_row_parts(fine.grid(), [&](const RowPart &part) {
+    const RowScratch scratch(fine.grid(), 3);
+    prolong_rows(fine, part, coarse.grid().owned()[0], factor, rhs[0], coarse.solution[0], solution[0], scratch);
+  });
 }
 
 PetscErrorCode Multigrid::gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs) {

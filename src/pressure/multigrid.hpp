@@ -36,7 +36,6 @@ private:
   void prolong(const MultigridLevel &fine, const FieldBlock &rhs, const MultigridLevel &coarse, FieldBlock &solution);
 
   std::vector<Level> levels_;              ///< the finest first
-  std::vector<double> row_[3];             ///< one row each, with margins
   std::vector<double> packed_, gathered_;  ///< owned cells of the gathered level, of one rank and of all
   std::vector<int> counts_, displacements_;
   double flops_ = 0;

@@ -1,5 +1,6 @@
 #include "machine.hpp"
 
+#include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
 #include <algorithm>
@@ -52,11 +53,14 @@ double sum_over_ranks(double value) {
 
 double peak_flops() {
   static const double peak = [] {
-    std::vector<double> values(96, 0.5);
     const auto run = [&](int lanes, void (*work)(double *)) {
-      return 2.0 * lanes * rounds / least_time(200, [&] {
-               work(values.data());
-               benchmark::DoNotOptimize(values.data());
+      return 2.0 * lanes * rounds * threads() / least_time(200, [&] {
+               in_parallel(threads(), threads(), [&](int) {
+                 double values[96];
+                 std::fill_n(values, 96, 0.5);
+                 work(values);
+                 benchmark::DoNotOptimize(values);
+               });
              });
     };
     const double forty = run(40, multiply_add_40), ninety_six = run(96, multiply_add_96);
@@ -70,7 +74,11 @@ double triad_bandwidth() {
     const std::ptrdiff_t n = 1 << 23;
     std::vector<double> a(n), b(n, 1), c(n, 2);
     return sum_over_ranks(32.0 * n / least_time(10, [&] {
-                            triad(n, a.data(), b.data(), c.data(), 3);
+                            in_parallel(threads(), threads(), [&](int t) {
+                              const Piece piece(n, t, threads());
+                              const std::size_t at = piece.begin;
+                              triad(static_cast<std::ptrdiff_t>(piece.end - at), &a[at], &b[at], &c[at], 3);
+                            });
                             benchmark::DoNotOptimize(a.data());
                           }));
   }();

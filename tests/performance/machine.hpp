@@ -1,5 +1,6 @@
 // What the cores can do, measured in this process: the yardsticks of all benchmarks; and how results are reported.
-// Under mpiexec all ranks run the same benchmarks together, and everything counted is the sum over them.
+// Under mpiexec all ranks run the same benchmarks together, and everything counted is the sum over them and their
+// threads.
 #pragma once
 
 #include "base/petsc.hpp"

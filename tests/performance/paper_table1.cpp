@@ -1,12 +1,13 @@
 // The parts of the step that the paper's Table 1 lists, on a solid everywhere. The loops are those of the step, less
 // what the step does in the same pass.
 #include "box.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/advection.hpp"
 #include "physics/momentum.hpp"
-#include "physics/row_scratch.hpp"
 
 using namespace eulastic;
 using performance::Box;
@@ -23,10 +24,10 @@ struct Fields {
 
 // Calls f(row) in the order of the step.
 template <class F>
-EULASTIC_INLINE void in_blocks(const Int3 &n, F f) {
-  for (int block = 0; block < n[1]; block += kernels::block_rows)
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) f(Segment{0, n[0], j, k});
+EULASTIC_INLINE void in_blocks(int n, const RowPart &part, F f) {
+  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = block; j < std::min(block + kernels::block_rows, part.j_end); ++j) f(Segment{0, n, j, k});
 }
 
 // q - dt v.grad q of field f of `next` on a row, after `advect`(rate).
@@ -65,24 +66,24 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
 }
 
 // q - dt v.grad q of three velocities, phi and six components of B, each where it lives.
-EULASTIC_CLONES void advect(const Fields &t, RowScratch &scratch) {
+EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &scratch) {
   double *rate = scratch.row(0);
-  const Int3 n = t.grid.owned();
+  const int n = t.grid.owned()[0];
   const FieldBlock &v = t.velocity;
-  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
+  in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
     for (int a = 0; a < 3; ++a) {
       prefetch(t, row, v[a], a);
       move(t, row, v[a], a, rate,
            [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, out); });
     }
   });
-  in_blocks(n, [&](const Segment &row) EULASTIC_BODY {
+  in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
     prefetch(t, row, t.fraction[0], 3);
     move(t, row, t.fraction[0], 3, rate,
          [&](double *out) EULASTIC_BODY { centre_advection_rate(row, t.fraction[0], v, t.inverse.data(), 1e-6, out); });
   });
-  for (int block = 0; block < n[1]; block += kernels::block_rows)
-    for (int k = 0; k < n[2]; ++k) {
+  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k) {
       move_tensor(t, block, k, at_centre, 0, 3);
       for (int c = 0; c < 3; ++c) move_tensor(t, block, k, {c != 0, c != 1, c != 2}, 3 + c, 4 + c);
     }
@@ -92,11 +93,11 @@ constexpr double derivatives = 30, advection_flops = derivatives * (kernels::wen
 constexpr double advection_bytes = 10 * (8 + 16) + 2 * 24;  // the velocities once more for phi and for B
 
 // L.B + B.L^T into a row that stays in the first-level cache, as in the step.
-EULASTIC_CLONES void stretch(const Fields &t, RowScratch &scratch) {
+EULASTIC_CLONES void stretch(const Fields &t, const RowPart &part, RowScratch &scratch) {
   double *rate = scratch.row(0);
   const ConstView v0 = t.velocity[0];
   const std::ptrdiff_t stride[3] = {1, v0.sy, v0.sz};
-  in_blocks(t.grid.owned(), [&](const Segment &row) EULASTIC_BODY {
+  in_blocks(t.grid.owned()[0], part, [&](const Segment &row) EULASTIC_BODY {
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       const kernels::Directions d{stride[a], stride[b], stride[c], t.inverse[a], t.inverse[b], t.inverse[c]};
@@ -130,31 +131,35 @@ void part(benchmark::State &state, double bytes, double flops, Task task) {
   const Real3 &h = grid.spacing();
   const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor,
                       next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
-  RowScratch scratch(grid, 1);
-  performance::measure(state, {grid.cell_count(), bytes, flops}, [&] { return task(fields, scratch, now.phases); });
+  performance::measure(state, {grid.cell_count(), bytes, flops}, [&] { return task(fields, now.phases); });
 }
 
 void advection(benchmark::State &state) {
-  part(state, advection_bytes, advection_flops, [](const Fields &fields, RowScratch &scratch, const auto &) {
-    advect(fields, scratch);
+  part(state, advection_bytes, advection_flops, [](const Fields &fields, const auto &) {
+    in_row_parts(fields.grid, [&](const RowPart &rows) {
+      RowScratch scratch(fields.grid, 1);
+      advect(fields, rows, scratch);
+    });
     return 0;
   });
   state.counters["derivatives"] = derivatives;
 }
 
 void oldroyd_rate(benchmark::State &state) {
-  part(state, stretch_bytes, stretch_flops, [](const Fields &fields, RowScratch &scratch, const auto &) {
-    stretch(fields, scratch);
+  part(state, stretch_bytes, stretch_flops, [](const Fields &fields, const auto &) {
+    in_row_parts(fields.grid, [&](const RowPart &rows) {
+      RowScratch scratch(fields.grid, 1);
+      stretch(fields, rows, scratch);
+    });
     return 0;
   });
 }
 
 // Stress and its divergence: one pass, no stress is stored.
 void elastic_force(benchmark::State &state) {
-  part(state, elastic_bytes, 3 * kernels::elastic_flops_3d,
-       [](const Fields &fields, RowScratch &, const std::vector<Phase> &phases) {
-         return add_elastic_force(fields.grid, 1, phases, fields.next);
-       });
+  part(state, elastic_bytes, 3 * kernels::elastic_flops_3d, [](const Fields &fields, const std::vector<Phase> &phases) {
+    return add_elastic_force(fields.grid, 1, phases, fields.next);
+  });
 }
 
 #define EULASTIC_PART(name)                      \

@@ -47,6 +47,8 @@ class CommandLine(unittest.TestCase):
         for added, says in [
                 ("-grid_cels 8,8,8", ["-grid_cels", "-grid_cells"]),
                 ("-series_interval", ["-series_interval", "missing"]),
+                ("-threads 0", ["-threads", "out of range", "an integer"]),
+                ("-threads two", ["-threads", "two"]),
                 ("-body_force 1,,0", ["-body_force", "empty item"]),
                 ("-body_force 1,0", ["-body_force", "3 numbers"]),
                 ("-fluid_density 1x", ["-fluid_density", "1x", "a number > 0"]),
@@ -128,6 +130,17 @@ class CommandLine(unittest.TestCase):
             done = self.run_program(*words, "-output_dir", radius)
             self.assertEqual(done.returncode, 0)
             self.assertEqual(done.stderr[:len(warning)] if warning else done.stderr, warning)
+
+    def test_more_threads_than_processors_are_a_warning(self):
+        allowed = os.sched_getaffinity(0)
+        self.addCleanup(os.sched_setaffinity, 0, allowed)
+        os.sched_setaffinity(0, {min(allowed)})
+        for threads in 1, 2:
+            done = self.run_program(*SCENE, "-threads", str(threads), "-output_dir", str(threads))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stderr, "" if threads == 1 else "eulastic: warning: -threads 2: this rank may use 1 "
+                             "processor(s); with Open MPI, mpiexec --map-by slot:PE=2 gives a rank as many as it has "
+                             "threads\n")
 
     def test_errors_on_several_ranks_are_printed_once(self):
         result = self.run_program(*SCENE, "-nonsense", ranks=3)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Every case of options/ for a few steps: the same state hash on 1 to 4 ranks, with AVX-512 and without, and with
-nothing skipped (programs that differ from the usual one in that only: tests/CMakeLists.txt).
+"""Every case of options/ for a few steps: the same state hash on 1 to 4 ranks, with threads, with AVX-512 and without, and
+with nothing skipped (programs that differ from the usual one in that only: tests/CMakeLists.txt).
 
 Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE.
 """
@@ -61,6 +61,10 @@ class SameBits(unittest.TestCase):
                 one = self.summary(case, *options)
                 for n in (2, 3, 4):
                     self.same(one, self.summary(case, *options, ranks=n), f"{n} ranks")
+                for ranks, threads in ((1, 3), (2, 2)):
+                    summary = self.summary(case, *options, "-threads", str(threads), ranks=ranks)
+                    self.assertEqual(summary["threads"], threads)
+                    self.same(one, summary, f"{ranks} ranks, {threads} threads each")
                 self.same(one, self.summary(case, *options, program="EULASTIC_AVX2"), "without AVX-512")
                 if not one["bodies"]:
                     continue

@@ -238,7 +238,7 @@ class Performance(WithFolder):
         with self.assertRaises(SystemExit):
             performance_runs.write_tables({"z": ""})
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
-        self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "targets", "verbs", "two_ranks",
+        self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "targets", "verbs", "two_cores",
                                  "cost_of_bodies", "small_body", "memory"})
 
     def test_table_of_verbs(self):

@@ -108,7 +108,7 @@ TEST(ActiveSegments, BandAndItsFaces) {
                           [&](const Point &) { return std::fabs(random()) < share ? 0.5 : rest; });
           ActiveSegments band, faces;
           band.build_band(grid, value[0], {}, margin);
-          faces.build_faces(band);
+          faces.build_faces(grid, band);
           int idle = 0, points = 0;
           const int mz = flat ? 0 : margin;
           for (int k = -mz; k < cells[2] + mz; ++k)

@@ -1,0 +1,97 @@
+// The solid fraction by WENO5, and where solid is.
+#include "base/events.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
+#include "kernels/stencils.hpp"
+#include "kernels/weno5.hpp"
+#include "physics/advection.hpp"
+#include "physics/transport.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+constexpr double epsilon = 1e-6;  // WENO5: phi is of order 1
+
+struct Move {
+  const Grid *grid;
+  double dt;
+  const FieldBlock *velocity;
+  Real3 inverse;
+};
+
+template <int Dim>
+EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
+                                 FieldBlock &out, RowScratch &scratch) {
+  const Int3 n = t.grid->owned();
+  const ConstView phi = phase.fraction[0];
+  const double dt = t.dt;
+  const int ghosts = t.grid->layout().ghosts[0];
+  const FieldBlock &v = *t.velocity;
+  double *rate = scratch.row(0);
+  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = block; j < std::min(block + kernels::block_rows, part.j_end); ++j) {
+        const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
+        const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
+        double *next = out[0].row(j, k);
+        for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
+        for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
+        const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
+        if (row.size() <= 0) continue;
+        if (Dim == 3) {  // the next plane
+          kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
+          for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
+          kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
+        }
+        centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
+        const double *now = phi.row(j, k);
+#pragma omp simd
+        for (int i = row.i_begin; i < row.i_end; ++i) {
+          const double moved = kernels::fma(dt, rate[i], now[i]);
+          next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
+        }
+        if (t.grid->wraps_x()) t.grid->wrap_row(next, ghosts);
+      }
+}
+
+EULASTIC_CLONES void advect_2d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
+                               FieldBlock &out, RowScratch &s) {
+  advect_rows<2>(t, part, phase, next_rows, out, s);
+}
+EULASTIC_CLONES void advect_3d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
+                               FieldBlock &out, RowScratch &s) {
+  advect_rows<3>(t, part, phase, next_rows, out, s);
+}
+
+}  // namespace
+
+PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+                               const OccupiedRows &next_rows, FieldBlock &next) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::solid_fraction);
+  const Real3 &h = grid.spacing();
+  const Move terms{&grid, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
+  in_row_parts(grid, [&](const RowPart &part) {
+    RowScratch scratch(grid, 1);
+    (grid.dimension() == 2 ? advect_2d : advect_3d)(terms, part, phase, next_rows, next, scratch);
+  });
+  scope.flops(double(phase.rows.cells()) * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::solid_fraction);
+  const ConstView phi = phase.fraction[0];
+  phase.solid.build(grid, phi, phase.rows, rule.centre, 1, 0);
+  if (rule.layers > 0)
+    phase.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
+  else
+    phase.strained = phase.solid;
+  phase.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
