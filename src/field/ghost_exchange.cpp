@@ -4,6 +4,7 @@
 #include "grid/threads.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace eulastic {
 namespace {
@@ -48,10 +49,11 @@ PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
       low[d] = -width;
       high[d] = own.cells[d] + width;
     }
-    if (grid_->wraps_x()) {
-      low[0] = 0;
-      high[0] = own.cells[0];
-    }
+    for (int d = 0; d < 3; ++d)
+      if (is_copied(d)) {
+        low[d] = 0;
+        high[d] = own.cells[d];
+      }
     std::vector<PetscInt> leaves;
     std::vector<PetscSFNode> roots;
     for (int k = low[2]; k < high[2]; ++k)
@@ -89,6 +91,7 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const Occupied
   PetscSF sf;
   PetscFunctionBeginUser;
   if (rows && rows->inside()) PetscFunctionReturn(0);
+  if (grid_->ranks() == 1) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
   PetscCall(forest({block.count(), width}, &sf));
   PetscCall(PetscSFBcastBegin(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
@@ -100,9 +103,55 @@ PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const Occup
   PetscFunctionBeginUser;
   if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(forest({block.count(), width}, &sf));
-  PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
+  if (grid_->ranks() > 1) {
+    PetscCall(forest({block.count(), width}, &sf));
+    PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
+  }
+  copy_rows(block, width);
   PetscFunctionReturn(0);
+}
+
+bool GhostExchange::is_copied(int d) const {
+  return d < grid_->dimension() && grid_->boundary(d) == Boundary::periodic && grid_->processors(d) == 1;
+}
+
+// Points along d that exist, `width` ghosts included where there are any.
+GhostExchange::Range GhostExchange::reach(int d, int width) const {
+  const Layout &own = grid_->layout();
+  const int ghosts = std::min(width, own.ghosts[d]);
+  Range range{-ghosts, own.cells[d] + ghosts};
+  if (grid_->is_wall(d))
+    range = {std::max(range.begin, -own.begin[d]), std::min(range.end, grid_->cells()[d] + 1 - own.begin[d])};
+  return range;
+}
+
+// Ghost rows across a periodic y and z that are not split: y first, in the planes that z takes its own from.
+void GhostExchange::copy_rows(FieldBlock &block, int width) const {
+  const Int3 &n = block.layout().cells;
+  const Range x = is_copied(0) ? Range{0, n[0]} : reach(0, width), y = reach(1, width);
+  const Range z = is_copied(2) ? Range{0, n[2]} : reach(2, width);
+  const std::size_t bytes = sizeof(double) * (x.end - x.begin);
+  const int parts = row_parts(*grid_);
+  const auto copy = [&](int d, View q, int j, int k) {  // from one end of the line of rows to the other, layer by layer
+    double *low = q.row(j, k) + x.begin;
+    const std::ptrdiff_t s = q.stride(d), last = (n[d] - 1) * s;
+    for (int m = 1; m <= std::min(width, block.layout().ghosts[d]); ++m) {
+      std::memcpy(low - m * s, low + last - (m - 1) * s, bytes);
+      std::memcpy(low + last + m * s, low + (m - 1) * s, bytes);
+    }
+  };
+  const auto copy_all = [&](int d, const Range &lines) {
+    in_parallel(parts, parts, [&](int part) {
+      const Piece piece(lines.end - lines.begin, part, parts);
+      for (int f = 0; f < block.count(); ++f)
+        for (std::size_t line = piece.begin; line < piece.end; ++line) {
+          const int at = lines.begin + static_cast<int>(line);
+          copy(d, block[f], d == 1 ? 0 : at, d == 1 ? at : 0);
+        }
+    });
+  };
+  if (is_copied(1)) copy_all(1, z);
+  if (is_copied(2)) copy_all(2, y);
 }
 
 // Wraps the rows (j, k) of all fields for which not skip(j, k). Rows behind walls are left alone: what is there must
@@ -112,17 +161,14 @@ void GhostExchange::wrap_rows(FieldBlock &block, int width, Skip skip) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
   if (!grid_->wraps_x()) return;
   const Layout &own = block.layout();
-  const auto first = [&](int d) { return grid_->touches_low(d) ? 0 : -std::min(width, own.ghosts[d]); };
-  const auto last = [&](int d) {
-    return grid_->touches_high(d) ? grid_->points_end(d, true) : own.cells[d] + std::min(width, own.ghosts[d]);
-  };
-  const int n = own.cells[0], j_begin = first(1), j_end = last(1), k_begin = first(2), k_end = last(2);
+  const Range y = reach(1, width), z = reach(2, width);
+  const int n = own.cells[0];
   const int parts = row_parts(*grid_);
   in_parallel(parts, parts, [&](int part) {
-    const Piece planes(k_end - k_begin, part, parts);
+    const Piece planes(z.end - z.begin, part, parts);
     for (int f = 0; f < block.count(); ++f)
-      for (int k = k_begin + int(planes.begin); k < k_begin + int(planes.end); ++k)
-        for (int j = j_begin; j < j_end; ++j) {
+      for (int k = z.begin + int(planes.begin); k < z.begin + int(planes.end); ++k)
+        for (int j = y.begin; j < y.end; ++j) {
           if (skip(j, k)) continue;
           double *row = block[f].row(j, k);
           const double *later = row + ahead * own.sy;

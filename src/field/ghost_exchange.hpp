@@ -1,7 +1,7 @@
 // Ghost-only exchange: a PetscSF straight on the local arrays, so that no interior value is ever copied.
 //
-// Ghosts in a periodic x that is not split are wrapped row by row and never enter the SF. Index N of a wall
-// direction (the high wall of staggered fields) counts as owned: its values travel like any others. In large boxes
+// Ghosts in a periodic direction that is not split are copied row by row, in x within the row, and never enter the SF.
+// Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others. In large boxes
 // whole rows go in runs of up to eight values, a line of the cache, so that the tables of the SF are that much smaller.
 #pragma once
 
@@ -51,6 +51,12 @@ private:
   PetscErrorCode make_run();
   PetscErrorCode forest(const Key &key, PetscSF *sf);
   PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
+  struct Range {
+    int begin, end;
+  };
+  Range reach(int d, int width) const;
+  bool is_copied(int d) const;
+  void copy_rows(FieldBlock &block, int width) const;
   template <class Skip>
   void wrap_rows(FieldBlock &block, int width, Skip skip) const;
 
