@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs of the benchmark program, and tables between the marks of docs/performance.md.
 
-    context, rows = run_benchmarks("^step/", ranks=2, repetitions=5)
+    rows = run_benchmarks("^step/", ranks=2, repetitions=5)
     write_tables({"name": markdown_table([{"case": "a"}], {"case": "case"})})
 """
 import json
@@ -37,7 +37,7 @@ def on_ranks(ranks, command):
 
 
 def run_benchmarks(program, pattern, ranks=1, repetitions=5, more=(), threads=1):
-    """({"peak": Gflop/s, "triad": GB/s} of all cores, {benchmark: {counter: median of the repetitions}})."""
+    """{benchmark: {counter: median of the repetitions}}; peak (Gflop/s) and triad (GB/s) of all cores are counters."""
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
         command = [program, f"--threads={threads}", f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
                    f"--benchmark_out={file.name}", "--benchmark_out_format=json", "--benchmark_color=false", *more]
@@ -52,10 +52,12 @@ def run_benchmarks(program, pattern, ranks=1, repetitions=5, more=(), threads=1)
         if run.get("run_type") != "aggregate":
             name = re.sub(r"/(iterations:\d+|real_time)", "", run["run_name"])
             gathered.setdefault(name, []).append(run)
-    medians = {name: {key: statistics.median(run[key] for run in runs) for key, value in runs[0].items()
+    return {name: {key: statistics.median(run[key] for run in runs) for key, value in runs[0].items()
                       if isinstance(value, (int, float))} for name, runs in gathered.items()}
-    context = result["context"]
-    return {"peak": float(context["peak_gflops"]), "triad": float(context["triad_gbytes_per_second"])}, medians
+
+
+def median_of(runs, counter):
+    return statistics.median(run[counter] for run in runs.values())
 
 
 def markdown_table(rows, columns):

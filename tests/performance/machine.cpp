@@ -51,38 +51,29 @@ double sum_over_ranks(double value) {
   return value;
 }
 
-double peak_flops() {
-  static const double peak = [] {
-    const auto run = [&](int lanes, void (*work)(double *)) {
-      return 2.0 * lanes * rounds * threads() / least_time(200, [&] {
-               in_parallel(threads(), threads(), [&](int) {
-                 double values[96];
-                 std::fill_n(values, 96, 0.5);
-                 work(values);
-                 benchmark::DoNotOptimize(values);
-               });
+Machine measure_machine() {
+  const auto multiply_adds = [&](int lanes, void (*work)(double *)) {
+    return 2.0 * lanes * rounds * threads() / least_time(100, [&] {
+             in_parallel(threads(), threads(), [&](int) {
+               double values[96];
+               std::fill_n(values, 96, 0.5);
+               work(values);
+               benchmark::DoNotOptimize(values);
              });
-    };
-    const double forty = run(40, multiply_add_40), ninety_six = run(96, multiply_add_96);
-    return sum_over_ranks(std::max(forty, ninety_six));
-  }();
-  return peak;
-}
-
-double triad_bandwidth() {
-  static const double bandwidth = [] {
-    const std::ptrdiff_t n = 1 << 23;
-    std::vector<double> a(n), b(n, 1), c(n, 2);
-    return sum_over_ranks(32.0 * n / least_time(10, [&] {
-                            in_parallel(threads(), threads(), [&](int t) {
-                              const Piece piece(n, t, threads());
-                              const std::size_t at = piece.begin;
-                              triad(static_cast<std::ptrdiff_t>(piece.end - at), &a[at], &b[at], &c[at], 3);
-                            });
-                            benchmark::DoNotOptimize(a.data());
-                          }));
-  }();
-  return bandwidth;
+           });
+  };
+  const std::ptrdiff_t n = 1 << 23;
+  static std::vector<double> a(n), b(n, 1), c(n, 2);
+  const double seconds = least_time(3, [&] {
+    in_parallel(threads(), threads(), [&](int t) {
+      const Piece piece(n, t, threads());
+      const std::size_t at = piece.begin;
+      triad(static_cast<std::ptrdiff_t>(piece.end - at), &a[at], &b[at], &c[at], 3);
+    });
+    benchmark::DoNotOptimize(a.data());
+  });
+  const double peak = std::max(multiply_adds(40, multiply_add_40), multiply_adds(96, multiply_add_96));
+  return {sum_over_ranks(peak), sum_over_ranks(32.0 * n / seconds)};
 }
 
 }  // namespace eulastic::performance

@@ -1,4 +1,5 @@
-// What the cores can do, measured in this process: the yardsticks of all benchmarks; and how results are reported.
+// What the cores can do, measured right after every benchmark, as neighbours on a machine change it within minutes; and
+// how results are reported.
 // Under mpiexec all ranks run the same benchmarks together, and everything counted is the sum over them and their
 // threads.
 #pragma once
@@ -11,12 +12,13 @@
 
 namespace eulastic::performance {
 
-/// Fused multiply-adds on registers, flops per second (two per fma); best of several, measured once, by all ranks at
-/// the same time.
-double peak_flops();
-/// a = b + s c on arrays far larger than the caches, bytes per second; likewise. An element counts 32: the line of a
-/// is read before it is written (write-allocate).
-double triad_bandwidth();
+/// Sums over all cores, measured by all at the same time, best of several.
+struct Machine {
+  double peak;   ///< fused multiply-adds on registers, flops per second (two per fma)
+  double triad;  ///< a = b + s c on arrays far larger than the caches, bytes per second; an element counts 32: the line
+                 ///< of a is read before it is written (write-allocate)
+};
+Machine measure_machine();
 /// Sum over all ranks.
 double sum_over_ranks(double value);
 
@@ -47,13 +49,16 @@ void measure(benchmark::State &state, const Work &work, Verb verb) {
   if (failed) return state.SkipWithError("failed");
   const double iterations = static_cast<double>(state.iterations());
   const double flops = work.flops > 0 ? work.flops : sum_over_ranks(after - before) / (iterations * work.cells);
+  const Machine machine = measure_machine();
   using benchmark::Counter;
   const auto per_second = [](double n) { return Counter(n, Counter::kIsIterationInvariantRate); };
   state.counters["ns_per_cell"] = Counter(1e-9 * work.cells, Counter::kIsIterationInvariantRate | Counter::kInvert);
   state.counters["flops_per_cell"] = Counter(flops);
   state.counters["GFlops"] = per_second(1e-9 * flops * work.cells);
-  state.counters["of_peak"] = per_second(flops * work.cells / peak_flops());
-  const double computing = flops / peak_flops(), moving = work.bytes / triad_bandwidth();
+  state.counters["peak"] = Counter(1e-9 * machine.peak);
+  state.counters["triad"] = Counter(1e-9 * machine.triad);
+  state.counters["of_peak"] = per_second(flops * work.cells / machine.peak);
+  const double computing = flops / machine.peak, moving = work.bytes / machine.triad;
   if (work.bytes > 0) {
     state.counters["bytes_per_cell"] = Counter(work.bytes);
     state.counters["GBytes"] = per_second(1e-9 * work.bytes * work.cells);

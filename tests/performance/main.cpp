@@ -3,7 +3,6 @@
 #include "base/events.hpp"
 #include "box.hpp"
 #include "grid/threads.hpp"
-#include "machine.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -38,9 +37,6 @@ int main(int argc, char **argv) {
   if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 1;
   PetscCall(eulastic::register_events());
   benchmark::AddCustomContext("ranks", std::to_string(ranks));
-  benchmark::AddCustomContext("peak_gflops", std::to_string(1e-9 * eulastic::performance::peak_flops()));
-  benchmark::AddCustomContext("triad_gbytes_per_second",
-                              std::to_string(1e-9 * eulastic::performance::triad_bandwidth()));
   Silent silent;
   if (rank == 0)
     benchmark::RunSpecifiedBenchmarks();
