@@ -1,6 +1,7 @@
 #include "field/walls.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,19 +45,24 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
              const OccupiedRows *rows = nullptr) {
   const std::ptrdiff_t s = q.stride(d);
   const int n = grid.layout().cells[d], last = high ? n - 1 : 0;  // before the wall
-  const auto [begin, end] = Plane(grid.layout(), d);
+  const Plane plane(grid.layout(), d);
   const std::ptrdiff_t step = high ? s : -s;                      // outward
   const std::ptrdiff_t wall = high ? n * s : staggered ? 0 : -s;  // first point on (staggered) or behind the wall
   const std::ptrdiff_t mirror = staggered ? 0 : -step;            // mirror image of that point
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j) {
+  const int from = plane.begin[0], to = plane.end[0], first = staggered ? 1 : 0;
+  const auto reflect_row = [=](double *row) {
+    for (int m = first; m < first + width; ++m)
+      for (int i = from; i < to; ++i) row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
+  };
+  const int low_j = plane.begin[1], low_k = plane.begin[2], lines = plane.end[1] - low_j, parts = row_parts(grid);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece piece(static_cast<std::size_t>(lines) * (plane.end[2] - low_k), part, parts);
+    for (std::size_t line = piece.begin; line < piece.end; ++line) {
+      const int j = low_j + static_cast<int>(line % lines), k = low_k + static_cast<int>(line / lines);
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
-      double *row = q.row(j, k) + wall;
-      const int first = staggered ? 1 : 0;
-      for (int m = first; m < first + width; ++m)
-        for (int i = begin[0]; i < end[0]; ++i)
-          row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
+      reflect_row(q.row(j, k) + wall);
     }
+  });
 }
 
 void reflect_evenly(const Grid &grid, const Staggering &staggering, View field, int width, const OccupiedRows *rows) {
