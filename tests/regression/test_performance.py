@@ -1,0 +1,76 @@
+"""Scripts that measure: their tables, from numbers of known results and from short runs."""
+import re
+import sys
+import types
+import unittest
+
+import numpy
+
+sys.dont_write_bytecode = True
+from test_scripts import SCRIPTS, WithFolder, load, start  # noqa: E402
+
+
+class Performance(WithFolder):
+    def test_tables_stand_between_their_marks(self):
+        import performance_runs
+        page = self.folder / "performance.md"
+        page.write_text("a\n<!-- table x -->\nold\n<!-- end -->\nb\n<!-- table y -->\n<!-- end -->\n")
+        keep, performance_runs.PAGE = performance_runs.PAGE, page
+        self.addCleanup(setattr, performance_runs, "PAGE", keep)
+        performance_runs.write_tables({"x": performance_runs.markdown_table([{"n": 3}], {"n": "cells"})})
+        self.assertEqual(page.read_text(), "a\n<!-- table x -->\n\n| cells |\n|---|\n| 3 |\n\n<!-- end -->\nb\n"
+                                           "<!-- table y -->\n<!-- end -->\n")
+        with self.assertRaises(SystemExit):
+            performance_runs.write_tables({"z": ""})
+        marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
+        self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "targets", "verbs", "two_cores",
+                                 "cost_of_bodies", "small_body", "memory"})
+
+    def test_table_of_verbs(self):
+        table1 = load("paper_table1")
+        run = {"bytes_per_cell": 100, "flops_per_cell": 100, "ns_per_cell": 6, "peak": 50, "triad": 25}
+        text = table1.verbs_table(128, {f"{verb}/128": run for verb in table1.VERBS})
+        self.assertIn("| D* by itself (fast) | 100 | 100 | 4.00 | 2.00 | 6.00 | 1.50 |", text)
+
+    def test_table_of_two_cores(self):
+        table1 = load("paper_table1")
+        run = lambda ns, triad, peak: {f"{name}/64": {"ns_per_cell": ns, "triad": triad, "peak": peak}
+                                       for name in table1.TWO_CORES}
+        rounds = [[run(10, 20, 50), run(5, 30, 90), run(4, 40, 100)], [run(12, 20, 50), run(8, 40, 90), run(8, 20, 50)],
+                  [run(10, 10, 50), run(10, 10, 50), run(5, 20, 100)]]
+        text = table1.two_cores_table(64, rounds)
+        self.assertIn("| triad | 1.50 | - | 2.00 | - |\n| peak | 1.80 | - | 2.00 | - |", text)
+        self.assertIn("| RKL stage | 1.50 | 100.0 % | 2.00 | 125.0 % |", text)
+
+    def test_the_paper_has_its_own_rate(self):
+        ns = 0.73e9 / 8.39e6
+        rows = {f"{part}/64/64/64": {"ns_per_cell": ns, "derivatives": 30, "peak": 128} for part in
+                ("step/red_cells", "step/pure_flow", "advection")}
+        text = load("paper_table1").targets_table({"64/64/64": "64^3"}, rows, rows)
+        self.assertIn("red cells, 64^3 | 0.090 | 0.090 | 0.090 |", text)
+
+    def test_thickness_of_a_dimple(self):
+        """A plate 6 x 1.3 x 6 across the seam of x, askew to nothing: what the integral over phi finds."""
+        spacing, cells = numpy.array([0.5, 0.25, 0.5]), (32, 48, 24)
+        run = types.SimpleNamespace(
+            cells=cells, spacing=spacing, length=spacing * cells, centres=lambda d: (numpy.arange(cells[d]) + 0.5) * spacing[d],
+            bodies=types.SimpleNamespace(time=numpy.array([0.0]), centroid=numpy.array([[[1.0, 5.1, 6.0]]])))
+        part = [numpy.clip((half - abs((run.centres(d) - c + length / 2) % length - length / 2)) / h + 0.5, 0, 1)
+                for d, (half, c, h, length) in enumerate(zip((3, 0.65, 3), (1, 5.1, 6), spacing, run.length))]
+        snapshot = type("Snapshot", (dict,), {"time": 0.0})
+        phi = part[2][:, None, None] * part[1][:, None] * part[0]
+        thickness, largest = load("dimple_study").middle(run, snapshot(solid_fraction=phi))
+        self.assertAlmostEqual(thickness, 1.3, delta=1e-3)
+        self.assertAlmostEqual(largest, 1, delta=1e-12)
+
+    def test_cost_of_bodies(self):
+        done = start(SCRIPTS / "cost_of_bodies", "--quick", "--only", "share", "memory")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("|")]
+        self.assertEqual([row[1] for row in rows[2:5]], ["0.000", "0.562", "1.000"])  # half, and the cells cut
+        fields = {row[0]: int(row[1]) for row in rows if "classic" in row[0]}
+        self.assertLess(fields["pure flow, classic, 64^3"], fields["red cells, classic, 64^3"])
+
+
+if __name__ == "__main__":
+    unittest.main()
