@@ -50,7 +50,7 @@ struct RowPart {
   RowPart with_ghosts(const Grid &grid) const;
 };
 
-/// Into how many: as many as there are threads, but none of less than a few thousand cells.
+/// Into how many: as many as there are threads, but none of less than some hundred cells.
 int row_parts(const Grid &grid);
 RowPart row_part(const Grid &grid, int part, int parts);
 

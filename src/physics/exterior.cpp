@@ -144,9 +144,9 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
   }
   linear_ = phase.material.linear;
   const int team = row_parts(grid);
-  masks_.resize(team);
+  masks_.resize(team > 1 ? locations_.size() : 1);
   in_parallel(team, static_cast<int>(locations_.size()),
-              [&](int l) { build_location(grid, phase, &masks_[l % team], &locations_[l]); });
+              [&](int l) { build_location(grid, phase, &masks_[team > 1 ? l : 0], &locations_[l]); });
   PetscFunctionReturn(0);
 }
 

@@ -61,7 +61,7 @@ private:
 
   bool linear_ = false;
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
-  std::vector<Mask> masks_;  ///< one per thread
+  std::vector<Mask> masks_;          ///< of every location, without threads of one at a time
 };
 
 }  // namespace eulastic
