@@ -54,9 +54,9 @@ template <class Add>
 PetscErrorCode sum_bodies(const Grid &grid, const Add &add, BodySums *sums) {
   PetscFunctionBeginUser;
   const int parts = row_parts(grid);
-  std::vector<BodySums> found(parts, *sums);
-  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), found[part]); });
-  for (const BodySums &some : found) sums->add(some);
+  std::vector<BodySums> others(parts - 1, *sums);  // there may be millions of bodies: one thread needs no copy
+  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), part == 0 ? *sums : others[part - 1]); });
+  for (const BodySums &some : others) sums->add(some);
   PetscCall(sums->reduce(grid.comm()));
   PetscFunctionReturn(0);
 }
