@@ -8,6 +8,10 @@
 
 namespace eulastic {
 
+/// n rounded up to a multiple of what the widest vectors hold of bytes: what is left of a row after them, done one by
+/// one, would often be most of it.
+constexpr int whole_vectors(int n) { return (n + 63) / 64 * 64; }
+
 class RowScratch {
 public:
   RowScratch(const Grid &grid, int rows)

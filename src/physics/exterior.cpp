@@ -1,6 +1,7 @@
 #include "physics/exterior.hpp"
 
 #include "base/events.hpp"
+#include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 
@@ -53,19 +54,16 @@ EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *st
     flag_points<false>(n, phi, step, threshold, row);
 }
 
-// 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere. Returns whether there is any.
-EULASTIC_CLONES unsigned find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz,
-                                    unsigned char L, unsigned char *found) {
+// 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere; whole vectors.
+EULASTIC_CLONES void find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz, unsigned char L,
+                                unsigned char *found) {
   const auto least = [](unsigned char a, unsigned char b) EULASTIC_BODY { return a < b ? a : b; };
-  unsigned char any = 0;
-#pragma omp simd reduction(| : any)
+#pragma omp simd
   for (int i = 0; i < n; ++i) {
     const unsigned char near =
         least(least(least(row[i - 1], row[i + 1]), least(row[i - sy], row[i + sy])), least(row[i - sz], row[i + sz]));
     found[i] = row[i] == outside && near < L;
-    any |= found[i];
   }
-  return any;
 }
 
 // The first point from i on that is found, or n.
@@ -155,7 +153,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
   const EvolveRule &rule = evolve_rule_of(phase.material);
   const Layout &layout = grid.layout();
   const Staggering &at = location->staggering;
-  layer_of->assign(static_cast<std::size_t>(layout.size), outside);
+  layer_of->assign(layout.size + whole_vectors(1), outside);
   unsigned char *mask = layer_of->data();
   std::ptrdiff_t step[2] = {0, 0};
   int steps = 0;
@@ -184,35 +182,52 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
         for (int i = 0; i < end - begin; ++i)
           if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
     }
-  std::vector<unsigned char> found(all.end[0] - all.begin[0]);
   const Reach owned(grid, at, 0);
+  // A row is marked once the next one has been looked at, which would wait for the marks.
+  struct Row {
+    int begin, n = 0, j, k;
+    unsigned char *mask;
+    std::vector<unsigned char> found;
+  } row, before;
+  row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
+  before.found = row.found;
   for (int L = 1; L <= layers; ++L) {
-    const Reach box(grid, at, layers - L);
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
-    for (int k = box.begin[2]; k < box.end[2]; ++k)
-      for (int j = box.begin[1]; j < box.end[1]; ++j) {
-        const auto [begin, end] = part(box, j, k);
-        const int n = end - begin;
-        if (n <= 0) continue;
-        unsigned char *row = mask + layout.offset(begin, j, k);
-        if (find_layer(n, row, stride[1], stride[2], static_cast<unsigned char>(L), found.data()) == 0) continue;
-        for (int i = next_found(found.data(), 0, n); i < n; i = next_found(found.data(), i + 1, n)) {
-          unsigned char *here = row + i;
-          *here = static_cast<unsigned char>(L);
-          if (linear_ && !owned.contains({begin + i, j, k})) continue;
-          unsigned neighbours = 0, lines = 0;
-          for (int d = 0; d < grid.dimension(); ++d) {
-            const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
-            if (here[-stride[d]] < L) neighbours |= low;
-            if (here[stride[d]] < L) neighbours |= high;
-            if (!linear_) continue;
-            if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
-            if (neighbours & high && leads_in(here, stride[d])) lines |= high;
-          }
-          entries.emplace_back(here - mask, neighbours, lines);
+    const auto mark = [&](Row &r) {
+      for (int i = next_found(r.found.data(), 0, r.n); i < r.n; i = next_found(r.found.data(), i + 1, r.n)) {
+        unsigned char *here = r.mask + i;
+        *here = static_cast<unsigned char>(L);
+        if (linear_ && !owned.contains({r.begin + i, r.j, r.k})) continue;
+        unsigned neighbours = 0, lines = 0;
+        for (int d = 0; d < grid.dimension(); ++d) {
+          const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
+          if (here[-stride[d]] < L) neighbours |= low;
+          if (here[stride[d]] < L) neighbours |= high;
+          if (!linear_) continue;
+          if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
+          if (neighbours & high && leads_in(here, stride[d])) lines |= high;
         }
+        entries.emplace_back(here - mask, neighbours, lines);
       }
+      r.n = 0;
+    };
+    const Reach box(grid, at, layers - L);
+    for (row.k = box.begin[2]; row.k < box.end[2]; ++row.k)
+      for (row.j = box.begin[1]; row.j < box.end[1]; ++row.j) {
+        const auto [begin, end] = part(box, row.j, row.k);
+        if (begin >= end) continue;
+        row.begin = begin;
+        row.n = end - begin;
+        row.mask = mask + layout.offset(begin, row.j, row.k);
+        find_layer(whole_vectors(row.n), row.mask, stride[1], stride[2], static_cast<unsigned char>(L),
+                   row.found.data());
+        mark(before);
+        std::swap(row, before);
+        row.j = before.j;
+        row.k = before.k;
+      }
+    mark(before);
   }
 }
 
