@@ -53,20 +53,22 @@ EULASTIC_CLONES void energy_3d(const Row &row, double *out) {
   row.law.k2 == 0 ? energy_row<3, false>(row, out) : energy_row<3, true>(row, out);
 }
 
-// phi sigma_e : grad v, by vectors that hold any solid.
+// phi sigma_e : grad v, by runs of vectors that hold any solid.
 template <int Dim>
 EULASTIC_INLINE void power_row(const Row &row, const double *inverse, double *out) {
   constexpr int width = 8;
   std::fill(out + row.begin, out + row.end, 0.0);
+  int run = row.begin;  // where the one begins that has come so far
   for (int begin = row.begin; begin < row.end; begin += width) {
     const int end = std::min(begin + width, row.end);
     bool any = false;
 #pragma omp simd reduction(| : any)
     for (int i = begin; i < end; ++i) any |= row.phi[i] != 0;
-    if (!any) continue;
-    times_fraction(row.phi, begin, end, out, [&](int i) EULASTIC_BODY {
+    if (any && end < row.end) continue;
+    times_fraction(row.phi, run, any ? end : begin, out, [&](int i) EULASTIC_BODY {
       return kernels::power_density<Dim>(row.B.component, row.v, i, row.stride, inverse, row.law);
     });
+    run = end;
   }
 }
 
