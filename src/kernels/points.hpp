@@ -34,10 +34,6 @@ EULASTIC_INLINE void gather(Batch &batch, std::ptrdiff_t row, int begin, int end
   }
 }
 
-/// Verbs go through all of z for so many rows at a time: of 128 cells, three fields of them seven planes deep fit the
-/// second-level cache.
-inline constexpr int block_rows = 32;
-
 /// body(offset, slot) for the points of a segment: offset from the origin of q and of every field like it, slot = i.
 template <class Body>
 EULASTIC_INLINE void for_points(const Segment &s, ConstView q, Body body) noexcept {

@@ -33,15 +33,27 @@ EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy,
   return sum;
 }
 
-/// sum += weight (r - factor lap r): what one relaxation from zero leaves of the right-hand side r.
-template <int Dim>
-EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, LineCoefficients c, double factor,
-                                          double weight, double *sum) noexcept {
+/// sum += weight (r - factor lap r), of so many rows from s on: what one relaxation from zero leaves of the right-hand
+/// side r.
+template <int Dim, int Rows>
+EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const LineCoefficients *coefficients,
+                                          const double *weight, double factor, double *sum) noexcept {
   const double *f = r.row(s.j, s.k);
   const std::ptrdiff_t sy = r.sy, sz = r.sz;
+  LineCoefficients c[Rows];
+  double w[Rows];
+  for (int b = 0; b < Rows; ++b) {
+    c[b] = coefficients[b];
+    w[b] = weight[b];
+  }
 #pragma omp simd
-  for (int i = s.i_begin; i < s.i_end; ++i)
-    sum[i] = fma(weight, fma(-factor, line_laplacian<Dim>(f, i, sy, sz, c), f[i]), sum[i]);
+  for (int i = s.i_begin; i < s.i_end; ++i) {
+    double total = sum[i];
+#pragma GCC unroll 2
+    for (int b = 0; b < Rows; ++b)
+      total = fma(w[b], fma(-factor, line_laplacian<Dim>(f + b * sy, i, sy, sz, c[b]), f[b * sy + i]), total);
+    sum[i] = total;
+  }
 }
 
 /// out = q + factor (r - lap q), one relaxation.
@@ -63,20 +75,35 @@ EULASTIC_INLINE void join_pairs(int n, const double *fine, const double *low, co
   for (int i = 0; i < n; ++i) coarse[i] = fma(low[i], fine[2 * i], high[i] * fine[2 * i + 1]);
 }
 
-/// Linear interpolation from coarse cells to their two halves; low and high are the shares of the neighbours.
-EULASTIC_INLINE void split_pairs(int begin, int end, const double *coarse, const double *low, const double *high,
-                                 double *fine) noexcept {
-#pragma omp simd
-  for (int i = begin; i < end; ++i) {
-    fine[2 * i] = fma(low[i], coarse[i - 1] - coarse[i], coarse[i]);
-    fine[2 * i + 1] = fma(high[i], coarse[i + 1] - coarse[i], coarse[i]);
+/// Rows of coarse cells around a row of fine ones: its own, the neighbour in y, and both of them a plane on in z. The
+/// shares are those of the neighbours.
+struct Corners {
+  const double *row[4];
+  double y, z;
+
+  /// Interpolated along y and z.
+  EULASTIC_INLINE double at(int i) const noexcept {
+    const double near = fma(y, row[1][i] - row[0][i], row[0][i]), far = fma(y, row[3][i] - row[2][i], row[2][i]);
+    return fma(z, far - near, near);
   }
+};
+
+/// out = factor r + what the corners say of the same cells.
+EULASTIC_INLINE void add_interpolated(int begin, int end, Corners coarse, double factor, const double *r,
+                                      double *out) noexcept {
+#pragma omp simd
+  for (int i = begin; i < end; ++i) out[i] = fma(factor, r[i], coarse.at(i));
 }
 
-/// out = a + share (b - a).
-EULASTIC_INLINE void blend(int begin, int end, const double *a, const double *b, double share, double *out) noexcept {
+/// The same of the two halves of coarse cells; low and high are the shares of the neighbours in x.
+EULASTIC_INLINE void add_interpolated_pairs(int begin, int end, Corners coarse, const double *low, const double *high,
+                                            double factor, const double *r, double *out) noexcept {
 #pragma omp simd
-  for (int i = begin; i < end; ++i) out[i] = fma(share, b[i] - a[i], a[i]);
+  for (int i = begin; i < end; ++i) {
+    const double here = coarse.at(i);
+    out[2 * i] = fma(factor, r[2 * i], fma(low[i], coarse.at(i - 1) - here, here));
+    out[2 * i + 1] = fma(factor, r[2 * i + 1], fma(high[i], coarse.at(i + 1) - here, here));
+  }
 }
 
 /// N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute index mod

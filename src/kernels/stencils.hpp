@@ -23,11 +23,6 @@ EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_
 EULASTIC_INLINE void prefetch(const double *values, int n) noexcept {
   for (int i = 0; i < n; i += 8) __builtin_prefetch(values + i, 0, 2);
 }
-/// The values of the next plane that a stencil around row(j, k) comes to four rows later.
-template <int Dim>
-EULASTIC_INLINE void prefetch_plane(const double *row, int n, std::ptrdiff_t sy, std::ptrdiff_t sz) noexcept {
-  if constexpr (Dim == 3) prefetch(row + 4 * sy + sz, n);
-}
 
 /// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.
 /// Along each direction where the two locations differ the two neighbours are averaged: towards +d from faces to

@@ -1,8 +1,8 @@
 #include "physics/momentum.hpp"
 
 #include "base/events.hpp"
+#include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
-#include "grid/threads.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/mooney_rivlin.hpp"
 #include "kernels/weno5.hpp"
@@ -109,9 +109,9 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
   const ConstView p = (*t.pressure)[0];
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
-  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+  for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k) {
-      const int end = std::min(block + kernels::block_rows, part.j_end);
+      const int end = std::min(block + block_rows, part.j_end);
       for (int j = block; j < end; ++j) {
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
@@ -155,9 +155,9 @@ EULASTIC_CLONES void predict_3d(const PredictorTerms &t, const RowPart &part, Fi
 template <int Dim>
 EULASTIC_INLINE void elastic_rows(const Grid &grid, const RowPart &part, double scale, const std::vector<Phase> &phases,
                                   FieldBlock &force) {
-  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+  for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k)
-      elastic_force<Dim>(grid, phases, scale, block, std::min(block + kernels::block_rows, part.j_end), k, force);
+      elastic_force<Dim>(grid, phases, scale, block, std::min(block + block_rows, part.j_end), k, force);
 }
 
 EULASTIC_CLONES void elastic_2d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,

@@ -1,7 +1,7 @@
 // The solid fraction by WENO5, and where solid is.
 #include "base/events.hpp"
+#include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
-#include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/advection.hpp"
@@ -30,30 +30,28 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
   const int ghosts = t.grid->layout().ghosts[0];
   const FieldBlock &v = *t.velocity;
   double *rate = scratch.row(0);
-  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = block; j < std::min(block + kernels::block_rows, part.j_end); ++j) {
-        const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
-        const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
-        double *next = out[0].row(j, k);
-        for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
-        for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
-        const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
-        if (row.size() <= 0) continue;
-        if (Dim == 3) {  // the next plane
-          kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
-          for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
-          kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
-        }
-        centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
-        const double *now = phi.row(j, k);
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
+    const int begin = std::max(old.begin, -ghosts), end = std::min(old.end, n[0] + ghosts);
+    double *next = out[0].row(j, k);
+    for (int i = begin; i < std::min(end, span.begin); ++i) next[i] = 0;
+    for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
+    const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
+    if (row.size() <= 0) return;
+    if (Dim == 3) {  // the next plane
+      kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
+      for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
+      kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
+    }
+    centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
+    const double *now = phi.row(j, k);
 #pragma omp simd
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const double moved = kernels::fma(dt, rate[i], now[i]);
-          next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
-        }
-        if (t.grid->wraps_x()) t.grid->wrap_row(next, ghosts);
-      }
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const double moved = kernels::fma(dt, rate[i], now[i]);
+      next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
+    }
+    if (t.grid->wraps_x()) t.grid->wrap_row(next, ghosts);
+  });
 }
 
 EULASTIC_CLONES void advect_2d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,

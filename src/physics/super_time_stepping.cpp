@@ -1,13 +1,11 @@
 #include "physics/super_time_stepping.hpp"
 
 #include "base/events.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/super_time_stepping.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 namespace eulastic {
 namespace {
@@ -49,45 +47,12 @@ struct StageFields {
 // Most stages in one pass over memory. Five took 3 % less time than four on one rank, and exchange more.
 constexpr int deepest = 4;
 
-// Stages j ... j + depth - 1, each one slice (a plane, in 2-D a row) behind the stage before it. A stage is needed at
-// the owned points and, for those after it, in layers around them, which are computed again instead of exchanged.
+// Stages j ... j + depth - 1.
 struct Pass {
   int depth;
   kernels::RklStage stage[deepest];
   double twice_wall[deepest][3][3][2];  // of component a of what the stage reads, at a wall of direction d: 2 U
 };
-
-// Where a rank ends: an x that is not split wraps around within the row.
-struct Sides {
-  bool wraps_x;
-  bool wall[3][2];
-  bool alone[3];  // no layers to be computed again
-
-  explicit Sides(const Grid &grid) {
-    wraps_x = grid.wraps_x();
-    for (int d = 0; d < 3; ++d) {
-      wall[d][0] = grid.touches_low(d);
-      wall[d][1] = grid.touches_high(d);
-      alone[d] = d >= grid.dimension() || (d == 0 && wraps_x);
-    }
-  }
-  int low(int d, int layers) const { return alone[d] || wall[d][0] ? 0 : layers; }
-  int high(int d, int layers) const { return alone[d] || wall[d][1] ? 0 : layers; }
-};
-
-// The most stages of a pass: the ghosts must reach, and what is computed again stay below a quarter of the first stage.
-// Every rank finds the same.
-int depth_of_passes(const Grid &grid, const Sides &sides) {
-  int depth = 2;
-  for (int more = 3; more <= std::min(deepest, grid.spec().ghosts); ++more) {
-    double share = 1;
-    for (int d = 0; d < grid.dimension(); ++d)
-      if (!sides.alone[d] && (grid.processors(d) > 1 || grid.boundary(d) == Boundary::periodic))
-        share *= 1 + 2.0 * (more - 1) * grid.processors(d) / grid.cells()[d];
-    if (share < 1.25) depth = more;
-  }
-  return depth;
-}
 
 // One stage on the points `row` of component a.
 template <int Dim>
@@ -131,76 +96,35 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
     }
 }
 
-// A block of rows of a component in one pass; in 2-D all rows.
-struct alignas(64) Block {
-  int component, j_begin;
-  const std::atomic<int> *below = nullptr;  // slices that the block of lower rows has done; null: there is none
-  std::atomic<int> done{};
-};
-
-// The first slice of a pass, of the first stage, and one past the last slice of its last stage.
-int first_slice(const Grid &grid, const Sides &sides, int depth) { return -sides.low(grid.dimension() - 1, depth - 1); }
-int end_slice(const Grid &grid, int depth) { return grid.owned()[grid.dimension() - 1] + depth - 1; }
-
-// In the order in which they are done: a block of a component reads what the one below it has written, and may follow
-// it slice by slice: neither writes what the other has not yet read then.
-std::vector<Block> blocks_of(const Grid &grid, const Sides &sides, int depth) {
-  const bool flat = grid.dimension() == 2;
-  const int begin = flat ? 0 : -sides.low(1, depth - 1), end = flat ? 1 : grid.owned()[1] + depth - 1;
-  const int count = (end - begin + kernels::block_rows - 1) / kernels::block_rows;
-  std::vector<Block> blocks(std::size_t(count) * grid.dimension());
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (int b = 0; b < count; ++b) {
-      Block &block = blocks[a * count + b];
-      block.component = a;
-      block.j_begin = begin + b * kernels::block_rows;
-      block.done = first_slice(grid, sides, depth);
-      if (b > 0) block.below = &blocks[a * count + b - 1].done;
-    }
-  return blocks;
-}
-
-// Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. In
-// 3-D every stage is a row behind the one before it too: what they have in common stays in the second-level cache. The
+// Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. The
 // first asks for the next plane.
 template <int Dim>
 EULASTIC_INLINE void stages_of_block(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                                     const StageFields &f, Block &block) {
-  constexpr int last = Dim - 1;
+                                     const StageFields &f, StagePass &order, StagePass::Block &block) {
   const Int3 n = grid.owned();
-  const int a = block.component;
-  for (int first = block.done; first < end_slice(grid, pass.depth); ++first) {
-    while (block.below && block.below->load(std::memory_order_acquire) <= first) std::this_thread::yield();
-    for (int s = 0; s < pass.depth; ++s) {
-      const int slice = first - s, layers = pass.depth - 1 - s;
-      if (slice < -sides.low(last, layers) || slice >= n[last] + sides.high(last, layers)) continue;
-      const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
-      const int j_begin = Dim == 3 ? std::max(block.j_begin - s, -sides.low(1, layers)) : slice;
-      const int j_end =
-          Dim == 3 ? std::min(block.j_begin + kernels::block_rows - s, n[1] + sides.high(1, layers)) : slice + 1;
-      for (int j = j_begin; j < j_end; ++j) {
-        const Segment row{-sides.low(0, layers), n[0] + sides.high(0, layers), j, Dim == 3 ? slice : 0};
-        if (Dim == 3 && s == 0) {
-          kernels::prefetch(w.row(j, slice + 2), n[0]);
-          kernels::prefetch(out.row(j, slice + 1), n[0]);
-          kernels::prefetch((*f.rate)[a].row(j, slice + 1), n[0]);
-          if (f.stressed) kernels::prefetch((*f.slope)[a].row(j, slice + 1), n[0]);
-        }
-        surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
-        stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+  const int a = block.field;
+  order.go<Dim>(block, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+    const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
+    for (; row.j < j_end; ++row.j) {
+      if (Dim == 3 && s == 0) {
+        kernels::prefetch(w.row(row.j, row.k + 2), n[0]);
+        kernels::prefetch(out.row(row.j, row.k + 1), n[0]);
+        kernels::prefetch((*f.rate)[a].row(row.j, row.k + 1), n[0]);
+        if (f.stressed) kernels::prefetch((*f.slope)[a].row(row.j, row.k + 1), n[0]);
       }
+      surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
+      stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
     }
-    block.done.store(first + 1, std::memory_order_release);
-  }
+  });
 }
 
 EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f, Block &block) {
-  stages_of_block<2>(grid, pass, h, sides, f, block);
+                               const StageFields &f, StagePass &order, StagePass::Block &block) {
+  stages_of_block<2>(grid, pass, h, sides, f, order, block);
 }
 EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f, Block &block) {
-  stages_of_block<3>(grid, pass, h, sides, f, block);
+                               const StageFields &f, StagePass &order, StagePass::Block &block) {
+  stages_of_block<3>(grid, pass, h, sides, f, order, block);
 }
 
 // to = scale a + b at all points of the part, wrapped by one; b may be null.
@@ -248,7 +172,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   scale_add(grid, first * dt, work.rate, nullptr, work.now);
   if (stages > 1) work.before.clear();
   const Sides sides(grid);
-  const int depth = depth_of_passes(grid, sides);
+  const int depth = StagePass::depth(grid, sides, 2, deepest);
   PetscCall(exchange.update_rows(work.rate, depth - 1));
   std::vector<char> stressed;
   if (work.slope) {
@@ -271,11 +195,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     PetscCall(exchange.update_rows(work.now, pass.depth));
     if (j > 2 && pass.depth > 2) PetscCall(exchange.update_rows(work.before, pass.depth - 1));
     const StageFields fields{&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before};
-    std::vector<Block> blocks = blocks_of(grid, sides, pass.depth);
-    const auto advance = [&](int b) {
-      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, blocks[b]);
-    };
-    in_parallel(row_parts(grid), static_cast<int>(blocks.size()), advance);
+    StagePass order(grid, sides, pass.depth, grid.dimension());
+    order.for_blocks([&](StagePass::Block &block) {
+      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, block);
+    });
     if (pass.depth % 2) work.now.swap(work.before);
   }
   scale_add(grid, 1, work.now, &velocity, velocity_star);

@@ -1,7 +1,7 @@
 #include "physics/transport.hpp"
 
 #include "base/events.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
 
@@ -205,7 +205,7 @@ struct Evolved {
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                        const FieldBlock &B, FieldBlock &out) {
-  constexpr int block = kernels::block_rows, count = Dim == 3 ? 4 : 2;
+  constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
   Left left[count];  // filled through all planes
   Evolved sum;

@@ -1,7 +1,7 @@
 #include "pressure/acm.hpp"
 
 #include "base/events.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
@@ -20,23 +20,21 @@ EULASTIC_INLINE void add_sums(const Grid &grid, const RowPart &part, ConstView d
   const std::int64_t begin = grid.layout().begin[0];
   const InverseSquares h = grid.inverse_squares();
   const std::ptrdiff_t sy = divergence.sy, sz = divergence.sz;
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j) {
-      const double *D = divergence.row(j, k), *p = pressure.row(j, k);
-      kernels::prefetch_plane<Dim>(D, n[0], sy, sz);
-      kernels::prefetch_plane<Dim>(p, n[0], sy, sz);
-      const auto products = [=](int i, auto add) EULASTIC_BODY {
-        const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h),
-                     lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
-        add(0, -D[i], lap_D);
-        add(1, lap_D, lap_D);
-        add(2, lap_p, lap_p);
-        add(3, D[i], lap_p);
-        add(4, lap_D, lap_p);
-        add(5, p[i], 1);
-      };
-      add_row_sums<sum_count>(n[0], begin, products, sums);
-    }
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const double *D = divergence.row(j, k), *p = pressure.row(j, k);
+    if (Dim == 3)
+      for (const double *row : {D, p}) kernels::prefetch(row + 2 * sz, n[0]);
+    const auto products = [=](int i, auto add) EULASTIC_BODY {
+      const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h), lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
+      add(0, -D[i], lap_D);
+      add(1, lap_D, lap_D);
+      add(2, lap_p, lap_p);
+      add(3, D[i], lap_p);
+      add(4, lap_D, lap_p);
+      add(5, p[i], 1);
+    };
+    add_row_sums<sum_count>(n[0], begin, products, sums);
+  });
 }
 
 EULASTIC_CLONES void add_sums_2d(const Grid &grid, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {

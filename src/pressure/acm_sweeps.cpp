@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/walls.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
@@ -43,30 +43,30 @@ EULASTIC_INLINE void add_sums(const SumTask &t, const RowPart &part, ExactSums &
   const std::int64_t begin = t.grid->layout().begin[0];
   const InverseSquares h = t.h;
   const std::ptrdiff_t sy = t.residual.sy, sz = t.residual.sz;
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j) {
-      const double *D = t.residual.row(j, k), *q[Directions];
-      for (int f = 0; f < Directions; ++f) {
-        q[f] = t.q[f].row(j, k);
-        kernels::prefetch_plane<Dim>(q[f], n[0], sy, sz);
-      }
-      const auto products = [=](int i, auto add) EULASTIC_BODY {
-        double L[Directions];
-        int s = 0;
-        add(s++, D[i], D[i]);
-        add(s++, q[0][i], 1);
-#pragma GCC unroll 4
-        for (int f = 0; f < Directions; ++f) {
-          L[f] = kernels::laplacian<Dim>(q[f] + i, sy, sz, h);
-          add(s++, D[i], L[f]);
-        }
-#pragma GCC unroll 4
-        for (int f = 0; f < Directions; ++f)
-#pragma GCC unroll 4
-          for (int g = 0; g <= f; ++g) add(s++, L[f], L[g]);
-      };
-      add_row_sums<sum_count(Directions)>(n[0], begin, products, sums);
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const double *D = t.residual.row(j, k), *q[Directions];
+    if (Dim == 3) kernels::prefetch(D + sz, n[0]);
+    for (int f = 0; f < Directions; ++f) {
+      q[f] = t.q[f].row(j, k);
+      if (Dim == 3) kernels::prefetch(q[f] + 2 * sz, n[0]);
     }
+    const auto products = [=](int i, auto add) EULASTIC_BODY {
+      double L[Directions];
+      int s = 0;
+      add(s++, D[i], D[i]);
+      add(s++, q[0][i], 1);
+#pragma GCC unroll 4
+      for (int f = 0; f < Directions; ++f) {
+        L[f] = kernels::laplacian<Dim>(q[f] + i, sy, sz, h);
+        add(s++, D[i], L[f]);
+      }
+#pragma GCC unroll 4
+      for (int f = 0; f < Directions; ++f)
+#pragma GCC unroll 4
+        for (int g = 0; g <= f; ++g) add(s++, L[f], L[g]);
+    };
+    add_row_sums<sum_count(Directions)>(n[0], begin, products, sums);
+  });
 }
 
 template <int Dim>
@@ -94,53 +94,45 @@ struct StepTask {
 template <int Dim, int Directions, bool First>
 EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
   const Int3 n = t.grid->owned();
-  constexpr int ahead = 16;  // rows
   const InverseSquares h = t.h;
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
   double c[Directions];
   std::copy_n(t.coefficient, Directions, c);
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j) {
-      const double *q[Directions];
-      for (int f = 0; f < Directions; ++f) {
-        q[f] = t.q[f].row(j, k);
-        kernels::prefetch(q[f] + ahead * sy + sz, n[0]);
-      }
-      kernels::prefetch(t.increment.row(j + ahead, k), n[0]);
-      if (!t.last)
-        for (const View &f : {t.new_direction, t.new_residual}) kernels::prefetch(f.row(j + ahead, k), n[0]);
-      double *increment = t.increment.row(j, k), *direction = t.new_direction.row(j, k);
-      const auto move = [=](int i) EULASTIC_BODY {
-        double d = -shift;
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const double *q[Directions];
+    for (int f = 0; f < Directions; ++f) q[f] = t.q[f].row(j, k);
+    double *increment = t.increment.row(j, k), *direction = t.new_direction.row(j, k);
+    const auto move = [=](int i) EULASTIC_BODY {
+      double d = -shift;
 #pragma GCC unroll 4
-        for (int f = 0; f < Directions; ++f) d = kernels::fma(c[f], q[f][i], d);
-        increment[i] = kernels::fma(scale, d, First ? 0 : increment[i]);
-        return d;
-      };
-      if (t.last) {
+      for (int f = 0; f < Directions; ++f) d = kernels::fma(c[f], q[f][i], d);
+      increment[i] = kernels::fma(scale, d, First ? 0 : increment[i]);
+      return d;
+    };
+    if (t.last) {
 #pragma omp simd
-        for (int i = -1; i < n[0] + 1; ++i) move(i);
-        continue;
-      }
-      if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) {
-#pragma omp simd
-        for (int i = -1; i < n[0] + 1; ++i) direction[i] = move(i);
-        continue;
-      }
-      const double *from = t.residual.row(j, k);
-      double *D = t.new_residual.row(j, k);
-      for (const int i : {-1, n[0]}) direction[i] = move(i);
-#pragma omp simd
-      for (int i = 0; i < n[0]; ++i) {
-        direction[i] = move(i);
-        double rest = from[i];
-#pragma GCC unroll 4
-        for (int f = 0; f < Directions; ++f)
-          rest = kernels::fma(-c[f], kernels::laplacian<Dim>(q[f] + i, sy, sz, h), rest);
-        D[i] = rest;
-      }
+      for (int i = -1; i < n[0] + 1; ++i) move(i);
+      return;
     }
+    if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) {
+#pragma omp simd
+      for (int i = -1; i < n[0] + 1; ++i) direction[i] = move(i);
+      return;
+    }
+    const double *from = t.residual.row(j, k);
+    double *D = t.new_residual.row(j, k);
+    for (const int i : {-1, n[0]}) direction[i] = move(i);
+#pragma omp simd
+    for (int i = 0; i < n[0]; ++i) {
+      direction[i] = move(i);
+      double rest = from[i];
+#pragma GCC unroll 4
+      for (int f = 0; f < Directions; ++f)
+        rest = kernels::fma(-c[f], kernels::laplacian<Dim>(q[f] + i, sy, sz, h), rest);
+      D[i] = rest;
+    }
+  });
 }
 
 template <int Dim>

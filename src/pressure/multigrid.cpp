@@ -1,7 +1,8 @@
 #include "pressure/multigrid.hpp"
 
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
+#include "kernels/stencils.hpp"
 
 #include <algorithm>
 
@@ -20,24 +21,6 @@ const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 
 constexpr double gathered_cells = 4096;  // from here on messages cost more than cells
 
 template <int Dim>
-EULASTIC_INLINE void relax_rows(const MultigridLevel &level, const RowPart &part, double factor, ConstView q,
-                                ConstView r, View out) {
-  const int n = level.grid().owned()[0];
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j)
-      kernels::relax<Dim>({0, n, j, k}, q, r, level.coefficients(j, k), factor, out);
-}
-
-EULASTIC_CLONES void relax_2d(const MultigridLevel &l, const RowPart &part, double factor, ConstView q, ConstView r,
-                              View out) {
-  relax_rows<2>(l, part, factor, q, r, out);
-}
-EULASTIC_CLONES void relax_3d(const MultigridLevel &l, const RowPart &part, double factor, ConstView q, ConstView r,
-                              View out) {
-  relax_rows<3>(l, part, factor, q, r, out);
-}
-
-template <int Dim>
 EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, ConstView r, int n, const RowPart &part,
                                    View out, double *sum) {
   const auto &[x, y, z] = fine.lines;
@@ -45,15 +28,27 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
   const int begin = x.first, end = x.first + x.stride * n + (x.weight[2].back() > 0);
   for (int k = part.k_begin; k < part.k_end; ++k)
     for (int j = part.j_begin; j < part.j_end; ++j) {
+      const int fine_j = y.first + y.stride * j, fine_k = z.first + z.stride * k;
+      const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
+      if (Dim == 3)  // the next plane
+        for (int c = 0; c < z.stride; ++c)
+          for (int b = 0; b < y.stride; ++b) kernels::prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
       for (int i = begin; i < end; ++i) sum[i] = 0;
       for (int c = 0; c < 3; ++c)
-        for (int b = 0; b < 3; ++b) {
-          const double weight = z.weight[c][k] * y.weight[b][j];
-          const int fine_j = y.first + y.stride * j + b, fine_k = z.first + z.stride * k + c;
-          const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
-          if (weight > 0)
-            kernels::add_relaxed_residual<Dim>({begin, last, fine_j, fine_k}, r, fine.coefficients(fine_j, fine_k),
-                                               factor, weight, sum);
+        for (int b = 0; b < 3;) {
+          const double weight[2] = {z.weight[c][k] * y.weight[b][j], b < 2 ? z.weight[c][k] * y.weight[b + 1][j] : 0};
+          const Segment row{begin, last, fine_j + b, fine_k + c};
+          if (weight[0] > 0) {
+            const bool both = weight[1] > 0;
+            const kernels::LineCoefficients near[2] = {fine.coefficients(row.j, row.k),
+                                                       fine.coefficients(row.j + both, row.k)};
+            if (both)
+              kernels::add_relaxed_residual<Dim, 2>(row, r, near, weight, factor, sum);
+            else
+              kernels::add_relaxed_residual<Dim, 1>(row, r, near, weight, factor, sum);
+            b += both;
+          }
+          ++b;
         }
       double *coarse = out.row(j, k);
       if (x.stride == 1) {
@@ -74,37 +69,64 @@ EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r,
   restrict_rows<3>(f, a, r, n, part, out, sum);
 }
 
-EULASTIC_INLINE void blend_along_y(const LineTransfer &y, int j, ConstView e, int k, int begin, int end, double *out) {
-  kernels::blend(begin, end, e.row(y.parent[j], k), e.row(y.neighbour[j], k), y.share[j], out);
+// Stages of smoothing that share a pass; the first of a level interpolates. Stage s reads fields[s % 2] and writes the
+// other one.
+struct Pass {
+  const MultigridLevel *fine;
+  const MultigridLevel *coarse;  // null: all of them relax
+  const double *factor;          // of every stage
+  ConstView rhs;
+  View fields[2];
+};
+
+// out = factor r + interpolated e; e has `coarse_cells` owned cells in x.
+EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row, int coarse_cells, double factor,
+                                 ConstView r, ConstView e, View out) {
+  const auto &[x, y, z] = fine.lines;
+  const int j = row.j, k = row.k;
+  const double *rhs = r.row(j, k);
+  double *to = out.row(j, k);
+  const kernels::Corners corners{{e.row(y.parent[j], z.parent[k]), e.row(y.neighbour[j], z.parent[k]),
+                                  e.row(y.parent[j], z.neighbour[k]), e.row(y.neighbour[j], z.neighbour[k])},
+                                 y.share[j],
+                                 z.share[k]};
+  if (x.stride == 1) return kernels::add_interpolated(row.i_begin, row.i_end, corners, factor, rhs, to);
+  const int first = x.first > 0 ? -1 : 0, regular = x.first + 2 * (coarse_cells - 1);
+  kernels::add_interpolated_pairs(first, coarse_cells, corners, x.low(), x.high(), factor, rhs + x.first, to + x.first);
+  const auto add = [&](int i) {
+    const double near = corners.at(x.parent[i]);
+    to[i] = kernels::fma(factor, rhs[i], kernels::fma(x.share[i], corners.at(x.neighbour[i]) - near, near));
+  };
+  for (int i = row.i_begin; i < 0; ++i) add(i);
+  if (row.i_end == regular + 2) return;
+  for (int i = std::max(0, regular - 1); i < row.i_end; ++i) add(i);  // the last cell may have one child or three
 }
 
-// out = factor r + interpolated e; e has `coarse_cells` owned cells in x. `scratch`: three rows.
-EULASTIC_CLONES void prolong_rows(const MultigridLevel &fine, const RowPart &part, int coarse_cells, double factor,
-                                  ConstView r, ConstView e, View out, const RowScratch &scratch) {
-  const Int3 n = fine.grid().owned();
-  const auto &[x, y, z] = fine.lines;
-  const int begin = -1, end = coarse_cells + 1;
-  double *near = scratch.row(0), *far = scratch.row(1), *line = scratch.row(2);
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j) {
-      blend_along_y(y, j, e, z.parent[k], begin, end, near);
-      if (z.share[k] > 0) {
-        blend_along_y(y, j, e, z.neighbour[k], begin, end, far);
-        kernels::blend(begin, end, near, far, z.share[k], near);
-      }
-      const double *fine_line = near;
-      if (x.stride == 2) {
-        kernels::split_pairs(x.first > 0 ? -1 : 0, coarse_cells, near, x.low(), x.high(), line + x.first);
-        // The last cell may have one child or three.
-        for (int i = std::max(0, n[0] - 3); i < n[0]; ++i)
-          line[i] = kernels::fma(x.share[i], near[x.neighbour[i]] - near[x.parent[i]], near[x.parent[i]]);
-        fine_line = line;
-      }
-      const double *rhs = r.row(j, k);
-      double *to = out.row(j, k);
-#pragma omp simd
-      for (int i = 0; i < n[0]; ++i) to[i] = kernels::fma(factor, rhs[i], fine_line[i]);
+template <int Dim>
+EULASTIC_INLINE void stages_of_block(const Pass &pass, const StagePass &order, StagePass::Block &block) {
+  const Grid &grid = pass.fine->grid();
+  order.go<Dim>(block, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+    const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
+    for (; row.j < j_end; ++row.j) {
+      if (Dim == 3 && s == 0)
+        for (const double *values :
+             {pass.rhs.row(row.j, row.k + 1), ConstView(q).row(row.j, row.k + 1), ConstView(out).row(row.j, row.k + 1)})
+          kernels::prefetch(values, row.i_end);
+      if (s == 0 && pass.coarse)
+        prolong_row(*pass.fine, row, pass.coarse->grid().owned()[0], pass.factor[0], pass.rhs, pass.coarse->solution[0],
+                    out);
+      else
+        kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
+      if (grid.wraps_x()) grid.wrap_row(out.row(row.j, row.k), 1);  // long before it is read
     }
+  });
+}
+
+EULASTIC_CLONES void stages_2d(const Pass &pass, const StagePass &order, StagePass::Block &block) {
+  stages_of_block<2>(pass, order, block);
+}
+EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, StagePass::Block &block) {
+  stages_of_block<3>(pass, order, block);
 }
 
 // Calls f(values of owned row, its place in x-fastest order) on every owned row.
@@ -139,6 +161,9 @@ PetscErrorCode Multigrid::create(const Grid &grid) {
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
+    // The rows of a pass over a plane are one block, which threads cannot share.
+    if (dim == 3)
+      fine.depth = StagePass::depth(fine.grid(), Sides(fine.grid()), 1, 1 + int(relaxations(fine).after.size()));
     next->rhs = FieldBlock(next->grid(), 1);
     next->solution = FieldBlock(next->grid(), 1);
     next->scratch = FieldBlock(next->grid(), 1);
@@ -156,34 +181,54 @@ std::size_t Multigrid::bytes() const {
 PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch) {
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch));
+  PetscCall(levels_[0]->exchange().update(solution, 1));
   PetscFunctionReturn(0);
 }
 
+// Ghosts of the right-hand side that restriction and smoothing read.
+int Multigrid::halo_of(const MultigridLevel &level) { return std::max(halo, level.depth - 1); }
+
+// Leaves the ghosts of the solution to the caller.
 PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
   if (level.single_cell()) PetscFunctionReturn(0);  // defined up to a constant: 0, for ever
   MultigridLevel &next = *levels_[l + 1];
-  if (next.grid().ranks() < level.grid().ranks()) {
+  const bool gathers = next.grid().ranks() < level.grid().ranks();
+  if (gathers)
     PetscCall(gather(level, next, rhs));
-    PetscCall(next.exchange().update(next.rhs, halo));
-    PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch));
-    take_part(level, next, solution);
-    PetscCall(level.exchange().update(solution, 1));
-    PetscFunctionReturn(0);
-  }
-  restrict_residual(level, rhs, next);
-  PetscCall(next.exchange().update(next.rhs, halo));
+  else
+    restrict_residual(level, rhs, next);
+  PetscCall(next.exchange().update(next.rhs, halo_of(next)));
   PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch));
-  prolong(level, rhs, next, solution);
-  PetscCall(level.exchange().update(solution, 1));
-  for (const double after : relaxations(level).after) {
-    in_row_parts(level.grid(), [&](const RowPart &part) {
-      const double factor = after * level.step();
-      (level.grid().dimension() == 2 ? relax_2d : relax_3d)(level, part, factor, solution[0], rhs[0], scratch[0]);
-    });
-    solution.swap(scratch);
-    PetscCall(level.exchange().update(solution, 1));
+  if (gathers)
+    take_part(level, next, solution);
+  else
+    PetscCall(smooth(level, next, rhs, solution, scratch));
+  PetscFunctionReturn(0);
+}
+
+// solution = the coarse one, interpolated, + one relaxation of `rhs`; then it is relaxed.
+PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs,
+                                 FieldBlock &solution, FieldBlock &scratch) {
+  PetscFunctionBeginUser;
+  const Sides sides(fine.grid());
+  const Relaxations &relax = relaxations(fine);
+  std::vector<double> factors{relax.before * fine.step()};
+  for (const double after : relax.after) factors.push_back(after * fine.step());
+  const int stages = static_cast<int>(factors.size());
+  for (int done = 0, depth; done < stages; done += depth) {
+    const int passes = (stages - done + fine.depth - 1) / fine.depth;  // that are left, of equal depth
+    depth = (stages - done + passes - 1) / passes;
+    if (done == 0)
+      PetscCall(coarse.exchange().update(coarse.solution, 1 + depth / 2));
+    else
+      PetscCall(fine.exchange().update(solution, depth));
+    const Pass pass{&fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}};
+    StagePass order(fine.grid(), sides, depth, 1);
+    order.for_blocks(
+        [&](StagePass::Block &block) { (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, block); });
+    if (depth % 2) solution.swap(scratch);
   }
   PetscFunctionReturn(0);
 }
@@ -195,15 +240,6 @@ void Multigrid::restrict_residual(const MultigridLevel &fine, const FieldBlock &
     const RowScratch sum(fine.grid(), 1);
     (fine.grid().dimension() == 2 ? restrict_2d : restrict_3d)(
         fine, factor, rhs[0], n, row_part(coarse.grid(), part, parts), coarse.rhs[0], sum.row(0));
-  });
-}
-
-void Multigrid::prolong(const MultigridLevel &fine, const FieldBlock &rhs, const MultigridLevel &coarse,
-                        FieldBlock &solution) {
-  const double factor = relaxations(fine).before * fine.step();
-  in_row_parts(fine.grid(), [&](const RowPart &part) {
-    const RowScratch scratch(fine.grid(), 3);
-    prolong_rows(fine, part, coarse.grid().owned()[0], factor, rhs[0], coarse.solution[0], solution[0], scratch);
   });
 }
 

@@ -30,10 +30,12 @@ private:
   using Level = std::unique_ptr<MultigridLevel>;
   PetscErrorCode cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch);
   const Relaxations &relaxations(const MultigridLevel &level) const;
+  static int halo_of(const MultigridLevel &level);
   PetscErrorCode gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs);
   void take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const;
   void restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse);
-  void prolong(const MultigridLevel &fine, const FieldBlock &rhs, const MultigridLevel &coarse, FieldBlock &solution);
+  PetscErrorCode smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs, FieldBlock &solution,
+                        FieldBlock &scratch);
 
   std::vector<Level> levels_;              ///< the finest first
   std::vector<double> packed_, gathered_;  ///< owned cells of the gathered level, of one rank and of all

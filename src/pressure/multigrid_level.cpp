@@ -15,6 +15,11 @@ int halved(int cells, bool last_is_narrow) {
 
 int parent_of(int cell, int stride, int coarse_cells) { return std::min(cell / stride, coarse_cells - 1); }
 
+constexpr int reach = LineOf<int>::layers;
+
+// Periodic image of global cell g.
+int image(int g, int cells) { return (g % cells + cells) % cells; }
+
 std::vector<double> centres(const std::vector<double> &widths) {
   std::vector<double> centre;
   double edge = 0;
@@ -34,8 +39,8 @@ MultigridLevel::MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &f
     const std::vector<double> &w = widths_[d];
     const int cells = grid_.cells()[d], begin = grid_.layout().begin[d];
     const double h = finest_spacing[d];
-    for (int local = 0; local <= grid_.owned()[d]; ++local) {
-      const int g = (begin + local) % cells, below = (g + cells - 1) % cells, above = (g + 1) % cells;
+    for (int local = -reach; local < grid_.owned()[d] + reach; ++local) {
+      const int g = image(begin + local, cells), below = image(g - 1, cells), above = image(g + 1, cells);
       const bool low_wall = grid_.boundary(d) == Boundary::wall && g == 0;
       const bool high_wall = grid_.boundary(d) == Boundary::wall && g == cells - 1;
       low_[d].push_back(cells == 1 || low_wall ? 0 : 2 / (h * h * w[g] * (w[g] + w[below])));
@@ -92,7 +97,7 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
       const bool exists = child < fine_cells && parent_of(child, line.stride, coarse_cells) == g;
       line.weight[m].push_back(exists ? fine_width[child] / coarse_width[g] : 0);
     }
-  // Which way the neighbour lies, and its share, for a fine cell of global index g.
+  // Which way the neighbour lies, and its share, for a fine cell of global index g within the box.
   const auto neighbour = [&](int g, double *share) {
     const int parent = parent_of(g, line.stride, coarse_cells);
     const double distance = fine_centre[g] - coarse_centre[parent];
@@ -102,11 +107,12 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
     return way;
   };
-  for (int i = 0; i < grid_.owned()[d]; ++i) {
+  for (int i = -reach; i < grid_.owned()[d] + reach; ++i) {
+    const int g = image(fine_begin + i, fine_cells), turns = (fine_begin + i - g) / fine_cells;
     double share;
-    const int way = neighbour(fine_begin + i, &share);
-    line.parent.push_back(parent_of(fine_begin + i, line.stride, coarse_cells) - coarse_begin);
-    line.neighbour.push_back(line.parent.back() + way);
+    const int way = neighbour(g, &share);
+    line.parent.push_back(parent_of(g, line.stride, coarse_cells) + turns * coarse_cells - coarse_begin);
+    line.neighbour.push_back(line.parent[i] + way);
     line.share.push_back(share);
   }
   for (int I = -1; I <= coarse_owned; ++I) {

@@ -7,14 +7,28 @@
 
 namespace eulastic {
 
+/// One value per cell of a direction and of `layers` around them: local indices from -layers on.
+template <class T>
+class LineOf {
+public:
+  static constexpr int layers = 4;
+
+  void push_back(T value) { values_.push_back(value); }
+  T operator[](int i) const { return values_[i + layers]; }
+  const T *data() const { return values_.data() + layers; }
+
+private:
+  std::vector<T> values_;
+};
+
 /// Between the cells of two levels along one direction, local indices. The children of coarse cell I begin at
 /// first + stride I; there are two of them, or one (stride 1, or a last cell that stays alone), or three.
 struct LineTransfer {
   int first = 0, stride = 1;
   /// [child][I]: its share of the volume of I, 0 where there is no such child
   std::array<std::vector<double>, 3> weight;
-  std::vector<int> parent, neighbour;  ///< of fine cell i: its coarse cell and the one on its own side of the centre
-  std::vector<double> share;           ///< of the neighbour, in linear interpolation; 0 at walls
+  LineOf<int> parent, neighbour;  ///< of fine cell i: its coarse cell and the one on its own side of the centre
+  LineOf<double> share;           ///< of the neighbour, in linear interpolation; 0 at walls
   std::vector<double> share_low, share_high;  ///< [I + 1]: the same for the two halves of I, -1 <= I <= cells
 
   double *low() { return share_low.data() + 1; }
@@ -48,6 +62,7 @@ public:
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 
   FieldBlock rhs, solution, scratch;  ///< empty until allocated: the finest level works on its caller's
+  int depth = 1;                      ///< stages of a pass of smoothing
   std::array<LineTransfer, 3> lines;  ///< to the next level
 
 private:
@@ -55,7 +70,7 @@ private:
   GhostExchange exchange_;
   Widths widths_;
   Real3 finest_spacing_;
-  std::array<std::vector<double>, 3> low_, high_;  ///< of owned cells and the first high ghost
+  std::array<LineOf<double>, 3> low_, high_;
   double step_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include "box.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
@@ -25,9 +26,9 @@ struct Fields {
 // Calls f(row) in the order of the step.
 template <class F>
 EULASTIC_INLINE void in_blocks(int n, const RowPart &part, F f) {
-  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+  for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = block; j < std::min(block + kernels::block_rows, part.j_end); ++j) f(Segment{0, n, j, k});
+      for (int j = block; j < std::min(block + block_rows, part.j_end); ++j) f(Segment{0, n, j, k});
 }
 
 // q - dt v.grad q of field f of `next` on a row, after `advect`(rate).
@@ -58,7 +59,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
       });
   };
   kernels::Batch batch;
-  for (int j = block; j < std::min(block + kernels::block_rows, n[1]); ++j) {
+  for (int j = block; j < std::min(block + block_rows, n[1]); ++j) {
     for (int c = first; c < last; ++c) prefetch(t, {0, n[0], j, k}, t.tensor[c], 4 + c);
     kernels::gather(batch, j * t.tensor[0].sy + k * t.tensor[0].sz, 0, n[0], work);
   }
@@ -82,7 +83,7 @@ EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &sc
     move(t, row, t.fraction[0], 3, rate,
          [&](double *out) EULASTIC_BODY { centre_advection_rate(row, t.fraction[0], v, t.inverse.data(), 1e-6, out); });
   });
-  for (int block = part.j_begin; block < part.j_end; block += kernels::block_rows)
+  for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k) {
       move_tensor(t, block, k, at_centre, 0, 3);
       for (int c = 0; c < 3; ++c) move_tensor(t, block, k, {c != 0, c != 1, c != 2}, 3 + c, 4 + c);

@@ -91,15 +91,15 @@ inline std::vector<GridSpec> all_boundaries(const Int3 &cells) {
   return specs;
 }
 
-// Every way to share the cells of `spec` among the ranks of this run. Sums are the same only where x is not cut
+// Every way to share the cells of `spec` among the ranks of this run. `sums` are the same only where x is not cut
 // inside a block of 256 cells.
-inline std::vector<GridSpec> all_decompositions(GridSpec spec) {
+inline std::vector<GridSpec> all_decompositions(GridSpec spec, bool sums = true) {
   int ranks = 0;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   std::vector<GridSpec> specs;
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks / px; ++py) {
-      if (ranks % (px * py) || (px > 1 && spec.cells[0] < 256 * px)) continue;
+      if (ranks % (px * py) || (sums && px > 1 && spec.cells[0] < 256 * px)) continue;
       spec.processors = {px, py, ranks / (px * py)};
       if (Grid::why_not(spec, ranks).empty()) specs.push_back(spec);
     }

@@ -1,4 +1,5 @@
 // What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
+#include "grid/blocks.hpp"
 #include "physics/correction.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
@@ -25,7 +26,7 @@ struct RandomFlow {
   FieldBlock velocity, pressure;
 
   explicit RandomFlow(const Sides &sides) {
-    GridSpec spec = uneven_box(sides.flat, {11, kernels::block_rows + 5, 6});
+    GridSpec spec = uneven_box(sides.flat, {11, block_rows + 5, 6});
     for (int d = 0; d < 3; ++d)
       if (sides.walls >> d & 1) spec.boundary[d] = Boundary::wall;
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);

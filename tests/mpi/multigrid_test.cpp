@@ -1,0 +1,69 @@
+// The V-cycle: the same bits however cells are shared among ranks and threads, and however many stages share a pass.
+#include "pressure/multigrid.hpp"
+#include "grid/blocks.hpp"
+#include "support/poisson_scene.hpp"
+
+#include <cstring>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+// V D on the grid of `spec`.
+struct Cycle : PoissonScene {
+  FieldBlock solution, scratch;
+
+  Cycle(MPI_Comm comm, const GridSpec &spec) : PoissonScene(comm, spec), solution(grid, 1), scratch(grid, 1) {
+    Multigrid multigrid;
+    EXPECT_EQ(multigrid.create(grid), 0);
+    set(noise);
+    EXPECT_EQ(exchange->update(divergence, Multigrid::halo), 0);
+    EXPECT_EQ(multigrid.apply(divergence, solution, scratch), 0);
+  }
+  int stages_of_a_pass() const { return StagePass::depth(grid, Sides(grid), 1, 3); }
+};
+
+// Cells, and ghosts within the domain, that differ in any bit from those of `one` rank.
+int differences(const Cycle &s, const Cycle &one) {
+  int count = 0;
+  const Layout &own = s.grid.layout();
+  Int3 low{}, high{};
+  for (int d = 0; d < 3; ++d) {
+    low[d] = s.grid.touches_low(d) ? 0 : -1;
+    high[d] = own.cells[d] + (s.grid.touches_high(d) ? 0 : 1);
+  }
+  for (int k = low[2]; k < high[2]; ++k)
+    for (int j = low[1]; j < high[1]; ++j)
+      for (int i = low[0]; i < high[0]; ++i) {
+        const Int3 local{i, j, k}, &cells = s.grid.cells();
+        Int3 image{};
+        for (int d = 0; d < 3; ++d) image[d] = (own.begin[d] + local[d] + cells[d]) % cells[d];
+        const double a = s.solution[0](i, j, k), b = one.solution[0](image[0], image[1], image[2]);
+        count += std::memcmp(&a, &b, sizeof a) != 0;
+      }
+  return count;
+}
+
+}  // namespace
+
+// Two ghost layers allow two stages to a pass, five three. Threads of more than two ranks would wait for each other.
+TEST(MultigridCycle, SameBitsOnAnyRanksThreadsAndStages) {
+  int ranks = 0, deepest = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  for (const Int3 &cells : {Int3{64, 48, 40}, Int3{45, 65, 51}, Int3{50, 61, 66}})
+    for (GridSpec spec : all_boundaries(cells)) {
+      spec.ghosts = 2;
+      const Cycle one(PETSC_COMM_SELF, spec);
+      for (GridSpec &shared : all_decompositions(spec, false))
+        for (shared.ghosts = 2; shared.ghosts <= 5; shared.ghosts += 3)
+          for (int team = 1; team <= (ranks > 2 ? 1 : 3); team += 2) {
+            set_threads(team);
+            const Cycle many(PETSC_COMM_WORLD, shared);
+            set_threads(1);
+            EXPECT_EQ(differences(many, one), 0) << name(shared) << shared.ghosts << " ghosts, " << team << " threads";
+            deepest = std::max(deepest, many.stages_of_a_pass());
+          }
+    }
+  EXPECT_EQ(deepest, 3);
+}
