@@ -35,20 +35,17 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
           for (int b = 0; b < y.stride; ++b) kernels::prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
       for (int i = begin; i < end; ++i) sum[i] = 0;
       for (int c = 0; c < 3; ++c)
-        for (int b = 0; b < 3;) {
-          const double weight[2] = {z.weight[c][k] * y.weight[b][j], b < 2 ? z.weight[c][k] * y.weight[b + 1][j] : 0};
+        for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then a third
           const Segment row{begin, last, fine_j + b, fine_k + c};
-          if (weight[0] > 0) {
-            const bool both = weight[1] > 0;
-            const kernels::LineCoefficients near[2] = {fine.coefficients(row.j, row.k),
-                                                       fine.coefficients(row.j + both, row.k)};
-            if (both)
-              kernels::add_relaxed_residual<Dim, 2>(row, r, near, weight, factor, sum);
-            else
-              kernels::add_relaxed_residual<Dim, 1>(row, r, near, weight, factor, sum);
-            b += both;
-          }
-          ++b;
+          const double plane = z.weight[c][k],
+                       weight[2] = {plane * y.weight[b][j], b == 0 ? plane * y.weight[1][j] : 0};
+          if (!(weight[0] > 0)) continue;
+          const kernels::LineCoefficients near[2] = {fine.coefficients(row.j, row.k),
+                                                     fine.coefficients(row.j + 1, row.k)};
+          if (weight[1] > 0)
+            kernels::add_relaxed_residual<Dim, 2>(row, r, near, weight, factor, sum);
+          else
+            kernels::add_relaxed_residual<Dim, 1>(row, r, near, weight, factor, sum);
         }
       double *coarse = out.row(j, k);
       if (x.stride == 1) {
