@@ -20,21 +20,6 @@ struct Plane {
   }
 };
 
-// No flow through the wall faces; also on the face of a neighbour whose three cells are this rank's ghosts.
-void close_wall_faces(const Grid &grid, View q, int d) {
-  const Layout &layout = grid.layout();
-  const Plane plane(layout, d);
-  for (const int face : {0, grid.cells()[d]}) {
-    const int local = face - layout.begin[d];
-    if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
-    for (int k = plane.begin[2]; k < plane.end[2]; ++k)
-      for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
-        double *row = q.row(j, k) + local * q.stride(d);
-        std::fill(row + plane.begin[0], row + plane.end[0], 0.0);
-      }
-  }
-}
-
 // One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width. Runs over all ghosts
 // of the other directions, so that doing the directions in turn fills edges and corners.
 struct Reflection {
@@ -73,6 +58,20 @@ void reflect_evenly(const Grid &grid, const Staggering &staggering, View field, 
 }
 
 }  // namespace
+
+void close_wall_faces(const Grid &grid, View q, int d) {
+  const Layout &layout = grid.layout();
+  const Plane plane(layout, d);
+  for (const int face : {0, grid.cells()[d]}) {
+    const int local = face - layout.begin[d];
+    if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
+    for (int k = plane.begin[2]; k < plane.end[2]; ++k)
+      for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
+        double *row = q.row(j, k) + local * q.stride(d);
+        std::fill(row + plane.begin[0], row + plane.end[0], 0.0);
+      }
+  }
+}
 
 Real3 WallMotion::at(double time) const {
   const double factor = std::cos(frequency * time + phase);

@@ -40,6 +40,9 @@ struct TensorComponent {
 };
 const std::vector<TensorComponent> &tensor_components(int dimension);
 
+/// No flow through the walls of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
+/// face of a neighbour whose three cells are this rank's ghosts.
+void close_wall_faces(const Grid &grid, View component, int d);
 /// Fills `width` layers behind every wall this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); wall faces are set to 0.
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width);

@@ -22,27 +22,35 @@ int StagePass::depth(const Grid &grid, const Sides &sides, int least, int most) 
   return depth;
 }
 
-// In the order in which they are done: a block of a field reads what the one below it has written, and may follow it
-// slice by slice: neither writes what the other has not yet read then.
-StagePass::StagePass(const Grid &grid, const Sides &sides, int depth, int fields)
-    : grid_(grid), sides_(sides), depth_(depth) {
-  const int last = grid.dimension() - 1, slices = grid.owned()[last], layers = depth - 1;
-  const bool flat = last == 1;
-  const int begin = flat ? 0 : -sides.low(1, layers), end = flat ? 1 : grid.owned()[1] + layers;
-  const int parts = depth == 1 ? row_parts(grid) : 1, rows = depth == 1 ? end - begin : block_rows;
-  const int count = depth == 1 ? parts : (end - begin + rows - 1) / rows;
-  blocks_ = std::vector<Block>(std::size_t(count) * fields);
-  for (int f = 0; f < fields; ++f)
-    for (int b = 0; b < count; ++b) {
-      Block &block = blocks_[f * count + b];
-      const Piece piece(slices, depth == 1 ? b : 0, parts);
-      block.field = f;
-      block.j_begin = begin + (depth == 1 ? 0 : b * rows);
-      block.j_end = block.j_begin + rows;
-      block.done = static_cast<int>(piece.begin) - sides.low(last, layers);
-      block.end = static_cast<int>(piece.end) + layers;
-      if (depth > 1 && b > 0) block.below = &blocks_[f * count + b - 1].done;
+// None with fewer slices than the stages of its two sides leave.
+int StagePass::threads_of_pass() const {
+  const int slices = grid_.owned()[grid_.dimension() - 1];
+  return std::max(1, std::min(row_parts(grid_), slices / (2 * depth_)));
+}
+
+std::vector<StagePass::Task> StagePass::tasks(int team) const {
+  std::vector<Task> tasks;
+  for (int f = 0; f < fields_; ++f)
+    for (int t = 0; t < team; ++t) {
+      const Piece piece(grid_.owned()[grid_.dimension() - 1], t, team);
+      tasks.push_back({f, static_cast<int>(piece.begin), static_cast<int>(piece.end), t == 0, t == team - 1});
     }
+  return tasks;
+}
+
+// Of one stage, between the slices of every two threads; rows are shared.
+std::vector<StagePass::Task> StagePass::tasks_between(int team, int stage) const {
+  const bool flat = grid_.dimension() == 2;
+  const int layers = depth_ - 1 - stage, shares = flat ? 1 : team;
+  const int first = -sides_.low(1, layers), rows = grid_.owned()[1] + sides_.high(1, layers) - first;
+  std::vector<Task> tasks;
+  for (const Task &lower : this->tasks(team))
+    for (int share = 0; share < shares && !lower.high; ++share) {
+      const Piece piece(rows, share, shares);
+      tasks.push_back({lower.field, lower.end - stage, lower.end + stage, false, false, stage,
+                       first + static_cast<int>(piece.begin), first + static_cast<int>(piece.end)});
+    }
+  return tasks;
 }
 
 }  // namespace eulastic

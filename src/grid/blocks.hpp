@@ -4,9 +4,6 @@
 
 #include "grid/threads.hpp"
 
-#include <atomic>
-#include <thread>
-
 namespace eulastic {
 
 /// Verbs go through all of z for so many rows at a time: of 128 cells, three fields of them seven planes deep fit the
@@ -37,53 +34,76 @@ struct Sides {
 /// (a plane, in 2-D a row) behind it and, in 3-D, a row behind it too. A stage is needed at the owned points and, for
 /// those after it, in layers around them, which are computed again instead of exchanged. Stages may write two fields in
 /// turn, each over what the one before the last has left.
+///
+/// Threads have slices of their own, like with any verb. Each goes as far as it can with them, a slice less at the
+/// other threads' sides with every stage; what is left there, stage by stage, is done together then.
 class StagePass {
 public:
-  /// `depth` stages, each of `fields` fields that do not see each other. One thread after the other follows the one of
-  /// lower rows, but a stage alone is split like any verb.
-  StagePass(const Grid &grid, const Sides &sides, int depth, int fields);
+  /// `depth` stages, each of `fields` fields that do not see each other.
+  StagePass(const Grid &grid, const Sides &sides, int depth, int fields)
+      : grid_(grid), sides_(sides), depth_(depth), fields_(fields) {}
 
   /// The most stages of a pass, `least` to `most`: ghosts must reach, and what is computed again stay below a quarter
   /// of the first stage. Every rank finds the same.
   static int depth(const Grid &grid, const Sides &sides, int least, int most);
 
-  /// A block of rows of a field; in 2-D all rows.
-  struct alignas(64) Block {
-    int field, j_begin, j_end, end;           ///< of the first stage; one past the last slice of the last stage
-    const std::atomic<int> *below = nullptr;  ///< slices that the block of lower rows has done; null: there is none
-    std::atomic<int> done{};
+  /// Slices of a field that go together: all stages, a block of rows after the other, or what is left of one stage.
+  struct Task {
+    int field, begin, end;  ///< slices of the first stage
+    bool low, high;         ///< whether they end where the rank does
+    int stage = -1;         ///< the only one, on rows j_begin <= j < j_end of these slices; -1: all
+    int j_begin = 0, j_end = 0;
   };
 
-  /// work(block) for all of them.
+  /// work(task) for all of them.
   template <class Work>
-  void for_blocks(const Work &work) {
-    in_parallel(row_parts(grid_), static_cast<int>(blocks_.size()), [&](int b) { work(blocks_[b]); });
+  void for_tasks(const Work &work) const {
+    const auto go = [&](const std::vector<Task> &tasks, int team) {
+      in_parallel(team, static_cast<int>(tasks.size()), [&](int t) { work(tasks[t]); });
+    };
+    const int team = threads_of_pass();
+    go(tasks(team), team);
+    for (int s = 1; s < depth_ && team > 1; ++s) go(tasks_between(team, s), team);
   }
 
-  /// rows(stage, first row, end of j) for all rows of a block, plane by plane, layers included; inlined, for verbs that
+  /// rows(stage, first row, end of j) for all rows of a task, plane by plane, layers included; inlined, for verbs that
   /// are EULASTIC_CLONES.
   template <int Dim, class Rows>
-  [[gnu::always_inline]] void go(Block &block, const Rows &rows) const {
+  [[gnu::always_inline]] void go(const Task &task, const Rows &rows) const {
     constexpr int last = Dim - 1;
     const Int3 n = grid_.owned();
-    for (int first = block.done; first < block.end; ++first) {
-      while (block.below && block.below->load(std::memory_order_acquire) <= first) std::this_thread::yield();
-      for (int s = 0; s < depth_; ++s) {
-        const int slice = first - s, layers = depth_ - 1 - s;
-        if (slice < -sides_.low(last, layers) || slice >= n[last] + sides_.high(last, layers)) continue;
-        const int j_begin = Dim == 3 ? std::max(block.j_begin - s, -sides_.low(1, layers)) : slice;
-        const int j_end = Dim == 3 ? std::min(block.j_end - s, n[1] + sides_.high(1, layers)) : slice + 1;
-        rows(s, Segment{-sides_.low(0, layers), n[0] + sides_.high(0, layers), j_begin, Dim == 3 ? slice : 0}, j_end);
-      }
-      block.done.store(first + 1, std::memory_order_release);
+    const auto row = [&](int s, int j, int slice) {
+      const int layers = depth_ - 1 - s;
+      return Segment{-sides_.low(0, layers), n[0] + sides_.high(0, layers), j, Dim == 3 ? slice : 0};
+    };
+    if (task.stage >= 0) {
+      for (int slice = task.begin; slice < task.end; ++slice)
+        rows(task.stage, row(task.stage, Dim == 3 ? task.j_begin : slice, slice), Dim == 3 ? task.j_end : slice + 1);
+      return;
     }
+    const int all = depth_ - 1, first_row = Dim == 3 ? -sides_.low(1, all) : 0, end_row = Dim == 3 ? n[1] + all : 1;
+    const int first_slice = task.begin - (task.low ? sides_.low(last, all) : 0);
+    const int end_slice = task.end + (task.high ? all : 0);
+    for (int block = first_row; block < end_row; block += block_rows)
+      for (int first = first_slice; first < end_slice; ++first)
+        for (int s = 0; s < depth_; ++s) {
+          const int slice = first - s, layers = all - s;
+          if (slice < (task.low ? -sides_.low(last, layers) : task.begin + s)) continue;
+          if (slice >= n[last] + sides_.high(last, layers)) continue;
+          const int j_begin = Dim == 3 ? std::max(block - s, -sides_.low(1, layers)) : slice;
+          const int j_end = Dim == 3 ? std::min(block + block_rows - s, n[1] + sides_.high(1, layers)) : slice + 1;
+          rows(s, row(s, j_begin, slice), j_end);
+        }
   }
 
 private:
+  int threads_of_pass() const;
+  std::vector<Task> tasks(int team) const;
+  std::vector<Task> tasks_between(int team, int stage) const;
+
   const Grid &grid_;
   const Sides &sides_;
-  int depth_;
-  std::vector<Block> blocks_;
+  int depth_, fields_;
 };
 
 }  // namespace eulastic

@@ -14,8 +14,7 @@ namespace eulastic {
 void set_threads(int count) noexcept;
 int threads() noexcept;
 
-/// work(n) for every 0 <= n < count: thread t of `team` does t, t + team ... one after the other, so that a piece of
-/// work may wait for what an earlier one does.
+/// work(n) for every 0 <= n < count: thread t of `team` does t, t + team ..., so that it comes back to the same planes.
 template <class Work>
 void in_parallel(int team, int count, const Work &work) {
   if (team <= 1) {

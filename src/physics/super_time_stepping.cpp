@@ -1,6 +1,7 @@
 #include "physics/super_time_stepping.hpp"
 
 #include "base/events.hpp"
+#include "field/walls.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/super_time_stepping.hpp"
 
@@ -66,7 +67,13 @@ EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const 
     kernels::rkl_stage<Dim, true>(row, c, w, m, (*f.slope)[a], h, out);
 }
 
-// What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind walls.
+// Whether a row lies on a low wall that its component is normal to: W is 0 there and stays so.
+EULASTIC_INLINE bool is_on_wall(const Sides &sides, int a, const Segment &row) {
+  return (a == 1 && sides.wall[1][0] && row.j == 0) || (a == 2 && sides.wall[2][0] && row.k == 0);
+}
+
+// What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind walls that its
+// component is tangential to.
 template <int Dim>
 EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const double (&twice_wall)[3][2], int a, View w,
                                   const Segment &at) {
@@ -79,15 +86,12 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
   for (int d = 0; d < Dim; ++d)
     for (int side = 0; side < 2; ++side) {
       const int last = d == 0 ? place[0] : side ? n[d] - 1 : 0;
-      if (!sides.wall[d][side] || place[d] != last) continue;
+      if (a == d || !sides.wall[d][side] || place[d] != last) continue;
       const std::ptrdiff_t s = w.stride(d);
       const double twice = twice_wall[d][side];
       if (d == 0) {
         double *inside = side ? row + n[0] - 1 : row;
-        (a == d && !side ? inside[0] : inside[side ? 1 : -1]) = a == d ? 0 : twice - inside[0];
-      } else if (a == d) {
-        double *face = side ? row + s : row;
-        for (int i = at.i_begin; i < at.i_end; ++i) face[i] = 0;
+        inside[side ? 1 : -1] = twice - inside[0];
       } else {
         double *ghost = side ? row + s : row - s;
 #pragma omp simd
@@ -99,11 +103,11 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
 // Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. The
 // first asks for the next plane.
 template <int Dim>
-EULASTIC_INLINE void stages_of_block(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                                     const StageFields &f, StagePass &order, StagePass::Block &block) {
+EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
+                                    const StageFields &f, const StagePass &order, const StagePass::Task &task) {
   const Int3 n = grid.owned();
-  const int a = block.field;
-  order.go<Dim>(block, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+  const int a = task.field;
+  order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0) {
@@ -112,19 +116,21 @@ EULASTIC_INLINE void stages_of_block(const Grid &grid, const Pass &pass, const I
         kernels::prefetch((*f.rate)[a].row(row.j, row.k + 1), n[0]);
         if (f.stressed) kernels::prefetch((*f.slope)[a].row(row.j, row.k + 1), n[0]);
       }
+      if (is_on_wall(sides, a, row)) continue;
       surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
       stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+      if (a == 0 && sides.wall[0][0]) out.row(row.j, row.k)[0] = 0;
     }
   });
 }
 
 EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f, StagePass &order, StagePass::Block &block) {
-  stages_of_block<2>(grid, pass, h, sides, f, order, block);
+                               const StageFields &f, const StagePass &order, const StagePass::Task &task) {
+  stages_of_task<2>(grid, pass, h, sides, f, order, task);
 }
 EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                               const StageFields &f, StagePass &order, StagePass::Block &block) {
-  stages_of_block<3>(grid, pass, h, sides, f, order, block);
+                               const StageFields &f, const StagePass &order, const StagePass::Task &task) {
+  stages_of_task<3>(grid, pass, h, sides, f, order, task);
 }
 
 // to = scale a + b at all points of the part, wrapped by one; b may be null.
@@ -170,6 +176,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   const double first = stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2);  // mu~_1
   if (work.slope) scale_add(grid, -0.5 * dt, work.slope, &work.rate, work.rate);  // the force at the start
   scale_add(grid, first * dt, work.rate, nullptr, work.now);
+  for (int d = 0; d < grid.dimension(); ++d)
+    if (grid.is_wall(d)) close_wall_faces(grid, work.now[d], d);
   if (stages > 1) work.before.clear();
   const Sides sides(grid);
   const int depth = StagePass::depth(grid, sides, 2, deepest);
@@ -195,9 +203,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     PetscCall(exchange.update_rows(work.now, pass.depth));
     if (j > 2 && pass.depth > 2) PetscCall(exchange.update_rows(work.before, pass.depth - 1));
     const StageFields fields{&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before};
-    StagePass order(grid, sides, pass.depth, grid.dimension());
-    order.for_blocks([&](StagePass::Block &block) {
-      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, block);
+    const StagePass order(grid, sides, pass.depth, grid.dimension());
+    order.for_tasks([&](const StagePass::Task &task) {
+      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, task);
     });
     if (pass.depth % 2) work.now.swap(work.before);
   }

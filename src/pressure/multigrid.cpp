@@ -100,9 +100,9 @@ EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row,
 }
 
 template <int Dim>
-EULASTIC_INLINE void stages_of_block(const Pass &pass, const StagePass &order, StagePass::Block &block) {
+EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
   const Grid &grid = pass.fine->grid();
-  order.go<Dim>(block, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+  order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0)
@@ -119,11 +119,11 @@ EULASTIC_INLINE void stages_of_block(const Pass &pass, const StagePass &order, S
   });
 }
 
-EULASTIC_CLONES void stages_2d(const Pass &pass, const StagePass &order, StagePass::Block &block) {
-  stages_of_block<2>(pass, order, block);
+EULASTIC_CLONES void stages_2d(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
+  stages_of_task<2>(pass, order, task);
 }
-EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, StagePass::Block &block) {
-  stages_of_block<3>(pass, order, block);
+EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
+  stages_of_task<3>(pass, order, task);
 }
 
 // Calls f(values of owned row, its place in x-fastest order) on every owned row.
@@ -158,7 +158,6 @@ PetscErrorCode Multigrid::create(const Grid &grid) {
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
-    // The rows of a pass over a plane are one block, which threads cannot share.
     if (dim == 3)
       fine.depth = StagePass::depth(fine.grid(), Sides(fine.grid()), 1, 1 + int(relaxations(fine).after.size()));
     next->rhs = FieldBlock(next->grid(), 1);
@@ -222,9 +221,10 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     else
       PetscCall(fine.exchange().update(solution, depth));
     const Pass pass{&fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}};
-    StagePass order(fine.grid(), sides, depth, 1);
-    order.for_blocks(
-        [&](StagePass::Block &block) { (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, block); });
+    const StagePass order(fine.grid(), sides, depth, 1);
+    order.for_tasks([&](const StagePass::Task &task) {
+      (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
+    });
     if (depth % 2) solution.swap(scratch);
   }
   PetscFunctionReturn(0);

@@ -5,9 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <map>
-#include <numeric>
 
 using namespace eulastic;
 
@@ -78,23 +76,6 @@ TEST_F(Threads, PiecesHoldEverythingOnce) {
       }
       EXPECT_EQ(end, count);
     }
-}
-
-// More pieces than threads, each of which waits for the one before it.
-TEST_F(Threads, WorkMayWaitForEarlierWork) {
-  constexpr int count = 23;
-  for (const int team : {1, 2, 5}) {
-    std::atomic<int> done{0};
-    std::vector<int> order(count, -1);
-    in_parallel(team, count, [&](int n) {
-      while (done.load() < n) {
-      }
-      order[n] = done++;
-    });
-    std::vector<int> expected(count);
-    std::iota(expected.begin(), expected.end(), 0);
-    EXPECT_EQ(order, expected);
-  }
 }
 
 TEST_F(Threads, SumsOfPartsAreThoseOfTheWhole) {

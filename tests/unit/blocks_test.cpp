@@ -1,0 +1,96 @@
+// Stages that share a pass: which rows they do, and that none reads or overwrites what is not there yet or still
+// needed.
+#include "grid/blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+using namespace eulastic;
+
+namespace {
+
+// Two fields of rows that hold the number of the stage that wrote them last. Before the first stage, which reads field
+// 0 and writes field 1: -1 everywhere in field 0, -2 in field 1.
+class Pass {
+public:
+  Pass(const Grid &grid, int depth) : grid_(grid), sides_(grid), depth_(depth) {
+    const Int3 &n = grid.owned();
+    width_ = n[1] + 2 * margin;
+    for (int f = 0; f < 2; ++f) stage_[f].assign(std::size_t(width_) * (n[2] + 2 * margin), -1 - f);
+  }
+
+  void run() {
+    const StagePass pass(grid_, sides_, depth_, 1);
+    pass.for_tasks([&](const StagePass::Task &task) {
+      const auto rows = [&](int s, Segment row, int j_end) {
+        EXPECT_EQ(row.size(), grid_.owned()[0]);  // x wraps around
+        for (; row.j < j_end; ++row.j) do_row(s, row.j, row.k);
+      };
+      grid_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
+    });
+  }
+
+  // Every stage has done its rows, layers included, and each of them once.
+  void expect_complete() const {
+    long rows = 0;
+    for (int s = 0; s < depth_; ++s)
+      rows += long(end(1, s) - begin(1, s)) * (grid_.dimension() == 2 ? 1 : end(2, s) - begin(2, s));
+    EXPECT_EQ(rows_, rows);
+    for (int k = 0; k < grid_.owned()[2]; ++k)
+      for (int j = 0; j < grid_.owned()[1]; ++j) EXPECT_EQ(stage_[depth_ % 2][at(j, k)], depth_ - 1);
+  }
+
+private:
+  static constexpr int margin = 5;
+
+  int begin(int d, int s) const { return -sides_.low(d, depth_ - 1 - s); }
+  int end(int d, int s) const { return grid_.owned()[d] + sides_.high(d, depth_ - 1 - s); }
+  std::size_t at(int j, int k) const { return j + margin + std::size_t(width_) * (k + margin); }
+
+  void do_row(int s, int j, int k) {
+    const auto &read = stage_[s % 2];
+    auto &write = stage_[1 - s % 2];
+    const bool flat = grid_.dimension() == 2;
+    for (const auto &[y, z] : {std::pair{0, 0}, {-1, 0}, {1, 0}, {0, flat ? 0 : -1}, {0, flat ? 0 : 1}}) {
+      const int row = j + y, plane = k + z;
+      const bool behind_wall =
+          row < -(sides_.wall[1][0] ? 0 : margin) || row >= grid_.owned()[1] + (sides_.wall[1][1] ? 0 : margin) ||
+          plane < -(sides_.wall[2][0] ? 0 : margin) || plane >= grid_.owned()[2] + (sides_.wall[2][1] ? 0 : margin);
+      if (behind_wall) continue;
+      EXPECT_EQ(read[at(row, plane)], s - 1) << "stage " << s << " reads " << row << " " << plane;
+    }
+    EXPECT_EQ(write[at(j, k)], s - 2) << "stage " << s << " writes " << j << " " << k;
+    write[at(j, k)] = s;
+    ++rows_;
+  }
+
+  const Grid &grid_;
+  Sides sides_;
+  int depth_, width_ = 0;
+  std::vector<int> stage_[2];
+  std::atomic<long> rows_{0};
+};
+
+}  // namespace
+
+TEST(StagePass, StagesReadWhatTheOneBeforeHasWritten) {
+  for (const Int3 &cells : {Int3{512, 50, 1}, Int3{64, 70, 37}, Int3{64, 31, 16}})
+    for (const Boundary y : {Boundary::periodic, Boundary::wall})
+      for (const Boundary z : {Boundary::periodic, Boundary::wall})
+        for (int depth = 1; depth <= 4; ++depth)
+          for (const int team : {1, 2, 3, 5}) {
+            GridSpec spec;
+            spec.cells = cells;
+            spec.boundary = {Boundary::periodic, y, z};
+            Grid grid;
+            ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+            set_threads(team);
+            Pass pass(grid, depth);
+            pass.run();
+            set_threads(1);
+            pass.expect_complete();
+            if (testing::Test::HasFailure())
+              FAIL() << cells[1] << " rows, " << depth << " stages, " << team << " threads";
+          }
+}
