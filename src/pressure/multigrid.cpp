@@ -79,7 +79,7 @@ struct Pass {
 // out = factor r + interpolated e; e has `coarse_cells` owned cells in x.
 EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row, int coarse_cells, double factor,
                                  ConstView r, ConstView e, View out) {
-  const auto &[x, y, z] = fine.lines;
+  const LineTransfer &x = fine.lines[0], &y = fine.lines[1], &z = fine.lines[2];
   const int j = row.j, k = row.k;
   const double *rhs = r.row(j, k);
   double *to = out.row(j, k);
