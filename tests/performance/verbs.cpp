@@ -83,8 +83,13 @@ EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
 EULASTIC_VERB_IN(cells_predict, Filling::cells, 0, predict(s, s.now.phases));
 EULASTIC_VERB_IN(cells_fraction, Filling::cells, 0,
                  advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
-EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0,
-                 test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
+// As in a step: B is set to I only where it was not.
+PetscErrorCode transport_in_cells(Scratch &s) {
+  const Phase &phase = s.now.phases[0];
+  return transport_tensor(s.grid, {reset_below_one_per_cent, s.box.dt, false, &phase.strained}, s.now.velocity, phase,
+                          phase.tensor, s.tensor);
+}
+EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0, transport_in_cells(s));
 
 // A ghost is read and written; three layers, none behind walls (y).
 double exchanged(const Grid &grid, int fields) {
