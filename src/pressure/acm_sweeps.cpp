@@ -77,22 +77,27 @@ EULASTIC_INLINE void add_sums(const SumTask &t, const RowPart &part, ExactSums &
 EULASTIC_CLONES void add_sums_2d(const SumTask &t, const RowPart &part, ExactSums &sums) { add_sums<2>(t, part, sums); }
 EULASTIC_CLONES void add_sums_3d(const SumTask &t, const RowPart &part, ExactSums &sums) { add_sums<3>(t, part, sums); }
 
-// d = sum c_i q_i - shift and increment += scale d (= in the first), both in one ghost layer too; D -= sum c_i lap q_i,
-// owned.
+// What a sweep does to the increment. Every second one leaves its d to the next, which still has it.
+enum class Increment { later, set, set_two, add, add_two };
+
+// d = sum c_i q_i - shift and increment += scale d, both in one ghost layer too; D -= sum c_i lap q_i, owned.
 struct StepTask {
   const Grid *grid;
-  const ConstView *q;
+  const ConstView *q;  // the last one is the d before this one, where there is such a thing
   int count;
   const double *coefficient;
   InverseSquares h;
   double shift, scale;
-  bool first, last;  // the last leaves D and d alone
+  Increment how;
+  bool last;  // leaves D and d alone
   ConstView residual;
   View new_residual, new_direction, increment;
 };
 
-template <int Dim, int Directions, bool First>
+template <int Dim, int Directions, Increment How>
 EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
+  constexpr bool adds = How == Increment::add || How == Increment::add_two,
+                 two = How == Increment::set_two || How == Increment::add_two;
   const Int3 n = t.grid->owned();
   const InverseSquares h = t.h;
   const double shift = t.shift, scale = t.scale;
@@ -107,7 +112,9 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
       double d = -shift;
 #pragma GCC unroll 4
       for (int f = 0; f < Directions; ++f) d = kernels::fma(c[f], q[f][i], d);
-      increment[i] = kernels::fma(scale, d, First ? 0 : increment[i]);
+      double sum = adds ? increment[i] : 0;
+      if (two) sum = kernels::fma(scale, q[Directions - 1][i], sum);
+      if (How != Increment::later) increment[i] = kernels::fma(scale, d, sum);
       return d;
     };
     if (t.last) {
@@ -138,7 +145,13 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
 template <int Dim>
 EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
   for_directions(t.count, [&](auto count) EULASTIC_BODY {
-    t.first ? take_step<Dim, count(), true>(t, part) : take_step<Dim, count(), false>(t, part);
+    if (t.how == Increment::later) return take_step<Dim, count(), Increment::later>(t, part);
+    if (t.how == Increment::set) return take_step<Dim, count(), Increment::set>(t, part);
+    if constexpr (count() == 2) {  // a new direction and d
+      if (t.how == Increment::set_two) return take_step<Dim, 2, Increment::set_two>(t, part);
+      if (t.how == Increment::add) return take_step<Dim, 2, Increment::add>(t, part);
+      take_step<Dim, 2, Increment::add_two>(t, part);
+    }
   });
 }
 
@@ -191,12 +204,14 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   bool done = false;
+  first_ = true;
+  left_ = false;
   if (memory_) {
     if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
     ghosts_of_memory_ = true;
     directions_.clear();
     for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[(newest_ + f) % memory_.count()]);
-    PetscCall(sweep({true, false, divergence, increment}, dt, &done));
+    PetscCall(sweep({false, divergence, increment}, dt, &done));
   } else {
     for (const Segment &s : grid_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
@@ -210,7 +225,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     }
     directions_.assign(1, multigrid_ ? correction_[0] : residual_[0]);
     if (memory_ || s > 1) directions_.push_back(direction_[0]);
-    PetscCall(sweep({!memory_ && s == 1, s == options_.sweeps_max, residual_, increment}, dt, &done));
+    PetscCall(sweep({s == options_.sweeps_max, residual_, increment}, dt, &done));
     ++sweeps_;
   }
   if (memory_) remember(increment);
@@ -257,6 +272,12 @@ PetscErrorCode AcmSweepSolver::find_minimum(const FieldBlock &residual, SweepMin
 void AcmSweepSolver::step(const Turn &turn, bool last, double dt, const SweepMinimum &minimum, double mean) {
   // The stencils read D, when it is a direction itself, and d: the new ones go elsewhere.
   FieldBlock &new_residual = multigrid_ ? residual_ : correction_;
+  const bool left = left_;  // an increment by the sweep before
+  const Increment how = !left && !last ? Increment::later
+                        : first_       ? (left ? Increment::set_two : Increment::set)
+                                       : (left ? Increment::add_two : Increment::add);
+  left_ = how == Increment::later;
+  if (!left_) first_ = false;
   const StepTask task{grid_,
                       directions_.data(),
                       static_cast<int>(directions_.size()),
@@ -264,7 +285,7 @@ void AcmSweepSolver::step(const Turn &turn, bool last, double dt, const SweepMin
                       grid_->inverse_squares(),
                       minimum.coefficient[0] * mean,
                       1 / dt,
-                      turn.first,
+                      how,
                       last,
                       turn.residual[0],
                       new_residual[0],

@@ -38,7 +38,7 @@ private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);
   /// One of the sweeps of a solve: which, the D it starts from, and the increment so far.
   struct Turn {
-    bool first, last;
+    bool last;
     const FieldBlock &residual;
     FieldBlock &increment;
   };
@@ -57,7 +57,8 @@ private:
   std::vector<ConstView> directions_;                              ///< of this sweep
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
-  bool ghosts_of_memory_ = true;  ///< valid
+  bool first_ = true, left_ = false;  ///< nothing has set the increment; the last d is not in it yet
+  bool ghosts_of_memory_ = true;      ///< valid
 };
 
 }  // namespace eulastic
