@@ -36,27 +36,22 @@ public:
 
 private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);
-  /// One of the sweeps of a solve: which, the D it starts from, and the increment so far.
-  struct Turn {
-    bool last;
-    const FieldBlock &residual;
-    FieldBlock &increment;
-  };
-  PetscErrorCode sweep(const Turn &turn, double dt, bool *done);
-  PetscErrorCode find_minimum(const FieldBlock &residual, SweepMinimum *minimum, double *mean);
-  void step(const Turn &turn, bool last, double dt, const SweepMinimum &minimum, double mean);
-  void remember(const FieldBlock &increment);
+  /// One sweep over directions_, from D on.
+  PetscErrorCode sweep(ConstView residual, bool last, double dt, FieldBlock &increment, bool *done);
 
   const Grid *grid_ = nullptr;
   GhostExchange *exchange_ = nullptr;
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
-  FieldBlock work_, residual_, correction_, direction_, scratch_;  ///< the first holds the others
-  FieldBlock memory_;                                              ///< the newest increment is newest_
-  int newest_ = 0;                                                 ///< then those after it, around the block
-  std::vector<ConstView> directions_;                              ///< of this sweep
+  FieldBlock work_, residual_, before_, direction_;  ///< the first holds the others
+  FieldBlock own_scratch_;                           ///< without memory
+  FieldBlock memory_;                                ///< the newest increment is newest_
+  int newest_ = 0;                                   ///< then those after it, around the block
+  std::vector<ConstView> directions_;                ///< of this sweep, but for the last one
+  ConstView residual_before_{};                      ///< D before, or nothing
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
+  bool recurs_ = false;               ///< there is a d, and a D before
   bool first_ = true, left_ = false;  ///< nothing has set the increment; the last d is not in it yet
   bool ghosts_of_memory_ = true;      ///< valid
 };

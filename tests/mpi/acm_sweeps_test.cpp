@@ -92,6 +92,43 @@ TEST(AcmSweeps, SameBitsOnLargerGrids) {
     }
 }
 
+// However many sweeps there are, all of their directions are in the increment: what it leaves is what the solver says.
+TEST(AcmSweeps, LeavesWhatItSays) {
+  for (const Int3 &cells : {Int3{32, 24, 16}, Int3{40, 26, 1}})
+    for (const GridSpec &spec : all_boundaries(cells))
+      for (const bool multigrid : {true, false})
+        for (const int memory : {0, 1, 3})
+          for (int sweeps = 1; sweeps <= 5; ++sweeps) {
+            Sweeper s(PETSC_COMM_WORLD, spec, {sweeps, memory, multigrid});
+            for (int step = 0; step < 3; ++step) {
+              s.set([&](int i, int j, int k) { return smooth_and_rough(cells, 0.3 * step, i, j, k); });
+              s.solve(1e-14);
+            }
+            EXPECT_NEAR(s.solver.residual_rms() / s.rms_residual(), 1, 1e-6)
+                << name(spec) << multigrid << memory << ", " << sweeps << " sweeps";
+          }
+}
+
+// What is remembered hardly sees a right-hand side that is all but orthogonal to it: what the projection then changes
+// is mostly rounding, of which the next sweeps must make nothing.
+TEST(AcmSweeps, MemoryOfLittleUse) {
+  const Int3 cells{32, 24, 16};
+  for (const bool multigrid : {true, false})
+    for (const double share : {1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15}) {
+      const GridSpec spec = all_boundaries(cells)[0];
+      Sweeper s(PETSC_COMM_WORLD, spec, {100, 1, multigrid});
+      const auto old = [&](int i, int, int) { return std::sin(2 * M_PI * (i + 0.5) / cells[0]); };
+      s.set(old);
+      s.solve(1e-12);
+      s.set([&](int i, int j, int k) {
+        const double x = 2 * M_PI * (i + 0.5) / cells[0];
+        return share * old(i, j, k) + std::sin(2 * x + 0.3) + std::cos(5 * x + j) * (1 + 0.1 * noise(7, j, k));
+      });
+      s.solve(1e-9);
+      EXPECT_NEAR(s.solver.residual_rms(), s.rms_residual(), 1e-10 * s.rms_divergence()) << share << multigrid;
+    }
+}
+
 // |q - q_exact| <= |residual| / smallest eigenvalue, (pi / longest side)^2 between walls; both have zero mean.
 TEST(AcmSweeps, AgreesWithTheExactSolver) {
   if (!SmacSolver::available()) GTEST_SKIP() << "built without FFTW";
