@@ -175,6 +175,7 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
       if (Recurs) rest = kernels::fma(-c[Stencils], before[i] - D[i], rest);
       out[i] = rest;
     }
+    if (t.grid->wraps_x()) t.grid->wrap_row(out, Multigrid::halo);
   });
 }
 
@@ -302,7 +303,8 @@ PetscErrorCode AcmSweepSolver::sweep(ConstView residual, bool last, double dt, F
   residual_.swap(before_);
   residual_before_ = residual;
   recurs_ = true;
-  PetscCall(update_ghosts(residual_, Multigrid::halo));
+  PetscCall(exchange_->update_wrapped(residual_, Multigrid::halo));
+  fill_wall_ghosts_even(*grid_, at_centre, residual_[0], 1);
   PetscFunctionReturn(0);
 }
 

@@ -26,35 +26,33 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
   const auto &[x, y, z] = fine.lines;
   // One fine cell more than there are children: a last cell without a partner has the weight 0 for it.
   const int begin = x.first, end = x.first + x.stride * n + (x.weight[2].back() > 0);
-  for (int k = part.k_begin; k < part.k_end; ++k)
-    for (int j = part.j_begin; j < part.j_end; ++j) {
-      const int fine_j = y.first + y.stride * j, fine_k = z.first + z.stride * k;
-      const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
-      if (Dim == 3)  // the next plane
-        for (int c = 0; c < z.stride; ++c)
-          for (int b = 0; b < y.stride; ++b) kernels::prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
-      for (int i = begin; i < end; ++i) sum[i] = 0;
-      for (int c = 0; c < 3; ++c)
-        for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then a third
-          const Segment row{begin, last, fine_j + b, fine_k + c};
-          const double plane = z.weight[c][k],
-                       weight[2] = {plane * y.weight[b][j], b == 0 ? plane * y.weight[1][j] : 0};
-          if (!(weight[0] > 0)) continue;
-          const kernels::LineCoefficients near[2] = {fine.coefficients(row.j, row.k),
-                                                     fine.coefficients(row.j + 1, row.k)};
-          if (weight[1] > 0)
-            kernels::add_relaxed_residual<Dim, 2>(row, r, near, weight, factor, sum);
-          else
-            kernels::add_relaxed_residual<Dim, 1>(row, r, near, weight, factor, sum);
-        }
-      double *coarse = out.row(j, k);
-      if (x.stride == 1) {
-        for (int i = 0; i < n; ++i) coarse[i] = sum[i];
-        continue;
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const int fine_j = y.first + y.stride * j, fine_k = z.first + z.stride * k;
+    const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
+    if (Dim == 3)  // the next plane
+      for (int c = 0; c < z.stride; ++c)
+        for (int b = 0; b < y.stride; ++b) kernels::prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
+    for (int i = begin; i < end; ++i) sum[i] = 0;
+    for (int c = 0; c < 3; ++c)
+      for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then a third
+        const Segment row{begin, last, fine_j + b, fine_k + c};
+        const double plane = z.weight[c][k], weight[2] = {plane * y.weight[b][j], b == 0 ? plane * y.weight[1][j] : 0};
+        if (!(weight[0] > 0)) continue;
+        const kernels::LineCoefficients near[2] = {fine.coefficients(row.j, row.k),
+                                                   fine.coefficients(row.j + 1, row.k)};
+        if (weight[1] > 0)
+          kernels::add_relaxed_residual<Dim, 2>(row, r, near, weight, factor, sum);
+        else
+          kernels::add_relaxed_residual<Dim, 1>(row, r, near, weight, factor, sum);
       }
-      kernels::join_pairs(n, sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
-      if (x.weight[2].back() > 0) coarse[n - 1] += x.weight[2].back() * sum[end - 1];
+    double *coarse = out.row(j, k);
+    if (x.stride == 1) {
+      for (int i = 0; i < n; ++i) coarse[i] = sum[i];
+      return;
     }
+    kernels::join_pairs(n, sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
+    if (x.weight[2].back() > 0) coarse[n - 1] += x.weight[2].back() * sum[end - 1];
+  });
 }
 
 EULASTIC_CLONES void restrict_2d(const MultigridLevel &f, double a, ConstView r, int n, const RowPart &part, View out,
@@ -177,7 +175,7 @@ std::size_t Multigrid::bytes() const {
 PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch) {
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch));
-  PetscCall(levels_[0]->exchange().update(solution, 1));
+  PetscCall(levels_[0]->exchange().update_wrapped(solution, 1));
   PetscFunctionReturn(0);
 }
 
@@ -217,9 +215,9 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     const int passes = (stages - done + fine.depth - 1) / fine.depth;  // that are left, of equal depth
     depth = (stages - done + passes - 1) / passes;
     if (done == 0)
-      PetscCall(coarse.exchange().update(coarse.solution, 1 + depth / 2));
+      PetscCall(coarse.exchange().update_wrapped(coarse.solution, 1 + depth / 2));
     else
-      PetscCall(fine.exchange().update(solution, depth));
+      PetscCall(fine.exchange().update_wrapped(solution, depth));
     const Pass pass{&fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}};
     const StagePass order(fine.grid(), sides, depth, 1);
     order.for_tasks([&](const StagePass::Task &task) {
@@ -270,8 +268,9 @@ PetscErrorCode Multigrid::gather(MultigridLevel &level, MultigridLevel &whole, c
 void Multigrid::take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const {
   const Layout &own = level.grid().layout();
   each_row(own.cells, [&](int j, int k, std::ptrdiff_t) {
-    std::copy_n(whole.solution[0].row(own.begin[1] + j, own.begin[2] + k) + own.begin[0], own.cells[0],
-                solution[0].row(j, k));
+    double *row = solution[0].row(j, k);
+    std::copy_n(whole.solution[0].row(own.begin[1] + j, own.begin[2] + k) + own.begin[0], own.cells[0], row);
+    if (level.grid().wraps_x()) level.grid().wrap_row(row, 1);
   });
 }
 
