@@ -4,6 +4,7 @@
 #include "grid/segment.hpp"
 #include "kernels/isa.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace eulastic::kernels {
@@ -111,15 +112,24 @@ EULASTIC_INLINE void add_interpolated_pairs(int begin, int end, Corners coarse, 
 /// All of them go through the points together: one alone would wait for its own last addition.
 template <int N, class Product>
 EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, double *sum) noexcept {
-  double lane[N][8] = {};
+  double lane[N][8];
   const auto at = [&](int i, int l) EULASTIC_BODY {
     product(i, [&, l](int s, double a, double b) EULASTIC_BODY { lane[s][l] = fma(a, b, lane[s][l]); });
   };
   int i = 0;
-  for (; i < n && ((first + i) & 7); ++i) at(i, static_cast<int>((first + i) & 7));
-  for (; i + 8 <= n; i += 8)
+  if (n >= 8 && (first & 7) == 0) {
+#pragma omp simd
+    for (int l = 0; l < 8; ++l) product(l, [&, l](int s, double a, double b) EULASTIC_BODY { lane[s][l] = a * b; });
+    i = 8;
+  } else {
+    for (int s = 0; s < N; ++s) std::fill_n(lane[s], 8, 0.0);
+    for (; i < n && ((first + i) & 7); ++i) at(i, static_cast<int>((first + i) & 7));
+  }
+  for (; i + 8 <= n; i += 8) {
+    asm volatile("");  // two groups at a time are half as wide for GCC 12, and their sums wait in memory
 #pragma omp simd
     for (int l = 0; l < 8; ++l) at(i + l, l);
+  }
   for (int l = 0; i < n; ++i, ++l) at(i, l);
   for (int s = 0; s < N; ++s) {  // in halves: ((0 4) (2 6)) ((1 5) (3 7))
     double half[4];
