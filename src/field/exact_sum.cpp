@@ -158,6 +158,13 @@ PetscErrorCode ExactSums::reduce(MPI_Comm comm, double *result) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode reduce_parts(MPI_Comm comm, std::vector<ExactSums> &parts, double *result) {
+  PetscFunctionBeginUser;
+  for (std::size_t part = 1; part < parts.size(); ++part) parts[0].add(parts[part]);
+  PetscCall(parts[0].reduce(comm, result));
+  PetscFunctionReturn(0);
+}
+
 std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering,
                           std::uint64_t salt) {
   const Layout &own = grid.layout();

@@ -69,6 +69,9 @@ private:
   std::vector<Waiting> waiting_;
 };
 
+/// The sums of all parts over all ranks. Collective; `parts` start again from zero.
+PetscErrorCode reduce_parts(MPI_Comm comm, std::vector<ExactSums> &parts, double *result);
+
 /// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
 template <class Add>
 PetscErrorCode sum_row_parts(const Grid &grid, int count, const Add &add, double *result) {
@@ -76,8 +79,7 @@ PetscErrorCode sum_row_parts(const Grid &grid, int count, const Add &add, double
   const int parts = row_parts(grid);
   std::vector<ExactSums> sums(parts, ExactSums(count));
   in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), sums[part]); });
-  for (int part = 1; part < parts; ++part) sums[0].add(sums[part]);
-  PetscCall(sums[0].reduce(grid.comm(), result));
+  PetscCall(reduce_parts(grid.comm(), sums, result));
   PetscFunctionReturn(0);
 }
 

@@ -33,7 +33,7 @@ std::vector<StagePass::Task> StagePass::tasks(int team) const {
   for (int f = 0; f < fields_; ++f)
     for (int t = 0; t < team; ++t) {
       const Piece piece(grid_.owned()[grid_.dimension() - 1], t, team);
-      tasks.push_back({f, static_cast<int>(piece.begin), static_cast<int>(piece.end), t == 0, t == team - 1});
+      tasks.push_back({t, f, static_cast<int>(piece.begin), static_cast<int>(piece.end), t == 0, t == team - 1});
     }
   return tasks;
 }
@@ -41,14 +41,14 @@ std::vector<StagePass::Task> StagePass::tasks(int team) const {
 // Of one stage, between the slices of every two threads; rows are shared.
 std::vector<StagePass::Task> StagePass::tasks_between(int team, int stage) const {
   const bool flat = grid_.dimension() == 2;
-  const int layers = depth_ - 1 - stage, shares = flat ? 1 : team;
+  const int layers = most_ - stage, shares = flat ? 1 : team;
   const int first = -sides_.low(1, layers), rows = grid_.owned()[1] + sides_.high(1, layers) - first;
   std::vector<Task> tasks;
   for (const Task &lower : this->tasks(team))
     for (int share = 0; share < shares && !lower.high; ++share) {
       const Piece piece(rows, share, shares);
-      tasks.push_back({lower.field, lower.end - stage, lower.end + stage, false, false, stage,
-                       first + static_cast<int>(piece.begin), first + static_cast<int>(piece.end)});
+      tasks.push_back({static_cast<int>(tasks.size()) % team, lower.field, lower.end - stage, lower.end + stage, false,
+                       false, stage, first + static_cast<int>(piece.begin), first + static_cast<int>(piece.end)});
     }
   return tasks;
 }

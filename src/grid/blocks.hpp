@@ -10,12 +10,20 @@ namespace eulastic {
 /// second-level cache.
 inline constexpr int block_rows = 32;
 
-/// row(j, k) for all rows of a part in that order; inlined.
+/// row(j, k) for all rows of a part in that order, and after(first row, end of j, k) after those of a block in a plane;
+/// inlined.
+template <class Row, class After>
+[[gnu::always_inline]] inline void for_rows_in_blocks(const RowPart &part, const Row &row, const After &after) {
+  for (int block = part.j_begin; block < part.j_end; block += block_rows)
+    for (int k = part.k_begin; k < part.k_end; ++k) {
+      const int end = std::min(block + block_rows, part.j_end);
+      for (int j = block; j < end; ++j) row(j, k);
+      after(block, end, k);
+    }
+}
 template <class Row>
 [[gnu::always_inline]] inline void for_rows_in_blocks(const RowPart &part, const Row &row) {
-  for (int block = part.j_begin; block < part.j_end; block += block_rows)
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = block; j < std::min(block + block_rows, part.j_end); ++j) row(j, k);
+  for_rows_in_blocks(part, row, [](int, int, int) {});
 }
 
 /// Where a rank ends: how many layers of points around the owned ones are computed again by stages. None behind walls,
@@ -33,15 +41,16 @@ struct Sides {
 /// Stages of a stencil that reaches to the next point, each of which reads what the one before it has written: a slice
 /// (a plane, in 2-D a row) behind it and, in 3-D, a row behind it too. A stage is needed at the owned points and, for
 /// those after it, in layers around them, which are computed again instead of exchanged. Stages may write two fields in
-/// turn, each over what the one before the last has left.
+/// turn, each over what the one before the last has left. The last stage may leave the outermost owned points out.
 ///
 /// Threads have slices of their own, like with any verb. Each goes as far as it can with them, a slice less at the
 /// other threads' sides with every stage; what is left there, stage by stage, is done together then.
 class StagePass {
 public:
   /// `depth` stages, each of `fields` fields that do not see each other.
-  StagePass(const Grid &grid, const Sides &sides, int depth, int fields)
-      : grid_(grid), sides_(sides), depth_(depth), fields_(fields) {}
+  /// `layers` of the last one: 0, or -1.
+  StagePass(const Grid &grid, const Sides &sides, int depth, int fields, int layers = 0)
+      : grid_(grid), sides_(sides), depth_(depth), fields_(fields), most_(depth - 1 + layers) {}
 
   /// The most stages of a pass, `least` to `most`: ghosts must reach, and what is computed again stay below a quarter
   /// of the first stage. Every rank finds the same.
@@ -49,6 +58,7 @@ public:
 
   /// Slices of a field that go together: all stages, a block of rows after the other, or what is left of one stage.
   struct Task {
+    int thread;
     int field, begin, end;  ///< slices of the first stage
     bool low, high;         ///< whether they end where the rank does
     int stage = -1;         ///< the only one, on rows j_begin <= j < j_end of these slices; -1: all
@@ -73,7 +83,7 @@ public:
     constexpr int last = Dim - 1;
     const Int3 n = grid_.owned();
     const auto row = [&](int s, int j, int slice) {
-      const int layers = depth_ - 1 - s;
+      const int layers = most_ - s;
       return Segment{-sides_.low(0, layers), n[0] + sides_.high(0, layers), j, Dim == 3 ? slice : 0};
     };
     if (task.stage >= 0) {
@@ -81,13 +91,13 @@ public:
         rows(task.stage, row(task.stage, Dim == 3 ? task.j_begin : slice, slice), Dim == 3 ? task.j_end : slice + 1);
       return;
     }
-    const int all = depth_ - 1, first_row = Dim == 3 ? -sides_.low(1, all) : 0, end_row = Dim == 3 ? n[1] + all : 1;
-    const int first_slice = task.begin - (task.low ? sides_.low(last, all) : 0);
-    const int end_slice = task.end + (task.high ? all : 0);
+    const int first_row = Dim == 3 ? -sides_.low(1, most_) : 0, end_row = Dim == 3 ? n[1] + depth_ - 1 : 1;
+    const int first_slice = task.begin - (task.low ? sides_.low(last, most_) : 0);
+    const int end_slice = task.end + (task.high ? depth_ - 1 : 0);
     for (int block = first_row; block < end_row; block += block_rows)
       for (int first = first_slice; first < end_slice; ++first)
         for (int s = 0; s < depth_; ++s) {
-          const int slice = first - s, layers = all - s;
+          const int slice = first - s, layers = most_ - s;
           if (slice < (task.low ? -sides_.low(last, layers) : task.begin + s)) continue;
           if (slice >= n[last] + sides_.high(last, layers)) continue;
           const int j_begin = Dim == 3 ? std::max(block - s, -sides_.low(1, layers)) : slice;
@@ -103,7 +113,7 @@ private:
 
   const Grid &grid_;
   const Sides &sides_;
-  int depth_, fields_;
+  int depth_, fields_, most_;  ///< layers of the first stage
 };
 
 }  // namespace eulastic

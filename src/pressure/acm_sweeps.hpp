@@ -5,9 +5,9 @@
 // residuals). Without multigrid D itself takes the place of V(D), as in (11). Scalars only.
 #pragma once
 
-#include "pressure/minimise.hpp"
 #include "pressure/multigrid.hpp"
 #include "pressure/pressure_solver.hpp"
+#include "pressure/sweep_passes.hpp"
 
 namespace eulastic {
 
@@ -48,6 +48,7 @@ private:
   FieldBlock memory_;                                ///< the newest increment is newest_
   int newest_ = 0;                                   ///< then those after it, around the block
   std::vector<ConstView> directions_;                ///< of this sweep, but for the last one
+  RowSums sums_;                                     ///< of this sweep or, once it is done, of the next
   ConstView residual_before_{};                      ///< D before, or nothing
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;

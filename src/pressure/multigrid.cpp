@@ -72,6 +72,8 @@ struct Pass {
   const double *factor;          // of every stage
   ConstView rhs;
   View fields[2];
+  int depth;
+  const Multigrid::Follow *follow;  // the stage after them
 };
 
 // out = factor r + interpolated e; e has `coarse_cells` owned cells in x.
@@ -102,6 +104,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
   const Grid &grid = pass.fine->grid();
   order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
+    if (s == pass.depth) return (*pass.follow)(q, task.thread, row.j, j_end, row.k);
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0)
         for (const double *values :
@@ -172,9 +175,11 @@ std::size_t Multigrid::bytes() const {
   return sum;
 }
 
-PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch) {
+PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
+                                const Follow &follow) {
   PetscFunctionBeginUser;
-  PetscCall(cycle(0, rhs, solution, scratch));
+  PetscCall(cycle(0, rhs, solution, scratch,
+                  levels_[0]->grid().wraps_x() && levels_[0]->grid().dimension() == 3 ? follow : Follow()));
   PetscCall(levels_[0]->exchange().update_wrapped(solution, 1));
   PetscFunctionReturn(0);
 }
@@ -183,7 +188,8 @@ PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, Fie
 int Multigrid::halo_of(const MultigridLevel &level) { return std::max(halo, level.depth - 1); }
 
 // Leaves the ghosts of the solution to the caller.
-PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch) {
+PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
+                                const Follow &follow) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
   if (level.single_cell()) PetscFunctionReturn(0);  // defined up to a constant: 0, for ever
@@ -194,17 +200,17 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
   else
     restrict_residual(level, rhs, next);
   PetscCall(next.exchange().update(next.rhs, halo_of(next)));
-  PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch));
+  PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch, {}));
   if (gathers)
     take_part(level, next, solution);
   else
-    PetscCall(smooth(level, next, rhs, solution, scratch));
+    PetscCall(smooth(level, next, rhs, solution, scratch, follow));
   PetscFunctionReturn(0);
 }
 
 // solution = the coarse one, interpolated, + one relaxation of `rhs`; then it is relaxed.
 PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs,
-                                 FieldBlock &solution, FieldBlock &scratch) {
+                                 FieldBlock &solution, FieldBlock &scratch, const Follow &follow) {
   PetscFunctionBeginUser;
   const Sides sides(fine.grid());
   const Relaxations &relax = relaxations(fine);
@@ -218,8 +224,10 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
       PetscCall(coarse.exchange().update_wrapped(coarse.solution, 1 + depth / 2));
     else
       PetscCall(fine.exchange().update_wrapped(solution, depth));
-    const Pass pass{&fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}};
-    const StagePass order(fine.grid(), sides, depth, 1);
+    const bool followed = follow && done + depth == stages;
+    const Pass pass{
+        &fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}, depth, &follow};
+    const StagePass order(fine.grid(), sides, depth + followed, 1, followed ? -1 : 0);
     order.for_tasks([&](const StagePass::Task &task) {
       (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
     });

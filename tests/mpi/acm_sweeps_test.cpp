@@ -82,12 +82,15 @@ TEST(AcmSweeps, SameBitsOnLargerGrids) {
         Sweeper one(PETSC_COMM_SELF, spec, {6, 2, multigrid});
         one.set(f);
         for (int repeat = 0; repeat < 2; ++repeat) one.solve(1e-5);
-        for (const GridSpec &shared : all_decompositions(spec)) {
-          Sweeper many(PETSC_COMM_WORLD, shared, {6, 2, multigrid});
-          many.set(f);
-          for (int repeat = 0; repeat < 2; ++repeat) many.solve(1e-5);
-          EXPECT_EQ(differences(many, one), 0) << name(shared) << multigrid;
-        }
+        for (const GridSpec &shared : all_decompositions(spec))
+          for (const int team : {1, 3}) {
+            set_threads(team);
+            Sweeper many(PETSC_COMM_WORLD, shared, {6, 2, multigrid});
+            many.set(f);
+            for (int repeat = 0; repeat < 2; ++repeat) many.solve(1e-5);
+            set_threads(1);
+            EXPECT_EQ(differences(many, one), 0) << name(shared) << multigrid << ", " << team << " threads";
+          }
       }
     }
 }
