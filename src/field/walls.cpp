@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "grid/threads.hpp"
+#include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,12 +40,16 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
     for (int m = first; m < first + width; ++m)
       for (int i = from; i < to; ++i) row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
   };
+  constexpr int ahead = 2;
   const int low_j = plane.begin[1], low_k = plane.begin[2], lines = plane.end[1] - low_j, parts = row_parts(grid);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(static_cast<std::size_t>(lines) * (plane.end[2] - low_k), part, parts);
     for (std::size_t line = piece.begin; line < piece.end; ++line) {
       const int j = low_j + static_cast<int>(line % lines), k = low_k + static_cast<int>(line / lines);
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
+      if (d == 1)  // rows a plane apart, which processors do not foresee
+        for (int m = first; m < first + width; ++m)
+          kernels::prefetch(q.row(j, k + ahead) + wall + mirror - m * step + from, to - from);
       reflect_row(q.row(j, k) + wall);
     }
   });
