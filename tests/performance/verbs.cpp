@@ -114,13 +114,13 @@ void rkl_stage(benchmark::State &state) {
 }
 EULASTIC_NAMED(rkl_stage);
 
-// A sweep: sums of D, a direction and d; they, D and the increment, both in place, -> d. Without V-cycle D is the
-// direction and goes elsewhere, which is as much. The first sweep has no d, the last leaves D and d alone; before them
-// D is copied and the increment set to 0.
+// A sweep: sums of D, the D before and a direction; they and d, in place: new D, new d and every second time the
+// increment. Without V-cycle D is the direction. The first sweep has no D before to sum, the last leaves D and d alone;
+// before them D is copied.
 constexpr int sweeps = 6;
 constexpr double sweeps_bytes(bool multigrid) {
-  const double sums = multigrid ? 3 * 8 : 2 * 8, step = 2 * 8 + 2 * 16 + 16, first = 2 * 8, last = 2 * 16;
-  return ((8 + 16 + 16) + sweeps * (sums + step) - first - last) / sweeps;
+  const double direction = multigrid ? 8 : 0, sums = 2 * 8 + direction, step = 8 + direction + 2 * 16 + 16 / 2;
+  return ((8 + 16) + sweeps * (sums + step) - 8 - (direction + 16 + 8)) / sweeps;
 }
 // D -> half the cells; them, D -> q; two relaxations, by themselves (they share a pass, so that less goes through
 // memory). Below an eighth of the cells each: one relaxation more, the right-hand side is written, the solution read.
