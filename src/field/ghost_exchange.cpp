@@ -203,6 +203,15 @@ PetscErrorCode GhostExchange::update_rows(FieldBlock &block, int width) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode GhostExchange::update_rows(FieldBlock &first, int first_width, FieldBlock &second, int second_width) {
+  PetscFunctionBeginUser;
+  PetscCall(begin(first, first_width));
+  PetscCall(begin(second, second_width));
+  PetscCall(end_rows(first, first_width, nullptr));
+  PetscCall(end_rows(second, second_width, nullptr));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   PetscCall(begin(block, width, rows));

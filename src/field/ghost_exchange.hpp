@@ -1,8 +1,9 @@
 // Ghost-only exchange: a PetscSF straight on the local arrays, so that no interior value is ever copied.
 //
 // Ghosts in a periodic direction that is not split are copied row by row, in x within the row, and never enter the SF.
-// Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others. In large boxes
-// whole rows go in runs of up to eight values, a line of the cache, so that the tables of the SF are that much smaller.
+// Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others.
+// In large boxes whole rows go in runs of up to eight values, a line of the cache, so that the tables of the SF are
+// that much smaller.
 #pragma once
 
 #include "field/field_block.hpp"
@@ -29,6 +30,8 @@ public:
   PetscErrorCode update_wrapped(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both, but for what lies across a periodic x that is not split.
   PetscErrorCode update_rows(FieldBlock &block, int width);
+  /// That of two blocks, whose messages are under way together.
+  PetscErrorCode update_rows(FieldBlock &first, int first_width, FieldBlock &second, int second_width);
 
 private:
   struct Key {

@@ -181,11 +181,12 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   if (stages > 1) work.before.clear();
   const Sides sides(grid);
   const int depth = StagePass::depth(grid, sides, 2, deepest);
-  PetscCall(exchange.update_rows(work.rate, depth - 1));
   std::vector<char> stressed;
   if (work.slope) {
-    PetscCall(exchange.update_rows(work.slope, depth - 1));
+    PetscCall(exchange.update_rows(work.rate, depth - 1, work.slope, depth - 1));
     stressed = stressed_rows(grid, phases);
+  } else {
+    PetscCall(exchange.update_rows(work.rate, depth - 1));
   }
   const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
   Pass pass;
@@ -200,8 +201,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
           for (int a = 0; a < 3; ++a) pass.twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
         }
     }
-    PetscCall(exchange.update_rows(work.now, pass.depth));
-    if (j > 2 && pass.depth > 2) PetscCall(exchange.update_rows(work.before, pass.depth - 1));
+    if (j > 2 && pass.depth > 2)
+      PetscCall(exchange.update_rows(work.now, pass.depth, work.before, pass.depth - 1));
+    else
+      PetscCall(exchange.update_rows(work.now, pass.depth));
     const StageFields fields{&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before};
     const StagePass order(grid, sides, pass.depth, grid.dimension());
     order.for_tasks([&](const StagePass::Task &task) {
