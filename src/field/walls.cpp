@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "grid/threads.hpp"
-#include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +47,10 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
       const int j = low_j + static_cast<int>(line % lines), k = low_k + static_cast<int>(line / lines);
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
       if (d == 1)  // rows a plane apart, which processors do not foresee
-        for (int m = first; m < first + width; ++m)
-          kernels::prefetch(q.row(j, k + ahead) + wall + mirror - m * step + from, to - from);
+        for (int m = first; m < first + width; ++m) {
+          const double *later = q.row(j, k + ahead) + wall + mirror - m * step;
+          for (int i = from; i < to; i += 8) __builtin_prefetch(later + i, 0, 2);
+        }
       reflect_row(q.row(j, k) + wall);
     }
   });

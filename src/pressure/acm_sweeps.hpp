@@ -47,7 +47,7 @@ private:
   FieldBlock own_scratch_;                           ///< without memory
   FieldBlock memory_;                                ///< the newest increment is newest_
   int newest_ = 0;                                   ///< then those after it, around the block
-  std::vector<ConstView> directions_;                ///< of this sweep, but for the last one
+  std::vector<ConstView> directions_;                ///< of this sweep, but for d
   RowSums sums_;                                     ///< of this sweep or, once it is done, of the next
   ConstView residual_before_{};                      ///< D before, or nothing
   double target_ = 0, residual_rms_ = 0;
