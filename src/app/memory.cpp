@@ -34,9 +34,10 @@ double fields(const Config &config) {
   double sum = 2 * dimension + 1 + (work ? 6 : method.acm_of_the_paper() ? 1 : 2);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
-  if (method.pressure == PressureKind::acm && !method.acm_of_the_paper())
-    sum += (work ? 0 : 4) + method.acm_memory + (method.acm_coarse ? (dimension == 2 ? 1 : 0.4) : 0) +
-           (method.acm_coarse && method.acm_memory == 0);            // coarse grids
+  if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
+    sum += (work ? 0 : 4) + method.acm_memory;
+    if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
+  }
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (phases == 0) return sum;
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
