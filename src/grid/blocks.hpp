@@ -4,11 +4,24 @@
 
 #include "grid/threads.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 /// Verbs go through all of z for so many rows at a time: of 128 cells, three fields of them seven planes deep fit the
 /// second-level cache.
 inline constexpr int block_rows = 32;
+
+/// The row to ask memory for while row j of a block of rows in plane k is worked on: far enough on to be there in time,
+/// near enough to take little of the cache until then.
+struct RowAhead {
+  static constexpr int rows = 8;
+  int j, k;
+
+  RowAhead(int begin, int end, int now, int plane)
+      : j(now + rows < end ? now + rows : std::clamp(now + rows - (end - begin), begin, end - 1)),
+        k(now + rows < end ? plane : plane + 1) {}
+};
 
 /// row(j, k) for all rows of a part in that order, and after(first row, end of j, k) after those of a block in a plane;
 /// inlined.

@@ -115,11 +115,14 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
       for (int j = block; j < end; ++j) {
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
-          if (Dim == 3) {  // the next plane, of the stencil and of the result
-            kernels::prefetch(v[a].row(j, k + 4) - 3, n[0] + 2 * 3 + 7);  // up to its last cache line
-            kernels::prefetch(out[a].row(j, k + 1) - 1, n[0] + 2 + 7);
-            if (a == 0) kernels::prefetch(p.row(j, k + 1), n[0]);
-            if (a == 0 && t.divergence) kernels::prefetch((*t.divergence)[0].row(j, k) - 1, n[0] + 2 + 7);
+          if (Dim == 3) {  // rows of the stencil, at the block's sides too, and of the result
+            const RowAhead next(block, end, j, k);
+            kernels::prefetch(v[a].row(next.j, next.k + 3) - 3, n[0] + 2 * 3 + 7);  // up to its last cache line
+            if (next.j < block + 3) kernels::prefetch(v[a].row(next.j - 3, next.k), n[0]);
+            if (next.j >= end - 3) kernels::prefetch(v[a].row(next.j + 3, next.k), n[0]);
+            kernels::prefetch(out[a].row(next.j, next.k) - 1, n[0] + 2 + 7);
+            if (a == 0) kernels::prefetch(p.row(next.j, next.k), n[0]);
+            if (a == 0 && t.divergence) kernels::prefetch((*t.divergence)[0].row(next.j, next.k - 1) - 1, n[0] + 2 + 7);
           }
           if (t.inertia) {
             face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, rate);

@@ -101,7 +101,7 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
 }
 
 // Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. The
-// first asks for the next plane.
+// first asks for rows ahead.
 template <int Dim>
 EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
                                     const StageFields &f, const StagePass &order, const StagePass::Task &task) {
@@ -109,12 +109,14 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
   const int a = task.field;
   order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
+    const int first = row.j;
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0) {
-        kernels::prefetch(w.row(row.j, row.k + 2), n[0]);
-        kernels::prefetch(out.row(row.j, row.k + 1), n[0]);
-        kernels::prefetch((*f.rate)[a].row(row.j, row.k + 1), n[0]);
-        if (f.stressed) kernels::prefetch((*f.slope)[a].row(row.j, row.k + 1), n[0]);
+        const RowAhead next(first, j_end, row.j, row.k);
+        kernels::prefetch(w.row(next.j, next.k + 1), n[0]);
+        kernels::prefetch(out.row(next.j, next.k), n[0]);
+        kernels::prefetch((*f.rate)[a].row(next.j, next.k), n[0]);
+        if (f.stressed) kernels::prefetch((*f.slope)[a].row(next.j, next.k), n[0]);
       }
       if (is_on_wall(sides, a, row)) continue;
       surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
