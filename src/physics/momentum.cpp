@@ -116,10 +116,12 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
           if (Dim == 3) {  // rows of the stencil, at the block's sides too, and of the result
+            constexpr int reach = Grid::stencil_width;
             const RowAhead next(block, end, j, k);
-            kernels::prefetch(v[a].row(next.j, next.k + 3) - 3, n[0] + 2 * 3 + 7);  // up to its last cache line
-            if (next.j < block + 3) kernels::prefetch(v[a].row(next.j - 3, next.k), n[0]);
-            if (next.j >= end - 3) kernels::prefetch(v[a].row(next.j + 3, next.k), n[0]);
+            const int length = n[0] + 2 * reach + 7;  // up to its last cache line
+            kernels::prefetch(v[a].row(next.j, next.k + reach) - reach, length);
+            if (next.j < block + reach) kernels::prefetch(v[a].row(next.j - reach, next.k), n[0]);
+            if (next.j >= end - reach) kernels::prefetch(v[a].row(next.j + reach, next.k), n[0]);
             kernels::prefetch(out[a].row(next.j, next.k) - 1, n[0] + 2 + 7);
             if (a == 0) kernels::prefetch(p.row(next.j, next.k), n[0]);
             if (a == 0 && t.divergence) kernels::prefetch((*t.divergence)[0].row(next.j, next.k - 1) - 1, n[0] + 2 + 7);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <set>
 
 using namespace eulastic;
 
@@ -75,6 +76,26 @@ private:
 };
 
 }  // namespace
+
+// In blocks of enough rows every row is asked for once, before its turn; in smaller ones some row of the block.
+TEST(Blocks, RowsAheadAreThoseOfTheBlock) {
+  for (int rows = 1; rows <= 2 * RowAhead::rows + 3; ++rows) {
+    const int begin = 5, end = begin + rows;
+    std::set<int> asked;
+    for (int j = begin; j < end; ++j) {
+      const RowAhead next(begin, end, j, 7);
+      EXPECT_GE(next.j, begin);
+      EXPECT_LT(next.j, end);
+      asked.insert(next.j);
+      if (rows >= RowAhead::rows) {
+        EXPECT_EQ(next.j + rows * (next.k - 7), j + RowAhead::rows) << rows;
+      }
+    }
+    if (rows >= RowAhead::rows) {
+      EXPECT_EQ(int(asked.size()), rows);
+    }
+  }
+}
 
 TEST(StagePass, StagesReadWhatTheOneBeforeHasWritten) {
   for (const Int3 &cells : {Int3{512, 50, 1}, Int3{64, 70, 37}, Int3{64, 31, 16}})
