@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <set>
 
 using namespace eulastic;
 
@@ -77,22 +76,16 @@ private:
 
 }  // namespace
 
-// In blocks of enough rows every row is asked for once, before its turn; in smaller ones some row of the block.
+// Always a row of the block, and in blocks that are large enough the one that comes so many rows later.
 TEST(Blocks, RowsAheadAreThoseOfTheBlock) {
   for (int rows = 1; rows <= 2 * RowAhead::rows + 3; ++rows) {
     const int begin = 5, end = begin + rows;
-    std::set<int> asked;
     for (int j = begin; j < end; ++j) {
       const RowAhead next(begin, end, j, 7);
       EXPECT_GE(next.j, begin);
       EXPECT_LT(next.j, end);
-      asked.insert(next.j);
-      if (rows >= RowAhead::rows) {
-        EXPECT_EQ(next.j + rows * (next.k - 7), j + RowAhead::rows) << rows;
-      }
-    }
-    if (rows >= RowAhead::rows) {
-      EXPECT_EQ(int(asked.size()), rows);
+      if (rows < RowAhead::rows) continue;
+      EXPECT_EQ(next.j + rows * (next.k - 7), j + RowAhead::rows) << rows;
     }
   }
 }
