@@ -1,7 +1,7 @@
 #include "field/walls.hpp"
 
 #include "base/events.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,10 +47,8 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
       const int j = low_j + static_cast<int>(line % lines), k = low_k + static_cast<int>(line / lines);
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
       if (d == 1)  // rows a plane apart, which processors do not foresee
-        for (int m = first; m < first + width; ++m) {
-          const double *later = q.row(j, k + ahead) + wall + mirror - m * step;
-          for (int i = from; i < to; i += 8) __builtin_prefetch(later + i, 0, 2);
-        }
+        for (int m = first; m < first + width; ++m)
+          prefetch(q.row(j, k + ahead) + wall + mirror - m * step + from, to - from);
       reflect_row(q.row(j, k) + wall);
     }
   });

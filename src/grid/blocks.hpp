@@ -12,6 +12,12 @@ namespace eulastic {
 /// second-level cache.
 inline constexpr int block_rows = 32;
 
+/// Asks for n values, into the second-level cache: where a verb reads several fields, or rows in pieces, processors do
+/// not foresee what it needs from memory.
+[[gnu::always_inline]] inline void prefetch(const double *values, int n) noexcept {
+  for (int i = 0; i < n; i += 8) __builtin_prefetch(values + i, 0, 2);
+}
+
 /// The row to ask memory for while row j of a block of rows in plane k is worked on: far enough on to be there in time,
 /// near enough to take little of the cache until then.
 struct RowAhead {

@@ -18,12 +18,6 @@ EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_
   return 0.125 * (((q[0] + q[a]) + (q[b] + q[a + b])) + ((q[c] + q[c + a]) + (q[c + b] + q[c + a + b])));
 }
 
-/// Asks for n values, into the second-level cache: where a verb reads several fields, or rows in pieces, processors do
-/// not foresee what it needs from memory.
-EULASTIC_INLINE void prefetch(const double *values, int n) noexcept {
-  for (int i = 0; i < n; i += 8) __builtin_prefetch(values + i, 0, 2);
-}
-
 /// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.
 /// Along each direction where the two locations differ the two neighbours are averaged: towards +d from faces to
 /// points that are not staggered in d, towards -e from centres to points that are staggered in e.

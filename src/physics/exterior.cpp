@@ -188,17 +188,16 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
     int begin, n = 0, j, k;
     unsigned char *mask;
     std::vector<unsigned char> found;
-  } row, before;
-  row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
-  before.found = row.found;
+  } rows[2];
+  for (Row &row : rows) row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
   for (int L = 1; L <= layers; ++L) {
     std::vector<Entry> &entries = location->layer[L - 1];
     entries.clear();
-    const auto mark = [&](Row &r) {
-      for (int i = next_found(r.found.data(), 0, r.n); i < r.n; i = next_found(r.found.data(), i + 1, r.n)) {
-        unsigned char *here = r.mask + i;
+    const auto mark = [&](Row &row) {
+      for (int i = next_found(row.found.data(), 0, row.n); i < row.n; i = next_found(row.found.data(), i + 1, row.n)) {
+        unsigned char *here = row.mask + i;
         *here = static_cast<unsigned char>(L);
-        if (linear_ && !owned.contains({r.begin + i, r.j, r.k})) continue;
+        if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
         unsigned neighbours = 0, lines = 0;
         for (int d = 0; d < grid.dimension(); ++d) {
           const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
@@ -210,24 +209,26 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
         }
         entries.emplace_back(here - mask, neighbours, lines);
       }
-      r.n = 0;
+      row.n = 0;
     };
     const Reach box(grid, at, layers - L);
-    for (row.k = box.begin[2]; row.k < box.end[2]; ++row.k)
-      for (row.j = box.begin[1]; row.j < box.end[1]; ++row.j) {
-        const auto [begin, end] = part(box, row.j, row.k);
+    int turn = 0;
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+      for (int j = box.begin[1]; j < box.end[1]; ++j) {
+        const auto [begin, end] = part(box, j, k);
         if (begin >= end) continue;
+        Row &row = rows[turn];
         row.begin = begin;
         row.n = end - begin;
-        row.mask = mask + layout.offset(begin, row.j, row.k);
+        row.j = j;
+        row.k = k;
+        row.mask = mask + layout.offset(begin, j, k);
         find_layer(whole_vectors(row.n), row.mask, stride[1], stride[2], static_cast<unsigned char>(L),
                    row.found.data());
-        mark(before);
-        std::swap(row, before);
-        row.j = before.j;
-        row.k = before.k;
+        turn = 1 - turn;
+        mark(rows[turn]);  // the one before
       }
-    mark(before);
+    mark(rows[1 - turn]);
   }
 }
 

@@ -60,8 +60,8 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
           const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line
           const int low = phase.stressed.idle(j - 1, k) ? j - 1 : j, high = phase.stressed.idle(j + 1, k) ? j + 1 : j;
           for (int y = low; y <= high; ++y) {
-            kernels::prefetch(phi.row(y, k + 2) + i, length);
-            for (int f = 0; f < B.count(); ++f) kernels::prefetch(B[f].row(y, k + 2) + i, length);
+            prefetch(phi.row(y, k + 2) + i, length);
+            for (int f = 0; f < B.count(); ++f) prefetch(B[f].row(y, k + 2) + i, length);
           }
         }
         kernels::gather(batch, j * phi.sy + k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
@@ -119,12 +119,12 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
             constexpr int reach = Grid::stencil_width;
             const RowAhead next(block, end, j, k);
             const int length = n[0] + 2 * reach + 7;  // up to its last cache line
-            kernels::prefetch(v[a].row(next.j, next.k + reach) - reach, length);
-            if (next.j < block + reach) kernels::prefetch(v[a].row(next.j - reach, next.k), n[0]);
-            if (next.j >= end - reach) kernels::prefetch(v[a].row(next.j + reach, next.k), n[0]);
-            kernels::prefetch(out[a].row(next.j, next.k) - 1, n[0] + 2 + 7);
-            if (a == 0) kernels::prefetch(p.row(next.j, next.k), n[0]);
-            if (a == 0 && t.divergence) kernels::prefetch((*t.divergence)[0].row(next.j, next.k - 1) - 1, n[0] + 2 + 7);
+            prefetch(v[a].row(next.j, next.k + reach) - reach, length);
+            if (next.j < block + reach) prefetch(v[a].row(next.j - reach, next.k), n[0]);
+            if (next.j >= end - reach) prefetch(v[a].row(next.j + reach, next.k), n[0]);
+            prefetch(out[a].row(next.j, next.k) - 1, n[0] + 2 + 7);
+            if (a == 0) prefetch(p.row(next.j, next.k), n[0]);
+            if (a == 0 && t.divergence) prefetch((*t.divergence)[0].row(next.j, next.k - 1) - 1, n[0] + 2 + 7);
           }
           if (t.inertia) {
             face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, rate);

@@ -39,9 +39,9 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
     const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
     if (row.size() <= 0) return;
     if (Dim == 3) {  // the next plane
-      kernels::prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
-      for (int d = 0; d < Dim; ++d) kernels::prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
-      kernels::prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
+      prefetch(phi.row(j, k + 4) + row.i_begin, row.size());
+      for (int d = 0; d < Dim; ++d) prefetch(v[d].row(j, k + 2) + row.i_begin, row.size());
+      prefetch(out[0].row(j, k + 1) + row.i_begin, row.size());
     }
     centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, rate);
     const double *now = phi.row(j, k);

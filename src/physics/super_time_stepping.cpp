@@ -113,10 +113,10 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0) {
         const RowAhead next(first, j_end, row.j, row.k);
-        kernels::prefetch(w.row(next.j, next.k + 1), n[0]);
-        kernels::prefetch(out.row(next.j, next.k), n[0]);
-        kernels::prefetch((*f.rate)[a].row(next.j, next.k), n[0]);
-        if (f.stressed) kernels::prefetch((*f.slope)[a].row(next.j, next.k), n[0]);
+        prefetch(w.row(next.j, next.k + 1), n[0]);
+        prefetch(out.row(next.j, next.k), n[0]);
+        prefetch((*f.rate)[a].row(next.j, next.k), n[0]);
+        if (f.stressed) prefetch((*f.slope)[a].row(next.j, next.k), n[0]);
       }
       if (is_on_wall(sides, a, row)) continue;
       surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);

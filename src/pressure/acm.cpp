@@ -23,7 +23,7 @@ EULASTIC_INLINE void add_sums(const Grid &grid, const RowPart &part, ConstView d
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const double *D = divergence.row(j, k), *p = pressure.row(j, k);
     if (Dim == 3)
-      for (const double *row : {D, p}) kernels::prefetch(row + 2 * sz, n[0]);
+      for (const double *row : {D, p}) prefetch(row + 2 * sz, n[0]);
     const auto products = [=](int i, auto add) EULASTIC_BODY {
       const double lap_D = kernels::laplacian<Dim>(D + i, sy, sz, h), lap_p = kernels::laplacian<Dim>(p + i, sy, sz, h);
       add(0, -D[i], lap_D);

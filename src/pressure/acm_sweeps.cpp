@@ -50,12 +50,20 @@ PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {
   PetscFunctionReturn(0);
 }
 
+/// How far a solve has come.
+struct AcmSweepSolver::Course {
+  double dt;
+  FieldBlock &increment;
+  ConstView residual, before{};     // D of now and of a step earlier
+  bool recurs = false;              // there is a d, and a D before
+  bool first = true, left = false;  // nothing has set the increment; the last d is not in it yet
+  bool done = false;
+};
+
 PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
-  bool done = false;
-  first_ = true;
-  left_ = recurs_ = false;
+  Course course{dt, increment, memory_ ? divergence[0] : residual_[0]};
   if (memory_) {
     if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
     ghosts_of_memory_ = true;
@@ -63,18 +71,18 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[(newest_ + f) % memory_.count()]);
     newest_ = (newest_ + memory_.count() - 1) % memory_.count();  // the oldest: it will be
     sums_.start(*grid_, memory_.count());
-    PetscCall(sweep(divergence[0], false, dt, increment, &done));
+    PetscCall(sweep(false, course));
   } else {
     for (const Segment &s : grid_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
     PetscCall(update_ghosts(residual_, Multigrid::halo));
-    sums_.start(*grid_, 1);
+    if (!multigrid_) sums_.start(*grid_, 1);
   }
   FieldBlock correction = work_.part(3, 1), scratch;  // multigrid may swap them
   if (multigrid_) scratch = memory_ ? memory_.part(newest_, 1) : own_scratch_.part(0, 1);
-  for (int s = 1; s <= options_.sweeps_max && !done; ++s) {
+  for (int s = 1; s <= options_.sweeps_max && !course.done; ++s) {
     if (multigrid_) {
-      const SweepTask next{grid_, nullptr, 1, recurs_, residual_[0], residual_before_};
+      const SweepTask next{grid_, nullptr, 1, course.recurs, course.residual, course.before};
       sums_.start(*grid_, next.directions());
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
@@ -86,54 +94,55 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
       scope.flops(multigrid_->flops());
     }
     directions_.assign(1, multigrid_ ? correction[0] : residual_[0]);
-    PetscCall(sweep(residual_[0], s == options_.sweeps_max, dt, increment, &done));
+    PetscCall(sweep(s == options_.sweeps_max, course));
     ++sweeps_;
   }
   if (memory_) memory_.part(newest_, 1).copy_from(increment);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::sweep(ConstView residual, bool last, double dt, FieldBlock &increment, bool *done) {
+PetscErrorCode AcmSweepSolver::sweep(bool last, Course &course) {
   PetscFunctionBeginUser;
-  const SweepTask task{grid_,   directions_.data(), static_cast<int>(directions_.size()),
-                       recurs_, residual,           residual_before_};
+  const SweepTask task{grid_,         directions_.data(), static_cast<int>(directions_.size()),
+                       course.recurs, course.residual,    course.before};
   SweepMinimum minimum;
   double mean = 0;
   PetscCall(sums_.find_minimum(task, &minimum, &mean));
   residual_rms_ = std::sqrt(minimum.square / grid_->cell_count());
-  *done = last || !(residual_rms_ > target_);  // NaN is done
+  course.done = last || !(residual_rms_ > target_);  // NaN is done
   const int n = task.directions();
-  const double laplacians = task.stencils * (4 * grid_->dimension() + 1) + recurs_;
+  const double laplacians = task.stencils * (4 * grid_->dimension() + 1) + task.recurs;
   PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + (2 + n + n * (n + 1) / 2) * 2 + 2 * n + 2)));
-  const bool left = left_;
-  const Increment how = !left && !*done ? Increment::later
-                        : first_        ? (left ? Increment::set_two : Increment::set)
-                                        : (left ? Increment::add_two : Increment::add);
-  left_ = how == Increment::later;
-  if (!left_) first_ = false;
+  const bool left = course.left;
+  const Increment how = !left && !course.done ? Increment::later
+                        : course.first        ? (left ? Increment::set_two : Increment::set)
+                                              : (left ? Increment::add_two : Increment::add);
+  course.left = how == Increment::later;
+  if (!course.left) course.first = false;
   StepTask step{task,
                 minimum.coefficient,
                 minimum.coefficient[0] * mean,
-                1 / dt,
+                1 / course.dt,
                 how,
-                *done,
+                course.done,
                 before_[0],
                 direction_[0],
-                increment[0],
+                course.increment[0],
                 {}};
   const ConstView D = step.new_residual;
-  const SweepTask next{grid_, &D, 1, true, D, residual};
-  if (!multigrid_ && !*done) {
+  const SweepTask next{grid_, &D, 1, true, D, task.residual};
+  if (!multigrid_ && !course.done) {
     sums_.start(*grid_, next.directions());
     if (grid_->wraps_x())
       step.after = [&](int thread, int j_begin, int j_end, int k) { sums_.add_inner(next, thread, j_begin, j_end, k); };
   }
   take_step(step);
-  if (*done) PetscFunctionReturn(0);
+  if (course.done) PetscFunctionReturn(0);
   PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * n)));
   residual_.swap(before_);
-  residual_before_ = residual;
-  recurs_ = true;
+  course.before = task.residual;
+  course.residual = D;
+  course.recurs = true;
   PetscCall(exchange_->update_wrapped(residual_, Multigrid::halo));
   fill_wall_ghosts_even(*grid_, at_centre, residual_[0], 1);
   PetscFunctionReturn(0);

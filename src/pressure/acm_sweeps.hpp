@@ -36,8 +36,9 @@ public:
 
 private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);
-  /// One sweep over directions_, from D on.
-  PetscErrorCode sweep(ConstView residual, bool last, double dt, FieldBlock &increment, bool *done);
+  struct Course;
+  /// One sweep over directions_.
+  PetscErrorCode sweep(bool last, Course &course);
 
   const Grid *grid_ = nullptr;
   GhostExchange *exchange_ = nullptr;
@@ -49,12 +50,9 @@ private:
   int newest_ = 0;                                   ///< then those after it, around the block
   std::vector<ConstView> directions_;                ///< of this sweep, but for d
   RowSums sums_;                                     ///< of this sweep or, once it is done, of the next
-  ConstView residual_before_{};                      ///< D before, or nothing
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
-  bool recurs_ = false;               ///< there is a d, and a D before
-  bool first_ = true, left_ = false;  ///< nothing has set the increment; the last d is not in it yet
-  bool ghosts_of_memory_ = true;      ///< valid
+  bool ghosts_of_memory_ = true;  ///< valid
 };
 
 }  // namespace eulastic

@@ -31,7 +31,7 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
     const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
     if (Dim == 3)  // the next plane
       for (int c = 0; c < z.stride; ++c)
-        for (int b = 0; b < y.stride; ++b) kernels::prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
+        for (int b = 0; b < y.stride; ++b) prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
     for (int i = begin; i < end; ++i) sum[i] = 0;
     for (int c = 0; c < 3; ++c)
       for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then a third
@@ -109,7 +109,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
       if (Dim == 3 && s == 0)
         for (const double *values :
              {pass.rhs.row(row.j, row.k + 1), ConstView(q).row(row.j, row.k + 1), ConstView(out).row(row.j, row.k + 1)})
-          kernels::prefetch(values, row.i_end);
+          prefetch(values, row.i_end);
       if (s == 0 && pass.coarse)
         prolong_row(*pass.fine, row, pass.coarse->grid().owned()[0], pass.factor[0], pass.rhs, pass.coarse->solution[0],
                     out);

@@ -41,11 +41,11 @@ EULASTIC_INLINE void add_sums(const SweepTask &t, const RowPart &part, char *all
     if (summed) return;
     summed = 1;
     const double *D = t.residual.row(j, k), *before = Recurs ? t.before.row(j, k) : nullptr, *q[Stencils];
-    if (Dim == 3) kernels::prefetch(D + sz, n[0]);
-    if (Dim == 3 && Recurs) kernels::prefetch(before + sz, n[0]);
+    if (Dim == 3) prefetch(D + sz, n[0]);
+    if (Dim == 3 && Recurs) prefetch(before + sz, n[0]);
     for (int f = 0; f < Stencils; ++f) {
       q[f] = t.q[f].row(j, k);
-      if (Dim == 3) kernels::prefetch(q[f] + 2 * sz, n[0]);
+      if (Dim == 3) prefetch(q[f] + 2 * sz, n[0]);
     }
     const auto products = [=](int i, auto add) EULASTIC_BODY {
       double L[directions];
@@ -129,8 +129,7 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
     if (t.grid->wraps_x()) t.grid->wrap_row(out, Multigrid::halo);
   };
   for_rows_in_blocks(part.with_ghosts(*t.grid), row, [&](int j_begin, int j_end, int k) EULASTIC_BODY {
-    if (Dim == 3 && t.after && k - 1 > part.k_begin)
-      t.after(part.number, j_begin - 1, j_end - 1, k - 1);
+    if (Dim == 3 && t.after && k - 1 > part.k_begin) t.after(part.number, j_begin - 1, j_end - 1, k - 1);
   });
 }
 

@@ -1,9 +1,9 @@
 // The parts of the step that the paper's Table 1 lists, on a solid everywhere. The loops are those of the step, less
 // what the step does in the same pass.
 #include "box.hpp"
+#include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
-#include "grid/blocks.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
@@ -41,9 +41,9 @@ EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, in
                       [=](std::ptrdiff_t o, int i) EULASTIC_BODY { next[o] = kernels::fma(dt, rate[i], now[o]); });
 }
 
-EULASTIC_INLINE void prefetch(const Fields &t, const Segment &row, ConstView q, int f) {
-  kernels::prefetch(q.row(row.j, row.k + 4), row.i_end);
-  kernels::prefetch(t.next[f].row(row.j, row.k + 1), row.i_end);
+EULASTIC_INLINE void prefetch_planes(const Fields &t, const Segment &row, ConstView q, int f) {
+  prefetch(q.row(row.j, row.k + 4), row.i_end);
+  prefetch(t.next[f].row(row.j, row.k + 1), row.i_end);
 }
 
 // Components of B at one location, `first` to `last` - 1.
@@ -60,7 +60,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
   };
   kernels::Batch batch;
   for (int j = block; j < std::min(block + block_rows, n[1]); ++j) {
-    for (int c = first; c < last; ++c) prefetch(t, {0, n[0], j, k}, t.tensor[c], 4 + c);
+    for (int c = first; c < last; ++c) prefetch_planes(t, {0, n[0], j, k}, t.tensor[c], 4 + c);
     kernels::gather(batch, j * t.tensor[0].sy + k * t.tensor[0].sz, 0, n[0], work);
   }
   work(batch);
@@ -73,13 +73,13 @@ EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &sc
   const FieldBlock &v = t.velocity;
   in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
     for (int a = 0; a < 3; ++a) {
-      prefetch(t, row, v[a], a);
+      prefetch_planes(t, row, v[a], a);
       move(t, row, v[a], a, rate,
            [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, out); });
     }
   });
   in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
-    prefetch(t, row, t.fraction[0], 3);
+    prefetch_planes(t, row, t.fraction[0], 3);
     move(t, row, t.fraction[0], 3, rate,
          [&](double *out) EULASTIC_BODY { centre_advection_rate(row, t.fraction[0], v, t.inverse.data(), 1e-6, out); });
   });
