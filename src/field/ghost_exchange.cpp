@@ -7,108 +7,153 @@
 #include <cstring>
 
 namespace eulastic {
-namespace {
-
-// Periodic image of global index g, or -1 where nothing lives there (behind a wall).
-int image(const Grid &grid, int d, int g) {
-  const int n = grid.cells()[d];
-  if (d >= grid.dimension()) return g;
-  if (grid.boundary(d) == Boundary::periodic) return ((g % n) + n) % n;
-  return g >= 0 && g <= n ? g : -1;
+std::size_t GhostExchange::Box::points() const {
+  std::size_t count = 1;
+  for (int d = 0; d < 3; ++d) count *= end[d] - begin[d];
+  return count;
 }
 
-}  // namespace
+/// Points along one direction that follow each other here and where they come from.
+struct GhostExchange::Stretch {
+  int owner;       ///< its place
+  int here, from;  ///< first index here, and there
+  int length;
+  bool owned;  ///< not ghosts
+};
 
-// Rows begin on a line of the cache, in every block. PETSc compares types at every exchange, which takes a microsecond:
-// runs are for boxes whose tables are large.
-PetscErrorCode GhostExchange::make_run() {
-  PetscFunctionBeginUser;
-  if (run_.length > 0) PetscFunctionReturn(0);
-  const bool large = grid_->dimension() == 3 && grid_->cell_count() >= 32768.0 * grid_->ranks();
-  int length = grid_->wraps_x() && large ? 8 : 1;
-  while (grid_->cells()[0] % length != 0) length /= 2;
-  run_.type = MPIU_REAL;
-  if (length > 1) {
-    PetscCallMPI(MPI_Type_contiguous(length, MPIU_REAL, &run_.type));
-    PetscCallMPI(MPI_Type_commit(&run_.type));
+// What the ranks at a place along d hold there.
+std::vector<GhostExchange::Stretch> GhostExchange::stretches(int d, int place, int width) const {
+  const int n = grid_->cells()[d], begin = grid_->first_cell(d, place), cells = grid_->first_cell(d, place + 1) - begin;
+  const bool wall = grid_->is_wall(d), high_wall = wall && begin + cells == n && cells > 0;
+  const int owned = cells + high_wall, ghosts = is_copied(d) ? 0 : std::min(width, grid_->layout().ghosts[d]);
+  std::vector<Stretch> found;
+  if (owned > 0) found.push_back({place, 0, 0, owned, true});
+  for (int i = -ghosts; i < cells + ghosts; ++i) {
+    if (i >= 0 && i < owned) continue;
+    const int global = begin + i;
+    if (wall && (global < 0 || global > n)) continue;  // behind it
+    const int image = wall ? global : (global % n + n) % n;
+    const int owner = grid_->owner_along(d, image), from = image - grid_->first_cell(d, owner);
+    const Stretch *last = found.empty() ? nullptr : &found.back();
+    if (last && !last->owned && last->owner == owner && last->here + last->length == i &&
+        last->from + last->length == from)
+      ++found.back().length;
+    else
+      found.push_back({owner, i, from, 1, false});
   }
-  run_.length = length;
-  PetscFunctionReturn(0);
+  return found;
 }
 
-PetscErrorCode GhostExchange::forest(const Key &key, PetscSF *sf) {
-  PetscFunctionBeginUser;
-  SfHandle &handle = forests_[key];
-  if (!handle) {
-    PetscCall(make_run());
-    const int run = run_.length;
-    const Layout &own = grid_->layout();
-    Int3 low{}, high{};
-    for (int d = 0; d < 3; ++d) {
-      const int width = std::min(key.width, own.ghosts[d]);
-      low[d] = -width;
-      high[d] = own.cells[d] + width;
-    }
-    for (int d = 0; d < 3; ++d)
-      if (is_copied(d)) {
-        low[d] = 0;
-        high[d] = own.cells[d];
+const GhostExchange::Plan &GhostExchange::plan(int width) {
+  const auto [at, made] = plans_.try_emplace(width);
+  Plan &plan = at->second;
+  if (!made) return plan;
+  struct Part : Stretch {
+    int other, number;  // the place of whom it comes from or goes to, and which of its stretches it is there
+  };
+  std::vector<Part> received[3], sent[3];
+  const Int3 here = grid_->place_of(grid_->rank());
+  for (int d = 0; d < 3; ++d)
+    for (int place = 0; place < grid_->processors(d); ++place) {
+      int number = 0;
+      for (const Stretch &s : stretches(d, place, width)) {
+        if (place == here[d]) received[d].push_back({s, s.owner, number});
+        if (s.owner == here[d]) sent[d].push_back({s, place, number});
+        ++number;
       }
-    std::vector<PetscInt> leaves;
-    std::vector<PetscSFNode> roots;
-    for (int k = low[2]; k < high[2]; ++k)
-      for (int j = low[1]; j < high[1]; ++j)
-        for (int i = low[0]; i < high[0]; i += run) {
-          const Int3 local{i, j, k};
-          Int3 global{};
-          bool inside = true, exists = true;
-          for (int d = 0; d < 3; ++d) {
-            global[d] = image(*grid_, d, own.begin[d] + local[d]);
-            exists &= global[d] >= 0;
-            inside &= local[d] >= 0 && local[d] < grid_->points_end(d, true);
-          }
-          if (inside || !exists) continue;
-          const int owner = grid_->owner(global[0], global[1], global[2]);
-          const Layout theirs = grid_->layout_of(owner);
-          const std::ptrdiff_t from =
-              theirs.offset(global[0] - theirs.begin[0], global[1] - theirs.begin[1], global[2] - theirs.begin[2]);
-          for (int f = 0; f < key.fields; ++f) {
-            leaves.push_back(static_cast<PetscInt>((own.offset(i, j, k) + f * own.size) / run));
-            roots.push_back({owner, static_cast<PetscInt>((from + f * theirs.size) / run)});
-          }
+    }
+  const auto make = [&](const std::vector<Part>(&parts)[3], bool there, std::size_t *points) {
+    std::vector<Message> messages;
+    for (const Part &z : parts[2])
+      for (const Part &y : parts[1])
+        for (const Part &x : parts[0]) {
+          if (x.owned && y.owned && z.owned) continue;
+          constexpr int most = 32;  // more than the stretches of any place
+          Message m{grid_->rank_at({x.other, y.other, z.other}), x.number + most * (y.number + most * z.number), {}};
+          m.box.begin = there ? Int3{x.from, y.from, z.from} : Int3{x.here, y.here, z.here};
+          m.box.end = {m.box.begin[0] + x.length, m.box.begin[1] + y.length, m.box.begin[2] + z.length};
+          *points += m.box.points();
+          messages.push_back(m);
         }
-    PetscCall(PetscSFCreate(grid_->comm(), handle.put()));
-    PetscCall(PetscSFSetGraph(handle.get(), static_cast<PetscInt>(own.size * key.fields / run),
-                              static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
-                              PETSC_COPY_VALUES));
-    PetscCall(PetscSFSetUp(handle.get()));
+    return messages;
+  };
+  plan.received = make(received, false, &plan.points_received);
+  plan.sent = make(sent, true, &plan.points_sent);
+  return plan;
+}
+
+// copy(row in the block, row in the messages, length) for all rows of the boxes of messages, which follow each other.
+template <class Copy>
+void GhostExchange::for_rows(FieldBlock &block, const std::vector<Message> &messages, double *values,
+                             const Copy &copy) const {
+  const int parts = row_parts(*grid_);
+  for (const Message &m : messages) {
+    const Int3 &begin = m.box.begin;
+    const std::size_t nx = m.box.end[0] - begin[0], ny = m.box.end[1] - begin[1], nz = m.box.end[2] - begin[2];
+    in_parallel(parts, parts, [&](int part) {
+      const Piece planes(nz * block.count(), part, parts);
+      for (std::size_t p = planes.begin; p < planes.end; ++p)
+        for (std::size_t j = 0; j < ny; ++j)
+          copy(&block[int(p / nz)](begin[0], begin[1] + int(j), begin[2] + int(p % nz)), values + (p * ny + j) * nx,
+               nx);
+    });
+    values += m.box.points() * block.count();
   }
-  *sf = handle.get();
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const OccupiedRows *rows) {
-  PetscSF sf;
   PetscFunctionBeginUser;
   if (rows && rows->inside()) PetscFunctionReturn(0);
   if (grid_->ranks() == 1) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(forest({block.count(), width}, &sf));
-  PetscCall(PetscSFBcastBegin(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
+  if (comm_.comm == MPI_COMM_NULL) PetscCallMPI(MPI_Comm_dup(grid_->comm(), &comm_.comm));
+  const Plan &plan = this->plan(width);
+  UnderWay &way = under_way(nullptr);
+  way.block = block.data();
+  const int fields = block.count();
+  way.received.resize(plan.points_received * fields);
+  way.sent.resize(plan.points_sent * fields);
+  way.requests.clear();
+  double *values = way.received.data();
+  for (const Message &m : plan.received) {
+    const int count = static_cast<int>(m.box.points()) * fields;
+    way.requests.emplace_back();
+    PetscCallMPI(MPI_Irecv(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, &way.requests.back()));
+    values += count;
+  }
+  for_rows(block, plan.sent, way.sent.data(),
+           [](const double *row, double *message, std::size_t n) { std::memcpy(message, row, n * sizeof(double)); });
+  values = way.sent.data();
+  for (const Message &m : plan.sent) {
+    const int count = static_cast<int>(m.box.points()) * fields;
+    way.requests.emplace_back();
+    PetscCallMPI(MPI_Isend(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, &way.requests.back()));
+    values += count;
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const OccupiedRows *rows) {
-  PetscSF sf;
   PetscFunctionBeginUser;
   if (rows && rows->inside()) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
   if (grid_->ranks() > 1) {
-    PetscCall(forest({block.count(), width}, &sf));
-    PetscCall(PetscSFBcastEnd(sf, run_.type, block.data(), block.data(), MPI_REPLACE));
+    UnderWay &way = under_way(block.data());
+    PetscCallMPI(MPI_Waitall(static_cast<int>(way.requests.size()), way.requests.data(), MPI_STATUSES_IGNORE));
+    for_rows(block, plan(width).received, way.received.data(),
+             [](double *row, const double *message, std::size_t n) { std::memcpy(row, message, n * sizeof(double)); });
+    way.block = nullptr;
   }
   copy_rows(block, width);
   PetscFunctionReturn(0);
+}
+
+// The exchange of a block, or a new one.
+GhostExchange::UnderWay &GhostExchange::under_way(const double *block) {
+  for (const auto &way : under_way_)
+    if (way->block == block) return *way;
+  under_way_.push_back(std::make_unique<UnderWay>());
+  return *under_way_.back();
 }
 
 bool GhostExchange::is_copied(int d) const {

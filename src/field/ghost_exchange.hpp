@@ -1,9 +1,8 @@
-// Ghost-only exchange: a PetscSF straight on the local arrays, so that no interior value is ever copied.
+// Ghost-only exchange on the local arrays: no interior value is ever copied, but into the messages that it goes with.
 //
-// Ghosts in a periodic direction that is not split are copied row by row, in x within the row, and never enter the SF.
+// A message holds the ghosts of one rank that lie in a box with another, of all fields of a block. Ghosts in a periodic
+// direction that is not split are copied row by row, in x within the row, and are in no message.
 // Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others.
-// In large boxes whole rows go in runs of up to eight values, a line of the cache, so that the tables of the SF are
-// that much smaller.
 #pragma once
 
 #include "field/field_block.hpp"
@@ -34,25 +33,41 @@ public:
   PetscErrorCode update_rows(FieldBlock &first, int first_width, FieldBlock &second, int second_width);
 
 private:
-  struct Key {
-    int fields, width;
-    bool operator<(const Key &other) const {
-      return fields != other.fields ? fields < other.fields : width < other.width;
+  struct Box {
+    Int3 begin, end;
+    std::size_t points() const;
+  };
+  struct Message {
+    int rank, tag;
+    Box box;
+  };
+  /// Of one width, the same for every block.
+  struct Plan {
+    std::vector<Message> sent, received;
+    std::size_t points_sent = 0, points_received = 0;
+  };
+  /// Of one block, from begin() to end().
+  struct UnderWay {
+    const double *block = nullptr;  ///< null: free
+    std::vector<double> sent, received;
+    std::vector<MPI_Request> requests;
+  };
+  /// Of its own, so that nobody else's messages can be taken for them.
+  struct Comm {
+    MPI_Comm comm = MPI_COMM_NULL;
+    Comm() = default;
+    Comm(const Comm &) = delete;
+    Comm &operator=(const Comm &) = delete;
+    ~Comm() {
+      if (comm != MPI_COMM_NULL) (void)MPI_Comm_free(&comm);
     }
   };
-  /// Consecutive values that travel as one, and their type where they are several.
-  struct Run {
-    int length = 0;  ///< 0: not made yet
-    MPI_Datatype type = MPI_DATATYPE_NULL;
-    Run() = default;
-    Run(const Run &) = delete;
-    Run &operator=(const Run &) = delete;
-    ~Run() {
-      if (length > 1) (void)MPI_Type_free(&type);
-    }
-  };
-  PetscErrorCode make_run();
-  PetscErrorCode forest(const Key &key, PetscSF *sf);
+  struct Stretch;
+  std::vector<Stretch> stretches(int d, int place, int width) const;
+  const Plan &plan(int width);
+  UnderWay &under_way(const double *block);
+  template <class Copy>
+  void for_rows(FieldBlock &block, const std::vector<Message> &messages, double *values, const Copy &copy) const;
   PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
   struct Range {
     int begin, end;
@@ -64,8 +79,9 @@ private:
   void wrap_rows(FieldBlock &block, int width, Skip skip) const;
 
   const Grid *grid_;
-  Run run_;
-  std::map<Key, SfHandle> forests_;
+  Comm comm_;
+  std::map<int, Plan> plans_;  ///< by width
+  std::vector<std::unique_ptr<UnderWay>> under_way_;
 };
 
 }  // namespace eulastic

@@ -102,19 +102,17 @@ Layout Grid::make_layout(const Int3 &position) const {
   return layout;
 }
 
-Layout Grid::layout_of(int rank) const {
+Int3 Grid::place_of(int rank) const {
   const int px = processors(0), py = processors(1);
-  return make_layout({rank % px, rank / px % py, rank / px / py});
+  return {rank % px, rank / px % py, rank / px / py};
 }
 
-int Grid::owner(int i, int j, int k) const {
-  const Int3 cell{i, j, k};
-  Int3 position{};
-  for (int d = 0; d < 3; ++d) {
-    const int c = std::min(cell[d], spec_.cells[d] - 1);
-    position[d] = static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), c) - starts_[d].begin()) - 1;
-  }
-  return position[0] + processors(0) * (position[1] + processors(1) * position[2]);
+Layout Grid::layout_of(int rank) const { return make_layout(place_of(rank)); }
+
+int Grid::owner_along(int d, int i) const {
+  const std::vector<int> &starts = starts_[d];
+  const int cell = std::min(i, spec_.cells[d] - 1);
+  return static_cast<int>(std::upper_bound(starts.begin(), starts.end(), cell) - starts.begin()) - 1;
 }
 
 InverseSquares Grid::inverse_squares() const {
@@ -187,9 +185,7 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
       const int stride = cells[d] < spec_.cells[d] ? 2 : 1;
       for (int p = 1; p < processors(d); ++p)
         result.starts_[d].push_back(std::min(cells[d], (starts_[d][p] + stride - 1) / stride));
-      position[d] = static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), layout_.begin[d]) -
-                                     starts_[d].begin()) -
-                    1;
+      position[d] = owner_along(d, layout_.begin[d]);
     }
     result.starts_[d].push_back(cells[d]);
   }

@@ -88,11 +88,20 @@ public:
     }
   }
 
+  /// Where a rank is among those along every direction, which count through x first.
+  Int3 place_of(int rank) const;
+  int rank_at(const Int3 &place) const { return place[0] + processors(0) * (place[1] + processors(1) * place[2]); }
+  /// The place along d of whoever owns the cells with index i; index N of a wall direction belongs to the owner of N
+  /// - 1.
+  int owner_along(int d, int i) const;
+  /// The first cell of those at a place along d, and N at place processors(d).
+  int first_cell(int d, int place) const { return starts_[d][place]; }
+
   const Layout &layout() const { return layout_; }
   const Int3 &owned() const { return layout_.cells; }
   Layout layout_of(int rank) const;
-  /// The rank that owns global cell (i,j,k); index N of a wall direction belongs to the owner of N - 1.
-  int owner(int i, int j, int k) const;
+  /// The rank that owns global cell (i,j,k).
+  int owner(int i, int j, int k) const { return rank_at({owner_along(0, i), owner_along(1, j), owner_along(2, k)}); }
 
   /// One past the last entry of the points a field really has on this rank: one more than the cells where the
   /// field is staggered and the rank touches the high wall.
