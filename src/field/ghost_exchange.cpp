@@ -7,6 +7,12 @@
 #include <cstring>
 
 namespace eulastic {
+namespace {
+
+constexpr std::ptrdiff_t least_piece = 4096;  // values of a plane: two copies of them take longer than another message
+
+}  // namespace
+
 std::size_t GhostExchange::Box::points() const {
   std::size_t count = 1;
   for (int d = 0; d < 3; ++d) count *= end[d] - begin[d];
@@ -62,42 +68,70 @@ const GhostExchange::Plan &GhostExchange::plan(int width) {
         ++number;
       }
     }
-  const auto make = [&](const std::vector<Part>(&parts)[3], bool there, std::size_t *points) {
+  const auto make = [&](const std::vector<Part>(&parts)[3], bool there) {
     std::vector<Message> messages;
     for (const Part &z : parts[2])
       for (const Part &y : parts[1])
         for (const Part &x : parts[0]) {
           if (x.owned && y.owned && z.owned) continue;
           constexpr int most = 32;  // more than the stretches of any place
-          Message m{grid_->rank_at({x.other, y.other, z.other}), x.number + most * (y.number + most * z.number), {}};
+          Message m{grid_->rank_at({x.other, y.other, z.other}), x.number + most * (y.number + most * z.number), {}, 0};
           m.box.begin = there ? Int3{x.from, y.from, z.from} : Int3{x.here, y.here, z.here};
           m.box.end = {m.box.begin[0] + x.length, m.box.begin[1] + y.length, m.box.begin[2] + z.length};
-          *points += m.box.points();
+          const std::ptrdiff_t piece = (y.length - 1) * grid_->layout().sy + x.length;
+          if (grid_->processors(0) == 1 && piece >= least_piece) m.piece = static_cast<int>(piece);
           messages.push_back(m);
         }
     return messages;
   };
-  plan.received = make(received, false, &plan.points_received);
-  plan.sent = make(sent, true, &plan.points_sent);
+  plan.received = make(received, false);
+  plan.sent = make(sent, true);
   return plan;
 }
 
-// copy(row in the block, row in the messages, length) for all rows of the boxes of messages, which follow each other.
+std::size_t GhostExchange::copied_values(int fields, const std::vector<Message> &messages) {
+  std::size_t count = 0;
+  for (const Message &m : messages)
+    if (m.piece == 0) count += fields * m.box.points();
+  return count;
+}
+
+// post(values, count, message) for all that goes or comes by itself.
+template <class Post>
+PetscErrorCode GhostExchange::post_all(FieldBlock &block, const std::vector<Message> &messages, double *copies,
+                                       const Post &post) const {
+  PetscFunctionBeginUser;
+  for (const Message &m : messages) {
+    const Int3 &begin = m.box.begin;
+    if (m.piece == 0) {
+      const int count = static_cast<int>(m.box.points()) * block.count();
+      PetscCallMPI(post(copies, count, m));
+      copies += count;
+      continue;
+    }
+    for (int f = 0; f < block.count(); ++f)
+      for (int k = begin[2]; k < m.box.end[2]; ++k) PetscCallMPI(post(&block[f](begin[0], begin[1], k), m.piece, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+// copy(row in the block, row in the copies, length) for all rows that are copied.
 template <class Copy>
-void GhostExchange::for_rows(FieldBlock &block, const std::vector<Message> &messages, double *values,
+void GhostExchange::for_rows(FieldBlock &block, const std::vector<Message> &messages, double *copies,
                              const Copy &copy) const {
   const int parts = row_parts(*grid_);
   for (const Message &m : messages) {
+    if (m.piece > 0) continue;
     const Int3 &begin = m.box.begin;
     const std::size_t nx = m.box.end[0] - begin[0], ny = m.box.end[1] - begin[1], nz = m.box.end[2] - begin[2];
     in_parallel(parts, parts, [&](int part) {
       const Piece planes(nz * block.count(), part, parts);
       for (std::size_t p = planes.begin; p < planes.end; ++p)
         for (std::size_t j = 0; j < ny; ++j)
-          copy(&block[int(p / nz)](begin[0], begin[1] + int(j), begin[2] + int(p % nz)), values + (p * ny + j) * nx,
-               nx);
+          copy(&block[int(p / nz)](begin[0], begin[1] + int(j), begin[2] + int(p % nz)), copies + (p * ny + j) * nx,
+               nx * sizeof(double));
     });
-    values += m.box.points() * block.count();
+    copies += m.box.points() * block.count();
   }
 }
 
@@ -110,26 +144,18 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const Occupied
   const Plan &plan = this->plan(width);
   UnderWay &way = under_way(nullptr);
   way.block = block.data();
-  const int fields = block.count();
-  way.received.resize(plan.points_received * fields);
-  way.sent.resize(plan.points_sent * fields);
+  way.received.resize(copied_values(block.count(), plan.received));
+  way.sent.resize(copied_values(block.count(), plan.sent));
   way.requests.clear();
-  double *values = way.received.data();
-  for (const Message &m : plan.received) {
-    const int count = static_cast<int>(m.box.points()) * fields;
-    way.requests.emplace_back();
-    PetscCallMPI(MPI_Irecv(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, &way.requests.back()));
-    values += count;
-  }
+  const auto request = [&way] { return &way.requests.emplace_back(); };
+  PetscCall(post_all(block, plan.received, way.received.data(), [&](double *values, int count, const Message &m) {
+    return MPI_Irecv(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, request());
+  }));
   for_rows(block, plan.sent, way.sent.data(),
-           [](const double *row, double *message, std::size_t n) { std::memcpy(message, row, n * sizeof(double)); });
-  values = way.sent.data();
-  for (const Message &m : plan.sent) {
-    const int count = static_cast<int>(m.box.points()) * fields;
-    way.requests.emplace_back();
-    PetscCallMPI(MPI_Isend(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, &way.requests.back()));
-    values += count;
-  }
+           [](const double *row, double *copy, std::size_t bytes) { std::memcpy(copy, row, bytes); });
+  PetscCall(post_all(block, plan.sent, way.sent.data(), [&](const double *values, int count, const Message &m) {
+    return MPI_Isend(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, request());
+  }));
   PetscFunctionReturn(0);
 }
 
@@ -141,7 +167,7 @@ PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const Occup
     UnderWay &way = under_way(block.data());
     PetscCallMPI(MPI_Waitall(static_cast<int>(way.requests.size()), way.requests.data(), MPI_STATUSES_IGNORE));
     for_rows(block, plan(width).received, way.received.data(),
-             [](double *row, const double *message, std::size_t n) { std::memcpy(row, message, n * sizeof(double)); });
+             [](double *row, const double *copy, std::size_t bytes) { std::memcpy(row, copy, bytes); });
     way.block = nullptr;
   }
   copy_rows(block, width);

@@ -1,6 +1,7 @@
 // Ghost-only exchange on the local arrays: no interior value is ever copied, but into the messages that it goes with.
 //
-// A message holds the ghosts of one rank that lie in a box with another, of all fields of a block. Ghosts in a periodic
+// A message holds the ghosts of one rank that lie in a box with another, of all fields of a block; where they are large
+// pieces of planes these go as they are, with what lies between their rows. Ghosts in a periodic
 // direction that is not split are copied row by row, in x within the row, and are in no message.
 // Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others.
 #pragma once
@@ -20,7 +21,8 @@ public:
   /// blocks may be under way together.
   /// Where `rows` is given and all lies inside(), ghosts are taken to be valid already.
   PetscErrorCode begin(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
-  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not. In idle
+  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not, and in
+  /// ghost rows those further out than `width` may have changed. In idle
   /// rows of `rows`, where it is given, what lies across a periodic x is taken to be valid already.
   PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both.
@@ -40,11 +42,11 @@ private:
   struct Message {
     int rank, tag;
     Box box;
+    int piece;  ///< values of a plane that go as they are, with what lies between rows; 0: they are copied
   };
   /// Of one width, the same for every block.
   struct Plan {
     std::vector<Message> sent, received;
-    std::size_t points_sent = 0, points_received = 0;
   };
   /// Of one block, from begin() to end().
   struct UnderWay {
@@ -66,8 +68,12 @@ private:
   std::vector<Stretch> stretches(int d, int place, int width) const;
   const Plan &plan(int width);
   UnderWay &under_way(const double *block);
+  static std::size_t copied_values(int fields, const std::vector<Message> &messages);
+  template <class Post>
+  PetscErrorCode post_all(FieldBlock &block, const std::vector<Message> &messages, double *copies,
+                          const Post &post) const;
   template <class Copy>
-  void for_rows(FieldBlock &block, const std::vector<Message> &messages, double *values, const Copy &copy) const;
+  void for_rows(FieldBlock &block, const std::vector<Message> &messages, double *copies, const Copy &copy) const;
   PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
   struct Range {
     int begin, end;
