@@ -55,27 +55,24 @@ const GhostExchange::Plan &GhostExchange::plan(int width) {
   Plan &plan = at->second;
   if (!made) return plan;
   struct Part : Stretch {
-    int other, number;  // the place of whom it comes from or goes to, and which of its stretches it is there
+    int other;  // the place of whom it comes from or goes to
   };
+  // Between two ranks messages are in the order of the stretches of whom they go to, here and there.
   std::vector<Part> received[3], sent[3];
   const Int3 here = grid_->place_of(grid_->rank());
   for (int d = 0; d < 3; ++d)
-    for (int place = 0; place < grid_->processors(d); ++place) {
-      int number = 0;
+    for (int place = 0; place < grid_->processors(d); ++place)
       for (const Stretch &s : stretches(d, place, width)) {
-        if (place == here[d]) received[d].push_back({s, s.owner, number});
-        if (s.owner == here[d]) sent[d].push_back({s, place, number});
-        ++number;
+        if (place == here[d]) received[d].push_back({s, s.owner});
+        if (s.owner == here[d]) sent[d].push_back({s, place});
       }
-    }
   const auto make = [&](const std::vector<Part>(&parts)[3], bool there) {
     std::vector<Message> messages;
     for (const Part &z : parts[2])
       for (const Part &y : parts[1])
         for (const Part &x : parts[0]) {
           if (x.owned && y.owned && z.owned) continue;
-          constexpr int most = 32;  // more than the stretches of any place
-          Message m{grid_->rank_at({x.other, y.other, z.other}), x.number + most * (y.number + most * z.number), {}, 0};
+          Message m{grid_->rank_at({x.other, y.other, z.other}), {}, 0};
           m.box.begin = there ? Int3{x.from, y.from, z.from} : Int3{x.here, y.here, z.here};
           m.box.end = {m.box.begin[0] + x.length, m.box.begin[1] + y.length, m.box.begin[2] + z.length};
           const std::ptrdiff_t piece = (y.length - 1) * grid_->layout().sy + x.length;
@@ -149,12 +146,12 @@ PetscErrorCode GhostExchange::begin(FieldBlock &block, int width, const Occupied
   way.requests.clear();
   const auto request = [&way] { return &way.requests.emplace_back(); };
   PetscCall(post_all(block, plan.received, way.received.data(), [&](double *values, int count, const Message &m) {
-    return MPI_Irecv(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, request());
+    return MPI_Irecv(values, count, MPI_DOUBLE, m.rank, 0, comm_.comm, request());
   }));
   for_rows(block, plan.sent, way.sent.data(),
            [](const double *row, double *copy, std::size_t bytes) { std::memcpy(copy, row, bytes); });
   PetscCall(post_all(block, plan.sent, way.sent.data(), [&](const double *values, int count, const Message &m) {
-    return MPI_Isend(values, count, MPI_DOUBLE, m.rank, m.tag, comm_.comm, request());
+    return MPI_Isend(values, count, MPI_DOUBLE, m.rank, 0, comm_.comm, request());
   }));
   PetscFunctionReturn(0);
 }

@@ -40,7 +40,7 @@ private:
     std::size_t points() const;
   };
   struct Message {
-    int rank, tag;
+    int rank;
     Box box;
     int piece;  ///< values of a plane that go as they are, with what lies between rows; 0: they are copied
   };

@@ -102,7 +102,7 @@ TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
   for_each_grid([](const Grid &grid) {
     GhostExchange exchange(grid);
     for (const int fields : {1, 3, 7})
-      for (const int width : {1, 2, 3}) {
+      for (const int width : {1, 2, 3, 5}) {
         FieldBlock block(grid, fields);
         prepare(grid, block);
         ASSERT_EQ(exchange.update(block, width), 0);
