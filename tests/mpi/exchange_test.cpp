@@ -82,7 +82,7 @@ int count_errors(const Grid &grid, const FieldBlock &block, int width, bool betw
       const int n = grid.cells()[d], g = own.begin[d] + p[d];
       if (p[d] < -width || p[d] >= own.cells[d] + width) return;
       if (grid.is_wall(d) && (g < 0 || g > n)) return;
-      global[d] = grid.is_wall(d) ? g : (g + n) % n;
+      global[d] = grid.is_wall(d) ? g : (g % n + n) % n;
     }
     expected[own.offset(p[0], p[1], p[2]) + f * own.size] = truth(f, global[0], global[1], global[2]);
   });
