@@ -7,6 +7,7 @@ namespace eulastic {
 
 enum class Verb {
   exchange,
+  wait,
   wall_ghosts,
   momentum,
   viscous,

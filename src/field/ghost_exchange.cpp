@@ -162,7 +162,10 @@ PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const Occup
   VerbScope scope(Verb::exchange);
   if (grid_->ranks() > 1) {
     UnderWay &way = under_way(block.data());
-    PetscCallMPI(MPI_Waitall(static_cast<int>(way.requests.size()), way.requests.data(), MPI_STATUSES_IGNORE));
+    {
+      VerbScope wait(Verb::wait);
+      PetscCallMPI(MPI_Waitall(static_cast<int>(way.requests.size()), way.requests.data(), MPI_STATUSES_IGNORE));
+    }
     for_rows(block, plan(width).received, way.received.data(),
              [](double *row, const double *copy, std::size_t bytes) { std::memcpy(row, copy, bytes); });
     way.block = nullptr;
