@@ -30,10 +30,10 @@ std::map<int, std::vector<int>> colours_of(const std::vector<Phase> &phases) {
 PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vector<int> &colours,
                              std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
-  for (const int p : colours) {
-    PetscCall(exchange.update((*phases)[p].label, reach));
-    PetscCall(exchange.update((*phases)[p].fraction, reach));
-  }
+  std::vector<FieldBlock *> blocks;
+  for (const int p : colours) blocks.insert(blocks.end(), {&(*phases)[p].label, &(*phases)[p].fraction});
+  for (FieldBlock *block : blocks) PetscCall(exchange.begin(*block, reach));
+  for (FieldBlock *block : blocks) PetscCall(exchange.end(*block, reach));
   PetscFunctionReturn(0);
 }
 

@@ -174,7 +174,7 @@ PetscErrorCode GhostExchange::end_rows(FieldBlock &block, int width, const Occup
   PetscFunctionReturn(0);
 }
 
-// The exchange of a block, or a new one.
+// That of a block; of null a free one.
 GhostExchange::UnderWay &GhostExchange::under_way(const double *block) {
   for (const auto &way : under_way_)
     if (way->block == block) return *way;
