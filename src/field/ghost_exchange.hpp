@@ -1,9 +1,9 @@
-// Ghost-only exchange on the local arrays: no interior value is ever copied, but into the messages that it goes with.
+// Ghost-only exchange on the local arrays: no interior value is ever copied but into messages.
 //
-// A message holds the ghosts of one rank that lie in a box with another, of all fields of a block; where they are large
-// pieces of planes these go as they are, with what lies between their rows. Ghosts in a periodic
-// direction that is not split are copied row by row, in x within the row, and are in no message.
-// Index N of a wall direction (the high wall of staggered fields) counts as owned: its values travel like any others.
+// What two ranks exchange are boxes, with all fields of a block. A box goes in one message, or, where it consists of
+// large pieces of planes, these go one by one as they are, with what lies between their rows. Ghosts in a periodic
+// direction that is not split are copied row by row, in x within the row, and are in no message. Index N of a wall
+// direction (the high wall of staggered fields) counts as owned: its values travel like any others.
 #pragma once
 
 #include "field/field_block.hpp"
@@ -21,9 +21,9 @@ public:
   /// blocks may be under way together.
   /// Where `rows` is given and all lies inside(), ghosts are taken to be valid already.
   PetscErrorCode begin(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
-  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not, and in
-  /// ghost rows those further out than `width` may have changed. In idle
-  /// rows of `rows`, where it is given, what lies across a periodic x is taken to be valid already.
+  /// Completes it: ghosts inside the domain and across periodic sides are valid, those behind walls are not, and at the
+  /// ends of ghost rows those further out than `width` may have changed. In idle rows of `rows`, where it is given,
+  /// what lies across a periodic x is taken to be valid already.
   PetscErrorCode end(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// Both.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
@@ -40,7 +40,7 @@ private:
     std::size_t points() const;
   };
   struct Message {
-    int rank;
+    int rank;  ///< whom it goes to or comes from
     Box box;
     int piece;  ///< values of a plane that go as they are, with what lies between rows; 0: they are copied
   };

@@ -112,7 +112,8 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, Course &course) {
   course.done = last || !(residual_rms_ > target_);  // NaN is done
   const int n = task.directions();
   const double laplacians = task.stencils * (4 * grid_->dimension() + 1) + task.recurs;
-  PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + (2 + n + n * (n + 1) / 2) * 2 + 2 * n + 2)));
+  const double products = 2 + n + 0.5 * n * (n + 1);
+  PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * products + 2 * n + 2)));
   const bool left = course.left;
   const Increment how = !left && !course.done ? Increment::later
                         : course.first        ? (left ? Increment::set_two : Increment::set)
