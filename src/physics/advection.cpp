@@ -7,9 +7,10 @@ namespace {
 
 template <int Dim>
 EULASTIC_INLINE void of_faces(const Segment &s, const FieldBlock &v, int a, const double *inverse_spacing,
-                              double epsilon, double *rate) {
+                              double epsilon, const RowsAhead &ahead, double *rate) {
   const ConstView q = v[a];
   for (int d = 0; d < Dim; ++d) {
+    ahead.ask(d);
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t own = v[d].stride(d), back = -q.stride(a);
     const std::ptrdiff_t one = d < a ? own : back, other = d < a ? back : own;  // in the order of directions
@@ -25,8 +26,9 @@ EULASTIC_INLINE void of_faces(const Segment &s, const FieldBlock &v, int a, cons
 
 template <int Dim>
 EULASTIC_INLINE void of_centres(const Segment &s, const ConstView &q, const FieldBlock &v,
-                                const double *inverse_spacing, double epsilon, double *rate) {
+                                const double *inverse_spacing, double epsilon, const RowsAhead &ahead, double *rate) {
   for (int d = 0; d < Dim; ++d) {
+    ahead.ask(d);
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
     kernels::add_advection_rate(
@@ -35,31 +37,33 @@ EULASTIC_INLINE void of_centres(const Segment &s, const ConstView &q, const Fiel
   }
 }
 
-EULASTIC_CLONES void of_faces_2d(const Segment &s, const FieldBlock &v, int a, const double *h, double e, double *r) {
-  of_faces<2>(s, v, a, h, e, r);
+EULASTIC_CLONES void of_faces_2d(const Segment &s, const FieldBlock &v, int a, const double *h, double e,
+                                 const RowsAhead &ahead, double *r) {
+  of_faces<2>(s, v, a, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_faces_3d(const Segment &s, const FieldBlock &v, int a, const double *h, double e, double *r) {
-  of_faces<3>(s, v, a, h, e, r);
+EULASTIC_CLONES void of_faces_3d(const Segment &s, const FieldBlock &v, int a, const double *h, double e,
+                                 const RowsAhead &ahead, double *r) {
+  of_faces<3>(s, v, a, h, e, ahead, r);
 }
 EULASTIC_CLONES void of_centres_2d(const Segment &s, const ConstView &q, const FieldBlock &v, const double *h, double e,
-                                   double *r) {
-  of_centres<2>(s, q, v, h, e, r);
+                                   const RowsAhead &ahead, double *r) {
+  of_centres<2>(s, q, v, h, e, ahead, r);
 }
 EULASTIC_CLONES void of_centres_3d(const Segment &s, const ConstView &q, const FieldBlock &v, const double *h, double e,
-                                   double *r) {
-  of_centres<3>(s, q, v, h, e, r);
+                                   const RowsAhead &ahead, double *r) {
+  of_centres<3>(s, q, v, h, e, ahead, r);
 }
 
 }  // namespace
 
 void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing, double epsilon,
-                         double *rate) {
-  (v.count() == 2 ? of_faces_2d : of_faces_3d)(row, v, a, inverse_spacing, epsilon, rate);
+                         const RowsAhead &ahead, double *rate) {
+  (v.count() == 2 ? of_faces_2d : of_faces_3d)(row, v, a, inverse_spacing, epsilon, ahead, rate);
 }
 
 void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
-                           double epsilon, double *rate) {
-  (v.count() == 2 ? of_centres_2d : of_centres_3d)(row, q, v, inverse_spacing, epsilon, rate);
+                           double epsilon, const RowsAhead &ahead, double *rate) {
+  (v.count() == 2 ? of_centres_2d : of_centres_3d)(row, q, v, inverse_spacing, epsilon, ahead, rate);
 }
 
 }  // namespace eulastic

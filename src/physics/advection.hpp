@@ -3,17 +3,30 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/blocks.hpp"
 
 namespace eulastic {
+
+/// Rows that will be read or written soon: before the loop along direction d memory is asked for the rows of d, so that
+/// what one asks for is there when the next begins. All at once they wait for each other.
+struct RowsAhead {
+  const double *rows[3][2] = {};  ///< first values; null: none
+  int length = 0;                 ///< of all
+
+  [[gnu::always_inline]] void ask(int d) const noexcept {
+    for (const double *row : rows[d])
+      if (row) prefetch(row, length);
+  }
+};
 
 /// rate = -v . grad v_a on a row of faces of direction a. v: the face velocities, three ghosts. Here and below
 /// `inverse_spacing`: 1/h of every direction; `epsilon`: 1e-6 (scale of what is carried)^2; `rate`: by cells of the
 /// row.
 void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing, double epsilon,
-                         double *rate);
+                         const RowsAhead &ahead, double *rate);
 
 /// rate = -v . grad q on a row of centres; q has three ghosts, v one.
 void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
-                           double epsilon, double *rate);
+                           double epsilon, const RowsAhead &ahead, double *rate);
 
 }  // namespace eulastic

@@ -103,34 +103,43 @@ EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const Fie
   }
 }
 
+// Fewer rows than for other verbs, as nine fields share the cache.
+constexpr int rows_of_block = block_rows / 2;
+
 template <int Dim, bool RateOnly>
 EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &scratch) {
   const FieldBlock &v = *t.velocity;
   const ConstView p = (*t.pressure)[0];
   const Int3 n = t.grid->owned();
   double *rate = scratch.row(0);
-  for (int block = part.j_begin; block < part.j_end; block += block_rows)
+  for (int block = part.j_begin; block < part.j_end; block += rows_of_block)
     for (int k = part.k_begin; k < part.k_end; ++k) {
-      const int end = std::min(block + block_rows, part.j_end);
+      const int end = std::min(block + rows_of_block, part.j_end);
       for (int j = block; j < end; ++j) {
         const Segment row{0, n[0], j, k};
         for (int a = 0; a < Dim; ++a) {
+          RowsAhead ahead;
           if (Dim == 3) {  // rows of the stencil, at the block's sides too, and of the result
             constexpr int reach = Grid::stencil_width;
             const RowAhead next(block, end, j, k);
-            const int length = n[0] + 2 * reach + 7;  // up to its last cache line
-            prefetch(v[a].row(next.j, next.k + reach) - reach, length);
-            if (next.j < block + reach) prefetch(v[a].row(next.j - reach, next.k), n[0]);
-            if (next.j >= end - reach) prefetch(v[a].row(next.j + reach, next.k), n[0]);
-            prefetch(out[a].row(next.j, next.k) - 1, n[0] + 2 + 7);
-            if (a == 0) prefetch(p.row(next.j, next.k), n[0]);
-            if (a == 0 && t.divergence) prefetch((*t.divergence)[0].row(next.j, next.k - 1) - 1, n[0] + 2 + 7);
+            const double *side = next.j < block + reach  ? v[a].row(next.j - reach, next.k)
+                                 : next.j >= end - reach ? v[a].row(next.j + reach, next.k)
+                                                         : nullptr;
+            const double *also = a == 1                   ? p.row(next.j, next.k)
+                                 : a == 2 && t.divergence ? (*t.divergence)[0].row(next.j, next.k - 1)
+                                                          : nullptr;
+            ahead = {{{v[a].row(next.j, next.k + reach), side}, {out[a].row(next.j, next.k), nullptr}, {also, nullptr}},
+                     n[0] + 2 * reach + 7};  // up to the last cache line
+            for (auto &rows : ahead.rows)
+              for (const double *&row : rows)
+                if (row) row -= reach;
           }
           if (t.inertia) {
-            face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, rate);
+            face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, rate);
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
-            for (int i = 0; i < n[0]; ++i) rate[i] = 0;
+            for (int d = 0; d < Dim; ++d) ahead.ask(d);
+            std::fill_n(rate, n[0], 0.0);
           }
           kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),
                                                              p, p.stride(a), t.inverse[a] / t.density, t.force[a], rate,

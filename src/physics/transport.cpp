@@ -171,14 +171,17 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
       return any;
     };
     for (const Segment &s : phase.solid.row(j, k)) {
-      if (Dim == 3 && centre) {  // first to come here: the next plane, for all components
+      if (Dim == 3) {  // the next plane of what this location is the first to come to
         const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
-        prefetch(phi.row(j, k + 1) + i, length);
-        for (int d = 0; d < Dim; ++d) prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
+        if (centre) {
+          prefetch(phi.row(j, k + 1) + i, length);
+          for (int d = 0; d < Dim; ++d) prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
+        }
         const int low = phase.solid.idle(j - 1, k) ? j - reach : j, high = phase.solid.idle(j + 1, k) ? j + reach : j;
-        for (int f = 0; f < B.count(); ++f)
+        for (int f = first; f < last; ++f) {
           for (int y = low; y <= high; ++y) prefetch(B[f].row(y, k + 1 + reach) + i, length);
-        for (int f = 0; f < B.count(); ++f) prefetch(out[f].row(j, k + 1) + i, length);
+          prefetch(out[f].row(j, k + 1) + i, length);
+        }
       }
       leave_to(s.i_begin);
       const int stop = std::min(s.i_end, end);

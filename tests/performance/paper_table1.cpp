@@ -23,14 +23,6 @@ struct Fields {
   Real3 inverse;
 };
 
-// Calls f(row) in the order of the step.
-template <class F>
-EULASTIC_INLINE void in_blocks(int n, const RowPart &part, F f) {
-  for (int block = part.j_begin; block < part.j_end; block += block_rows)
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = block; j < std::min(block + block_rows, part.j_end); ++j) f(Segment{0, n, j, k});
-}
-
 // q - dt v.grad q of field f of `next` on a row, after `advect`(rate).
 template <class Points, class Advect>
 EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, int f, double *rate, Advect advect) {
@@ -39,11 +31,6 @@ EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, in
   double *next = t.next[f].origin;
   kernels::for_points(points, q,
                       [=](std::ptrdiff_t o, int i) EULASTIC_BODY { next[o] = kernels::fma(dt, rate[i], now[o]); });
-}
-
-EULASTIC_INLINE void prefetch_planes(const Fields &t, const Segment &row, ConstView q, int f) {
-  prefetch(q.row(row.j, row.k + 4), row.i_end);
-  prefetch(t.next[f].row(row.j, row.k + 1), row.i_end);
 }
 
 // Components of B at one location, `first` to `last` - 1.
@@ -60,7 +47,11 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
   };
   kernels::Batch batch;
   for (int j = block; j < std::min(block + block_rows, n[1]); ++j) {
-    for (int c = first; c < last; ++c) prefetch_planes(t, {0, n[0], j, k}, t.tensor[c], 4 + c);
+    for (int d = 0; d < 3 && first == 0; ++d) prefetch(t.velocity[d].row(j, k + 2), n[0]);
+    for (int c = first; c < last; ++c) {
+      prefetch(t.tensor[c].row(j, k + 4), n[0]);
+      prefetch(t.next[4 + c].row(j, k + 1), n[0]);
+    }
     kernels::gather(batch, j * t.tensor[0].sy + k * t.tensor[0].sz, 0, n[0], work);
   }
   work(batch);
@@ -71,17 +62,23 @@ EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &sc
   double *rate = scratch.row(0);
   const int n = t.grid.owned()[0];
   const FieldBlock &v = t.velocity;
-  in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const Segment row{0, n, j, k};
     for (int a = 0; a < 3; ++a) {
-      prefetch_planes(t, row, v[a], a);
+      const RowsAhead ahead{{{v[a].row(j, k + 4), nullptr}, {t.next[a].row(j, k + 1), nullptr}, {}}, n};
       move(t, row, v[a], a, rate,
-           [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, out); });
+           [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, ahead, out); });
     }
   });
-  in_blocks(n, part, [&](const Segment &row) EULASTIC_BODY {
-    prefetch_planes(t, row, t.fraction[0], 3);
-    move(t, row, t.fraction[0], 3, rate,
-         [&](double *out) EULASTIC_BODY { centre_advection_rate(row, t.fraction[0], v, t.inverse.data(), 1e-6, out); });
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const Segment row{0, n, j, k};
+    const ConstView q = t.fraction[0];
+    const RowsAhead ahead{{{q.row(j, k + 4), nullptr},
+                           {v[0].row(j, k + 2), v[1].row(j, k + 2)},
+                           {v[2].row(j, k + 2), t.next[3].row(j, k + 1)}},
+                          n};
+    move(t, row, q, 3, rate,
+         [&](double *out) EULASTIC_BODY { centre_advection_rate(row, q, v, t.inverse.data(), 1e-6, ahead, out); });
   });
   for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k) {
@@ -98,7 +95,8 @@ EULASTIC_CLONES void stretch(const Fields &t, const RowPart &part, RowScratch &s
   double *rate = scratch.row(0);
   const ConstView v0 = t.velocity[0];
   const std::ptrdiff_t stride[3] = {1, v0.sy, v0.sz};
-  in_blocks(t.grid.owned()[0], part, [&](const Segment &row) EULASTIC_BODY {
+  for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
+    const Segment row{0, t.grid.owned()[0], j, k};
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       const kernels::Directions d{stride[a], stride[b], stride[c], t.inverse[a], t.inverse[b], t.inverse[c]};
