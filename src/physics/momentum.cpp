@@ -122,17 +122,15 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
           if (Dim == 3) {  // rows of the stencil, at the block's sides too, and of the result
             constexpr int reach = Grid::stencil_width;
             const RowAhead next(block, end, j, k);
-            const double *side = next.j < block + reach  ? v[a].row(next.j - reach, next.k)
-                                 : next.j >= end - reach ? v[a].row(next.j + reach, next.k)
-                                                         : nullptr;
-            const double *also = a == 1                   ? p.row(next.j, next.k)
-                                 : a == 2 && t.divergence ? (*t.divergence)[0].row(next.j, next.k - 1)
-                                                          : nullptr;
-            ahead = {{{v[a].row(next.j, next.k + reach), side}, {out[a].row(next.j, next.k), nullptr}, {also, nullptr}},
-                     n[0] + 2 * reach + 7};  // up to the last cache line
-            for (auto &rows : ahead.rows)
-              for (const double *&row : rows)
-                if (row) row -= reach;
+            const auto at = [&](ConstView q, int y, int z) { return q.row(next.j + y, next.k + z) - reach; };
+            const int side = next.j < block + reach ? -reach : next.j >= end - reach ? reach : 0;
+            ahead.length = n[0] + 2 * reach + 7;  // up to the last cache line
+            ahead.rows[0][0] = at(v[a], 0, reach);
+            if (side != 0) ahead.rows[0][1] = at(v[a], side, 0);
+            ahead.rows[1][0] = at(out[a], 0, 0);
+            if (a == 1) ahead.rows[1][1] = at(p, 0, 0);
+            if (a == 2 && t.divergence) ahead.rows[2][0] = at((*t.divergence)[0], 0, -1);
+            if (t.advection) ahead.rows[2][1] = at((*t.advection)[a], 0, 0);
           }
           if (t.inertia) {
             face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, rate);
