@@ -26,11 +26,11 @@ struct TensorViews {
   ConstView aa, bb, cc, ab, ac;
 };
 
-/// force += modulus div(phi dev B)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
-template <int Dim, class Points>
-EULASTIC_INLINE void add_elastic_force(const Points &points, ConstView phi, const TensorViews &tensor,
-                                       const std::ptrdiff_t *stride, const double *inverse_spacing, double modulus,
-                                       View force) noexcept {
+/// add(offset, modulus div(phi dev B)_a) for all points. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
+template <int Dim, class Points, class Add>
+EULASTIC_INLINE void elastic_force(const Points &points, ConstView phi, const TensorViews &tensor,
+                                   const std::ptrdiff_t *stride, const double *inverse_spacing, double modulus,
+                                   Add add) noexcept {
   const std::ptrdiff_t da = stride[0], db = stride[1], dc = stride[2];
   const double ia = inverse_spacing[0], ib = inverse_spacing[1], ic = inverse_spacing[2];
   const double *f = phi.origin, *aa = tensor.aa.origin, *bb = tensor.bb.origin, *ab = tensor.ab.origin;
@@ -44,7 +44,7 @@ EULASTIC_INLINE void add_elastic_force(const Points &points, ConstView phi, cons
       sum =
           fma(ic, shear_stress(f + i + dc, ac + i + dc, da, dc, modulus) - shear_stress(f + i, ac + i, da, dc, modulus),
               sum);
-    force.origin[i] += sum;
+    add(i, sum);
   });
 }
 

@@ -71,11 +71,11 @@ EULASTIC_INLINE double mooney_rivlin_shear(const double *phi, const TensorAt &t,
   return stress;
 }
 
-/// force += div(sigma)_a. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
-template <int Dim, class Points>
-EULASTIC_INLINE void add_mooney_rivlin_force(const Points &points, ConstView phi, const TensorViews &tensor,
-                                             ConstView bc, const std::ptrdiff_t *stride, const double *inverse_spacing,
-                                             const MooneyRivlin &m, View force) noexcept {
+/// add(offset, div(sigma)_a) for all points. Strides and 1/h of the directions a, b, c; in 2-D c is unused.
+template <int Dim, class Points, class Add>
+EULASTIC_INLINE void mooney_rivlin_force(const Points &points, ConstView phi, const TensorViews &tensor, ConstView bc,
+                                         const std::ptrdiff_t *stride, const double *inverse_spacing,
+                                         const MooneyRivlin &m, Add add) noexcept {
   const std::ptrdiff_t da = stride[0], db = stride[1], dc = stride[2];
   const double ia = inverse_spacing[0], ib = inverse_spacing[1], ic = inverse_spacing[2];
   const double *f = phi.origin, *aa = tensor.aa.origin, *bb = tensor.bb.origin, *ab = tensor.ab.origin;
@@ -87,7 +87,7 @@ EULASTIC_INLINE void add_mooney_rivlin_force(const Points &points, ConstView phi
     sum = fma(ib, mooney_rivlin_shear<Dim>(f, t, i + db, m) - mooney_rivlin_shear<Dim>(f, t, i, m), sum);
     if constexpr (Dim == 3)
       sum = fma(ic, mooney_rivlin_shear<Dim>(f, swapped, i + dc, m) - mooney_rivlin_shear<Dim>(f, swapped, i, m), sum);
-    force.origin[i] += sum;
+    add(i, sum);
   });
 }
 

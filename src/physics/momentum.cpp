@@ -24,13 +24,15 @@ struct PredictorTerms {
   FieldBlock *advection;   // null: not kept
   FieldBlock *divergence;  // of v*; null: not wanted
   bool rate_only;          // write dv/dt instead of v + dt dv/dt
+  ForceSlope slope;
   Real3 force, inverse, inverse_squared;
 };
 
-// force += scale div(sigma), the law's stress, on the stressed segments of rows j_begin <= j < j_end of plane k.
-template <int Dim>
-EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin,
-                                   int j_end, int k, FieldBlock &force) {
+// force += scale div(sigma), the law's stress, on the stressed segments of rows j_begin <= j < j_end of plane k; times
+// `factor` also to `slope`, where it is given.
+template <int Dim, bool WithSlope>
+EULASTIC_INLINE void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin,
+                                       int j_end, int k, FieldBlock &force, const ForceSlope &slope) {
   // Block position of a tensor component, see tensor_components().
   const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
   for (const Phase &phase : phases) {
@@ -46,10 +48,16 @@ EULASTIC_INLINE void elastic_force(const Grid &grid, const std::vector<Phase> &p
         const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
         const Real3 &h = grid.spacing();
         const double inverse[3] = {1 / h[a], 1 / h[b], 1 / h[c]};
+        double *sum = force[a].origin, *change = WithSlope ? (*slope.field)[a].origin : nullptr;
+        const double factor = slope.factor;
+        const auto add_to = [=](std::ptrdiff_t o, double f) EULASTIC_BODY {
+          sum[o] += f;
+          if (WithSlope) change[o] = kernels::fma(factor, f, change[o]);
+        };
         if (material.law == Law::neo_hookean)
-          kernels::add_elastic_force<Dim>(batch, phi, views, stride, inverse, scale * material.shear_modulus, force[a]);
+          kernels::elastic_force<Dim>(batch, phi, views, stride, inverse, scale * material.shear_modulus, add_to);
         else
-          kernels::add_mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, force[a]);
+          kernels::mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, add_to);
       }
     };
     if (phase.stressed.idle_rows(j_begin, j_end, k)) continue;
@@ -144,7 +152,10 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
                                                              t.dt, out[a].row(j, k));
         }
       }
-      elastic_force<Dim>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, end, k, out);
+      if (RateOnly && t.slope.field)
+        add_elastic_force<Dim, true>(*t.grid, *t.phases, 1 / t.density, block, end, k, out, t.slope);
+      else
+        add_elastic_force<Dim, false>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, end, k, out, {});
       if (RateOnly) continue;
       close_low_faces<Dim>(*t.grid, block, end, k, out);
       if (t.grid->wraps_x())
@@ -167,9 +178,16 @@ EULASTIC_CLONES void predict_3d(const PredictorTerms &t, const RowPart &part, Fi
 template <int Dim>
 EULASTIC_INLINE void elastic_rows(const Grid &grid, const RowPart &part, double scale, const std::vector<Phase> &phases,
                                   FieldBlock &force) {
-  for (int block = part.j_begin; block < part.j_end; block += block_rows)
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      elastic_force<Dim>(grid, phases, scale, block, std::min(block + block_rows, part.j_end), k, force);
+  for_rows_in_blocks(
+      part,
+      [&](int j, int k) EULASTIC_BODY {
+        for (int a = 0; a < Dim; ++a) {
+          if (Dim == 3) prefetch(force[a].row(j, k + 1), grid.owned()[0]);
+          std::fill_n(force[a].row(j, k), grid.owned()[0], 0.0);
+        }
+      },
+      [&](int begin, int end, int k)
+          EULASTIC_BODY { add_elastic_force<Dim, false>(grid, phases, scale, begin, end, k, force, {}); });
 }
 
 EULASTIC_CLONES void elastic_2d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,
@@ -231,7 +249,7 @@ double inner_count(const Grid &grid) {
 
 void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                    const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock *advection,
-                   FieldBlock *divergence, bool rate_only, FieldBlock &out) {
+                   FieldBlock *divergence, bool rate_only, const ForceSlope &slope, FieldBlock &out) {
   VerbScope scope(Verb::momentum);
   const int dim = grid.dimension();
   const Real3 &h = grid.spacing();
@@ -248,6 +266,7 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
                              advection,
                              divergence,
                              rate_only,
+                             slope,
                              fluid.body_force.at(step.force_time),
                              {1 / h[0], 1 / h[1], 1 / h[2]},
                              {1 / h[0] * (1 / h[0]), 1 / h[1] * (1 / h[1]), 1 / h[2] * (1 / h[2])}};
@@ -258,6 +277,8 @@ void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &ste
   const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, phases)));
+  if (slope.field)
+    for (const Phase &phase : phases) scope.flops(dim * 2 * phase.stressed.points());
   if (divergence) scope.flops(inner_count(grid) * divergence_flops(dim));
 }
 
@@ -267,19 +288,21 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
                                 const FieldBlock &velocity, const FieldBlock &pressure,
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star, FieldBlock *divergence) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, divergence, false, velocity_star);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, divergence, false, {}, velocity_star);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
-                             FieldBlock &rate) {
+                             FieldBlock &rate, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, nullptr, true, rate);
+  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, nullptr, true, slope,
+                rate);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force) {
+PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
+                                     FieldBlock &force) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::momentum);
   const bool flat = grid.dimension() == 2;

@@ -32,15 +32,22 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star,
                                 FieldBlock *divergence = nullptr);
 
+/// Where the elastic force per mass goes beside the rate, to say how it changes in time.
+struct ForceSlope {
+  FieldBlock *field = nullptr;  ///< factor times that force is added; null: nowhere
+  double factor = 0;
+};
+
 /// The rate dv/dt itself, for super time stepping. `advection` holds -v.grad v of the last step (read when its weight
 /// is not 0) and gets that of this one; it may be empty when the weight is 0.
 PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
-                             FieldBlock &rate);
+                             FieldBlock &rate, const ForceSlope &slope = {});
 
-/// force += scale times the elastic force of all phases, div(G phi dev B) or that of the law, at the faces that feel
-/// it. One ghost of phi and B.
-PetscErrorCode add_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases, FieldBlock &force);
+/// force = scale times the elastic force of all phases, div(G phi dev B) or that of the law, 0 at owned faces that feel
+/// none. One ghost of phi and B.
+PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
+                                     FieldBlock &force);
 
 /// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
 PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,

@@ -177,17 +177,14 @@ PetscErrorCode Solver::step(double dt) {
   PetscFunctionReturn(0);
 }
 
-// Solids move to the middle of the step; the elastic force on the way there says how it changes within the step.
+// Solids move to the middle of the step. What the elastic force was before is kept, to say how it changes within the
+// step.
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (spec_.linear_force()) {
-    viscous_.slope.clear();
-    PetscCall(add_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
-  }
-  PetscCall(transport(now_.phases, dt));
   if (spec_.linear_force())
-    PetscCall(add_elastic_force(*grid_, 1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+    PetscCall(compute_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+  PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
 }
 
@@ -205,8 +202,10 @@ PetscErrorCode Solver::predict(double dt) {
     ++stages_;
     PetscFunctionReturn(0);
   }
-  PetscCall(
-      momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, viscous_.rate));
+  ForceSlope slope;
+  if (!now_.phases.empty() && spec_.linear_force()) slope = {&viscous_.slope, 1 / (0.5 * (now_.dt + dt))};
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, viscous_.rate,
+                          slope));
   viscous_.now = velocity_star_.part(0, grid_->dimension());
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);

@@ -72,7 +72,7 @@ struct Box {
   // Sum of v . (mu lap v + div sigma_e) over all faces but those on walls, where v = 0.
   double power_of_forces(double viscosity) {
     FieldBlock force(grid, grid.dimension());
-    EXPECT_EQ(add_elastic_force(grid, 1, phases, force), 0);
+    EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
     double power = 0;
     for (int c = 0; c < grid.dimension(); ++c)
       for (const Segment &row : grid.rows())

@@ -87,7 +87,8 @@ EULASTIC_CLONES void elastic(Block &b) {
   const std::ptrdiff_t stride[3] = {b.directions.a, b.directions.b, b.directions.c};
   const kernels::TensorViews views{b.fields[4], b.fields[5], b.fields[6], b.fields[9], b.fields[8]};
   for (const Segment &s : b.rows)
-    kernels::add_elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1, b.fields[0]);
+    kernels::elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1,
+                              [to = b.fields[0].row(0, 0)](std::ptrdiff_t o, double f) EULASTIC_BODY { to[o] += f; });
 }
 
 EULASTIC_CLONES void stretch_diagonal(Block &b) {

@@ -193,7 +193,7 @@ double force_error(bool flat, int cells) {
     fill_everywhere(grid, phase.tensor[c], components[c].staggering(),
                     [&](const Point &x) { return tensor(x)[components[c].a][components[c].b]; });
   FieldBlock force(grid, grid.dimension());
-  EXPECT_EQ(add_elastic_force(grid, 1, phases, force), 0);
+  EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
   double largest = 0;
   for (int a = 0; a < grid.dimension(); ++a)
     largest = std::max(largest, largest_error(grid, force[a], at_face[a], [&](const Point &x) {
@@ -264,7 +264,7 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform) {
   randomise(grid, phase.tensor, random, 0.4);
   randomise_solenoidal(grid, solid.velocity, random);
   FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.count());
-  EXPECT_EQ(add_elastic_force(grid, 1, solid.phases, force), 0);
+  EXPECT_EQ(compute_elastic_force(grid, 1, solid.phases, force), 0);
   Exchange e;
   for (int a = 0; a < grid.dimension(); ++a)
     for (const Segment &s : grid.rows())
