@@ -38,13 +38,11 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
     for (int i = std::max(begin, span.end); i < end; ++i) next[i] = 0;
     const Segment row{std::max(span.begin, 0) & -8, std::min((span.end + 7) & -8, n[0]), j, k};  // whole vectors
     if (row.size() <= 0) return;
-    const std::ptrdiff_t i = row.i_begin;
     RowsAhead ahead;
-    if (Dim == 3)  // the next plane
-      ahead = {{{phi.row(j, k + 4) + i, nullptr},
-                {v[0].row(j, k + 2) + i, v[1].row(j, k + 2) + i},
-                {v[2].row(j, k + 2) + i, out[0].row(j, k + 1) + i}},
-               row.size()};
+    if (Dim == 3) {  // the next plane
+      const auto at = [&](ConstView q, int plane) { return q.row(j, k + plane) + row.i_begin; };
+      ahead = {{{at(phi, 4), nullptr}, {at(v[0], 2), at(v[1], 2)}, {at(v[2], 2), at(out[0], 1)}}, row.size()};
+    }
     centre_advection_rate(row, phi, v, t.inverse.data(), epsilon, ahead, rate);
     const double *now = phi.row(j, k);
 #pragma omp simd

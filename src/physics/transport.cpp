@@ -21,7 +21,7 @@ struct TransportTerms {
   EvolveRule rule;
   bool second_of_heun;
   const ActiveSegments *stale;
-  bool wraps;
+  int wraps;
 };
 
 // Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
@@ -117,8 +117,7 @@ EULASTIC_INLINE void advance_left(const TransportTerms &t, const Phase &phase, c
   advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out);
   if (batch.size < kernels::Batch::width) return;  // the end of a row, of which the rest is left
   for (const std::ptrdiff_t row : left.rows)
-    for (int f = location.first<Dim>(); f < location.last<Dim>(); ++f)
-      t.grid->wrap_row(out[f].origin + row, Grid::stencil_width);
+    for (int f = location.first<Dim>(); f < location.last<Dim>(); ++f) t.grid->wrap_row(out[f].origin + row, t.wraps);
   left.rows.clear();
 }
 
@@ -197,7 +196,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
       }
     }
     leave_to(end);
-    if (t.wraps && from < to && (from < reach || to > end - reach)) left.rows.push_back(row);
+    if (t.wraps > 0 && from < to && (from < t.wraps || to > end - t.wraps)) left.rows.push_back(row);
   }
 }
 
@@ -246,7 +245,7 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   const TransportTerms terms{&grid,       stage.dt,
                              &velocity,   {1 / h[0], 1 / h[1], 1 / h[2]},
                              stage.rule,  stage.second_of_heun,
-                             stage.stale, stage.wraps && grid.wraps_x()};
+                             stage.stale, grid.wraps_x() ? stage.wraps : 0};
   const bool flat = grid.dimension() == 2;
   const int parts = row_parts(grid);
   std::vector<Evolved> found(parts);

@@ -34,7 +34,7 @@ struct TensorStage {
   double dt;
   bool second_of_heun;                    ///< next = (next + B + dt rate)/2, else next = B + dt rate
   const ActiveSegments *stale = nullptr;  ///< where `next` is set to I if B does not evolve there; null: everywhere
-  bool wraps = false;                     ///< wrap the rows that are written around a periodic x (Grid::wrap_row)
+  int wraps = 0;  ///< ghosts around a periodic x to fill in rows that are written (Grid::wrap_row)
 };
 
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which

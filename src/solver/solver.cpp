@@ -278,9 +278,10 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
                                                    const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
-  const bool wraps = spec_.exterior == SolidExterior::identity;  // else once B is extended
+  const bool identity = spec_.exterior == SolidExterior::identity;
+  const int wraps = identity ? Grid::stencil_width : ExteriorLayers::layers;
   if (spec_.staggered()) {
-    const ActiveSegments *first = wraps ? nullptr : &phase.strained;
+    const ActiveSegments *first = identity ? nullptr : &phase.strained;
     PetscCall(
         transport_tensor(*grid_, {rule, dt, false, first, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
@@ -298,19 +299,19 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
   PetscFunctionReturn(0);
 }
 
-// Ghosts of B, after its extension outside the body where that is wanted.
+// Ghosts of B, after its extension outside the body where that is wanted. With `rows` transport has wrapped what it
+// wrote.
 PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  if (spec_.exterior == SolidExterior::extrapolate) {
-    PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
+  const bool extends = spec_.exterior == SolidExterior::extrapolate;
+  const int width = extends ? ExteriorLayers::layers : Grid::stencil_width;
+  PetscCall(rows ? exchange_->update_wrapped(tensor, width, rows) : exchange_->update(tensor, width));
+  if (extends) {
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
-  } else if (rows) {  // transport has wrapped what it wrote
-    PetscCall(exchange_->update_wrapped(tensor, Grid::stencil_width, rows));
-    fill_wall_ghosts_tensor(*grid_, tensor, Grid::stencil_width, rows);
-    PetscFunctionReturn(0);
+    PetscCall(exchange_->update(tensor, Grid::stencil_width, rows));
   }
-  PetscCall(update_tensor_ghosts(tensor, Grid::stencil_width, rows));
+  fill_wall_ghosts_tensor(*grid_, tensor, Grid::stencil_width, rows);
   PetscFunctionReturn(0);
 }
 
