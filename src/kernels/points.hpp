@@ -13,6 +13,9 @@ struct Batch {
   std::ptrdiff_t first[vectors];
   int count = 0;
   int size = width;  ///< points of each vector; fewer only at the end of rows
+  /// Values at these and the offsets of a vector are asked for, into the second-level cache, when a loop comes to it:
+  /// a few at a time, as many at once would wait for each other.
+  const double *ahead[2] = {nullptr, nullptr};
 };
 
 /// Adds the points [begin, end) of a row to the batch and does `work(batch)` whenever it is full; the rest of a row
@@ -46,8 +49,11 @@ EULASTIC_INLINE void for_points(const Segment &s, ConstView q, Body body) noexce
 template <class Body>
 EULASTIC_INLINE void for_points(const Batch &batch, ConstView, Body body) noexcept {
   if (batch.size == Batch::width) {
+    const double *one = batch.ahead[0], *other = batch.ahead[1];
     for (int n = 0; n < batch.count; ++n) {
       const std::ptrdiff_t first = batch.first[n];
+      if (one) __builtin_prefetch(one + first, 0, 2);
+      if (other) __builtin_prefetch(other + first, 0, 2);
 #pragma omp simd
       for (int i = 0; i < Batch::width; ++i) body(first + i, Batch::width * n + i);
     }

@@ -41,9 +41,13 @@ EULASTIC_INLINE void add_elastic_force(const Grid &grid, const std::vector<Phase
     const FieldBlock &B = phase.tensor;
     const ConstView phi = phase.fraction[0];
     const kernels::MooneyRivlin law{scale * 2 * material.c1, scale * 2 * material.c2, scale * 4 * material.c3};
-    const auto add = [&](const kernels::Batch &batch) EULASTIC_BODY {
+    const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
       for (int a = 0; a < Dim; ++a) {
         const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
+        if (Dim == 3) {  // two planes on
+          batch.ahead[0] = B[at(a, a)].origin + 2 * phi.sz;
+          batch.ahead[1] = B[at(a, b)].origin + 2 * phi.sz;
+        }
         const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
         const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
         const Real3 &h = grid.spacing();
@@ -64,10 +68,16 @@ EULASTIC_INLINE void add_elastic_force(const Grid &grid, const std::vector<Phase
     kernels::Batch batch;
     for (int j = j_begin; j < j_end; ++j)
       for (const Segment &s : phase.stressed.row(j, k)) {
-        if (Dim == 3) {
+        if (Dim == 3) {  // what is beside the vectors there, and phi
           const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line
-          const int low = phase.stressed.idle(j - 1, k) ? j - 1 : j, high = phase.stressed.idle(j + 1, k) ? j + 1 : j;
-          for (int y = low; y <= high; ++y) {
+          prefetch(phi.row(j, k + 2) + i, length);
+          for (int f = 0; f < B.count(); ++f) {
+            const double *row = B[f].row(j, k + 2);
+            prefetch(row + i, 1);
+            prefetch(row + s.i_end, 1);
+          }
+          for (const int y : {j - 1, j + 1}) {
+            if (!phase.stressed.idle(y, k)) continue;
             prefetch(phi.row(y, k + 2) + i, length);
             for (int f = 0; f < B.count(); ++f) prefetch(B[f].row(y, k + 2) + i, length);
           }

@@ -39,7 +39,7 @@ constexpr int position(int x, int y) {
 // registers than there are: a fifth slower.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                       const kernels::Batch &batch, const double *const *carried, double *rate,
+                                       kernels::Batch &batch, const double *const *carried, double *rate,
                                        FieldBlock &out) {
   const int f = position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
@@ -52,7 +52,13 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
   const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
   double *next = out[f].origin;
+  if (Dim == 3) {  // the next plane
+    batch.ahead[0] = now + (1 + Grid::stencil_width) * phi.sz;
+    batch.ahead[1] = next + phi.sz;
+  }
   kernels::advection_rate<Dim>(batch, B[f], carried, t.inverse.data(), epsilon, rate);
+  batch.ahead[0] = Dim == 3 && f == 0 ? solid + phi.sz : nullptr;
+  batch.ahead[1] = nullptr;
   const auto stage = [=](std::ptrdiff_t o, double total, double share, double exterior, double least) EULASTIC_BODY {
     // positive_definite.hpp; minus infinity stays, so that it is noticed.
     constexpr double lowest = -std::numeric_limits<double>::max();
@@ -94,10 +100,14 @@ struct Location {
 // All components of one location at the points of a batch.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                   const Location &location, const kernels::Batch &batch, FieldBlock &out) {
+                                   const Location &location, kernels::Batch &batch, FieldBlock &out) {
   alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
   const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
-  for (int e = 0; e < Dim; ++e) kernels::carry_velocity(batch, (*t.velocity)[e], e, location.at, Dim, velocity[e]);
+  for (int e = 0; e < Dim; ++e) {
+    const ConstView face = (*t.velocity)[e];
+    if (Dim == 3 && location.centre()) batch.ahead[0] = face.origin + 2 * face.sz;
+    kernels::carry_velocity(batch, face, e, location.at, Dim, velocity[e]);
+  }
   if (location.centre())
     for (int c = 0; c < Dim; ++c) advance_component<Dim, SecondOfHeun>(t, phase, B, c, c, batch, carried, rate, out);
   else
@@ -113,7 +123,7 @@ struct Left {
 
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_left(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                  const Location &location, const kernels::Batch &batch, Left &left, FieldBlock &out) {
+                                  const Location &location, kernels::Batch &batch, Left &left, FieldBlock &out) {
   advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out);
   if (batch.size < kernels::Batch::width) return;  // the end of a row, of which the rest is left
   for (const std::ptrdiff_t row : left.rows)
@@ -135,7 +145,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const int first = location.first<Dim>(), last = location.last<Dim>();
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
-  const auto advance = [&](const kernels::Batch &batch)
+  const auto advance = [&](kernels::Batch &batch)
                            EULASTIC_BODY { advance_left<Dim, SecondOfHeun>(t, phase, B, location, batch, left, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.solid.idle_rows(j_begin, j_end, k)) return;
@@ -170,17 +180,20 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
       return any;
     };
     for (const Segment &s : phase.solid.row(j, k)) {
-      if (Dim == 3) {  // the next plane of what this location is the first to come to
+      if (Dim == 3) {  // the next plane, what is beside its vectors
         const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
+        const auto ask_ends = [&](ConstView q, int plane) {
+          prefetch(q.row(j, plane) + i, 1);
+          prefetch(q.row(j, plane) + s.i_end, 1);
+        };
+        for (int f = first; f < last; ++f) ask_ends(B[f], k + 1 + reach);
         if (centre) {
-          prefetch(phi.row(j, k + 1) + i, length);
-          for (int d = 0; d < Dim; ++d) prefetch((*t.velocity)[d].row(j, k + 2) + i, length);
+          ask_ends(phi, k + 1);
+          for (int d = 0; d < Dim; ++d) ask_ends((*t.velocity)[d], k + 2);
         }
-        const int low = phase.solid.idle(j - 1, k) ? j - reach : j, high = phase.solid.idle(j + 1, k) ? j + reach : j;
-        for (int f = first; f < last; ++f) {
-          for (int y = low; y <= high; ++y) prefetch(B[f].row(y, k + 1 + reach) + i, length);
-          prefetch(out[f].row(j, k + 1) + i, length);
-        }
+        for (const int side : {-1, 1})
+          for (int n = 1; phase.solid.idle(j + side, k) && n <= reach; ++n)
+            for (int f = first; f < last; ++f) prefetch(B[f].row(j + n * side, k + 1 + reach) + i, length);
       }
       leave_to(s.i_begin);
       const int stop = std::min(s.i_end, end);
