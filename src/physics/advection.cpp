@@ -5,12 +5,26 @@
 namespace eulastic {
 namespace {
 
+// along(piece, direction) for pieces of a row and all directions, each of which asks for its part of the rows ahead:
+// what one asks for is there when the next begins.
+template <int Dim, class Along>
+EULASTIC_INLINE void in_pieces(const Segment &row, const RowsAhead &ahead, const Along &along) {
+  constexpr int length = 64;
+  for (Segment piece = row; piece.i_begin < row.i_end; piece.i_begin = piece.i_end) {
+    piece.i_end = std::min(piece.i_begin + length, row.i_end);
+    const int begin = piece.i_begin - row.i_begin;
+    for (int d = 0; d < Dim; ++d) {
+      ahead.ask(d, begin, piece.i_end < row.i_end ? length : ahead.length - begin);
+      along(piece, d);
+    }
+  }
+}
+
 template <int Dim>
-EULASTIC_INLINE void of_faces(const Segment &s, const FieldBlock &v, int a, const double *inverse_spacing,
+EULASTIC_INLINE void of_faces(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing,
                               double epsilon, const RowsAhead &ahead, double *rate) {
   const ConstView q = v[a];
-  for (int d = 0; d < Dim; ++d) {
-    ahead.ask(d);
+  in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t own = v[d].stride(d), back = -q.stride(a);
     const std::ptrdiff_t one = d < a ? own : back, other = d < a ? back : own;  // in the order of directions
@@ -21,20 +35,19 @@ EULASTIC_INLINE void of_faces(const Segment &s, const FieldBlock &v, int a, cons
       add([=](int i) EULASTIC_BODY { return face[i]; }, 1);
     else
       add([=](int i) EULASTIC_BODY { return kernels::sum4(face + i, one, other); }, 0.25);
-  }
+  });
 }
 
 template <int Dim>
-EULASTIC_INLINE void of_centres(const Segment &s, const ConstView &q, const FieldBlock &v,
+EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const FieldBlock &v,
                                 const double *inverse_spacing, double epsilon, const RowsAhead &ahead, double *rate) {
-  for (int d = 0; d < Dim; ++d) {
-    ahead.ask(d);
+  in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
     kernels::add_advection_rate(
         s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return face[i] + face[i + up]; },
         0.5 * inverse_spacing[d], epsilon, rate);
-  }
+  });
 }
 
 EULASTIC_CLONES void of_faces_2d(const Segment &s, const FieldBlock &v, int a, const double *h, double e,

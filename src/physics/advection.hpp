@@ -7,15 +7,16 @@
 
 namespace eulastic {
 
-/// Rows that will be read or written soon: before the loop along direction d memory is asked for the rows of d, so that
-/// what one asks for is there when the next begins. All at once they wait for each other.
+/// Rows that will be read or written soon. Memory is asked for them piece by piece, those of d before a loop along
+/// direction d: many requests at once wait for each other.
 struct RowsAhead {
   const double *rows[3][2] = {};  ///< first values; null: none
   int length = 0;                 ///< of all
 
-  [[gnu::always_inline]] void ask(int d) const noexcept {
+  /// For n values of the rows of d.
+  [[gnu::always_inline]] void ask(int d, int begin, int n) const noexcept {
     for (const double *row : rows[d])
-      if (row) prefetch(row, length);
+      if (row) prefetch(row + begin, n);
   }
 };
 

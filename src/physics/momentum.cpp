@@ -68,7 +68,7 @@ EULASTIC_INLINE void add_elastic_force(const Grid &grid, const std::vector<Phase
     kernels::Batch batch;
     for (int j = j_begin; j < j_end; ++j)
       for (const Segment &s : phase.stressed.row(j, k)) {
-        if (Dim == 3) {  // what is beside the vectors there, and phi
+        if (Dim == 3) {                                            // what is beside the vectors there, and phi
           const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line
           prefetch(phi.row(j, k + 2) + i, length);
           for (int f = 0; f < B.count(); ++f) {
@@ -154,7 +154,7 @@ EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, Field
             face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, rate);
             if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
           } else {
-            for (int d = 0; d < Dim; ++d) ahead.ask(d);
+            for (int d = 0; d < Dim; ++d) ahead.ask(d, 0, ahead.length);
             std::fill_n(rate, n[0], 0.0);
           }
           kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),

@@ -23,10 +23,9 @@ struct Fields {
   Real3 inverse;
 };
 
-// q - dt v.grad q of field f of `next` on a row, after `advect`(rate).
-template <class Points, class Advect>
-EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, int f, double *rate, Advect advect) {
-  advect(rate);
+// q - dt v.grad q of field f of `next`.
+template <class Points>
+EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, int f, const double *rate) {
   const double *now = q.origin, dt = t.dt;
   double *next = t.next[f].origin;
   kernels::for_points(points, q,
@@ -38,22 +37,24 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
   alignas(64) double rate[kernels::Batch::points], carried[3][kernels::Batch::points];
   const double *const velocity[3] = {carried[0], carried[1], carried[2]};
   const Int3 n = t.grid.owned();
-  const auto work = [&](const kernels::Batch &batch) EULASTIC_BODY {
-    for (int d = 0; d < 3; ++d) kernels::carry_velocity(batch, t.velocity[d], d, at.data(), 3, carried[d]);
-    for (int c = first; c < last; ++c)
-      move(t, batch, t.tensor[c], 4 + c, rate, [&](double *out) EULASTIC_BODY {
-        kernels::advection_rate<3>(batch, t.tensor[c], velocity, t.inverse.data(), 1e-6, out);
-      });
+  const auto work = [&](kernels::Batch &batch) EULASTIC_BODY {
+    for (int d = 0; d < 3; ++d) {
+      const ConstView face = t.velocity[d];
+      batch.ahead[0] = first == 0 ? face.origin + 2 * face.sz : nullptr;
+      kernels::carry_velocity(batch, face, d, at.data(), 3, carried[d]);
+    }
+    for (int c = first; c < last; ++c) {
+      const ConstView q = t.tensor[c];
+      batch.ahead[0] = q.origin + 4 * q.sz;
+      batch.ahead[1] = t.next[4 + c].origin + q.sz;
+      kernels::advection_rate<3>(batch, q, velocity, t.inverse.data(), 1e-6, rate);
+      batch.ahead[0] = batch.ahead[1] = nullptr;
+      move(t, batch, q, 4 + c, rate);
+    }
   };
   kernels::Batch batch;
-  for (int j = block; j < std::min(block + block_rows, n[1]); ++j) {
-    for (int d = 0; d < 3 && first == 0; ++d) prefetch(t.velocity[d].row(j, k + 2), n[0]);
-    for (int c = first; c < last; ++c) {
-      prefetch(t.tensor[c].row(j, k + 4), n[0]);
-      prefetch(t.next[4 + c].row(j, k + 1), n[0]);
-    }
+  for (int j = block; j < std::min(block + block_rows, n[1]); ++j)
     kernels::gather(batch, j * t.tensor[0].sy + k * t.tensor[0].sz, 0, n[0], work);
-  }
   work(batch);
 }
 
@@ -66,8 +67,8 @@ EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &sc
     const Segment row{0, n, j, k};
     for (int a = 0; a < 3; ++a) {
       const RowsAhead ahead{{{v[a].row(j, k + 4), nullptr}, {t.next[a].row(j, k + 1), nullptr}, {}}, n};
-      move(t, row, v[a], a, rate,
-           [&](double *out) EULASTIC_BODY { face_advection_rate(row, v, a, t.inverse.data(), 1e-6, ahead, out); });
+      face_advection_rate(row, v, a, t.inverse.data(), 1e-6, ahead, rate);
+      move(t, row, v[a], a, rate);
     }
   });
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
@@ -77,8 +78,8 @@ EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &sc
                            {v[0].row(j, k + 2), v[1].row(j, k + 2)},
                            {v[2].row(j, k + 2), t.next[3].row(j, k + 1)}},
                           n};
-    move(t, row, q, 3, rate,
-         [&](double *out) EULASTIC_BODY { centre_advection_rate(row, q, v, t.inverse.data(), 1e-6, ahead, out); });
+    centre_advection_rate(row, q, v, t.inverse.data(), 1e-6, ahead, rate);
+    move(t, row, q, 3, rate);
   });
   for (int block = part.j_begin; block < part.j_end; block += block_rows)
     for (int k = part.k_begin; k < part.k_end; ++k) {
