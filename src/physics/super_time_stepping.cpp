@@ -40,31 +40,54 @@ std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phas
 }
 
 struct StageFields {
-  const FieldBlock *rate, *slope;
+  FieldBlock *rate;  // M_0, with the first stage M_0 - dt/2 M_1
+  const FieldBlock *slope;
   const std::vector<char> *stressed;  // owned rows; in the others slope is 0. Null: no slope at all
   FieldBlock *now, *before;
+  const FieldBlock *velocity;
+  FieldBlock *velocity_star;
+
+  bool has_slope(const Int3 &n, const Segment &row) const {
+    const bool owned =
+        row.i_begin == 0 && row.i_end == n[0] && row.j >= 0 && row.j < n[1] && row.k >= 0 && row.k < n[2];
+    return stressed && !(owned && !(*stressed)[row.j + std::size_t(n[1]) * row.k]);
+  }
 };
 
-// Most stages in one pass over memory. Five took 3 % less time than four on one rank, and exchange more.
+// Most stages in one pass over memory, the first one not counted. Five took 3 % less time than four on one rank, and
+// exchange more.
 constexpr int deepest = 4;
 
-// Stages j ... j + depth - 1.
+// Stages j ... j + depth - 1; before them the first one, W_1, and after them v*, where the pass starts and ends all.
 struct Pass {
   int depth;
+  bool starts, ends;
+  double first, half;  // W_1 = first (M_0 + half M_1)
   kernels::RklStage stage[deepest];
   double twice_wall[deepest][3][3][2];  // of component a of what the stage reads, at a wall of direction d: 2 U
 };
+
+// The first stage of component a: M_0 for good, and W_1.
+EULASTIC_CLONES void first_stage_row(const Int3 &n, const Pass &pass, const StageFields &f, int a, const Segment &row) {
+  double *m = (*f.rate)[a].row(row.j, row.k), *out = (*f.now)[a].row(row.j, row.k);
+  if (f.has_slope(n, row)) {
+    const double *slope = (*f.slope)[a].row(row.j, row.k);
+#pragma omp simd
+    for (int i = row.i_begin; i < row.i_end; ++i) m[i] = kernels::fma(pass.half, slope[i], m[i]);
+  }
+#pragma omp simd
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = pass.first * m[i];
+}
 
 // One stage on the points `row` of component a.
 template <int Dim>
 EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const InverseSquares &h, const StageFields &f,
                                int a, ConstView w, View out, const Segment &row) {
   const ConstView m = (*f.rate)[a];
-  const bool owned = row.i_begin == 0 && row.i_end == n[0] && row.j >= 0 && row.j < n[1] && row.k >= 0 && row.k < n[2];
-  if (!f.stressed || (owned && !(*f.stressed)[row.j + std::size_t(n[1]) * row.k]))
-    kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
-  else
+  if (f.has_slope(n, row))
     kernels::rkl_stage<Dim, true>(row, c, w, m, (*f.slope)[a], h, out);
+  else
+    kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
 }
 
 // Whether a row lies on a low wall that its component is normal to: W is 0 there and stays so.
@@ -100,28 +123,50 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
     }
 }
 
-// Stages alternate: the first reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other way. The
-// first asks for rows ahead.
+// v* of component a.
+EULASTIC_CLONES void end_row(const Grid &grid, const StageFields &f, int a, ConstView w, const Segment &row) {
+  const double *increment = w.row(row.j, row.k), *v = (*f.velocity)[a].row(row.j, row.k);
+  double *out = (*f.velocity_star)[a].row(row.j, row.k);
+#pragma omp simd
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = increment[i] + v[i];
+  if (grid.wraps_x()) grid.wrap_row(out, 1);
+}
+
+// Stages alternate: the first of a pass reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other
+// way. Rows ahead are asked for with the first.
 template <int Dim>
 EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
                                     const StageFields &f, const StagePass &order, const StagePass::Task &task) {
   const Int3 n = grid.owned();
   const int a = task.field;
-  order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+  order.go<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
+    const int s = stage - pass.starts;  // -1: W_1
     const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
     const int first = row.j;
     for (; row.j < j_end; ++row.j) {
-      if (Dim == 3 && s == 0) {
+      if (Dim == 3) {
         const RowAhead next(first, j_end, row.j, row.k);
-        prefetch(w.row(next.j, next.k + 1), n[0]);
-        prefetch(out.row(next.j, next.k), n[0]);
-        prefetch((*f.rate)[a].row(next.j, next.k), n[0]);
-        if (f.stressed) prefetch((*f.slope)[a].row(next.j, next.k), n[0]);
+        const auto ask = [&](const FieldBlock *field, int k) { prefetch((*field)[a].row(next.j, k), n[0]); };
+        if (stage == 0) {
+          ask(f.now, s < 0 ? next.k : next.k + 1);
+          ask(f.rate, next.k);
+          if (f.stressed) ask(f.slope, next.k);
+        }
+        if (s == 0) ask(f.before, next.k);
+        if (pass.ends && s == pass.depth - 1) ask(f.velocity, next.k);
       }
-      if (is_on_wall(sides, a, row)) continue;
-      surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
-      stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
-      if (a == 0 && sides.wall[0][0]) out.row(row.j, row.k)[0] = 0;
+      if (!is_on_wall(sides, a, row)) {
+        double *values = out.row(row.j, row.k);
+        if (s < 0) {
+          first_stage_row(n, pass, f, a, row);
+        } else {
+          if (pass.starts && s == 0) std::fill(values + row.i_begin, values + row.i_end, 0.0);  // W_0
+          surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
+          stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+        }
+        if (a == 0 && sides.wall[0][0]) values[0] = 0;
+      }
+      if (pass.ends && s == pass.depth - 1) end_row(grid, f, a, out, row);
     }
   });
 }
@@ -135,28 +180,10 @@ EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const Inverse
   stages_of_task<3>(grid, pass, h, sides, f, order, task);
 }
 
-// to = scale a + b at all points of the part, wrapped by one; b may be null.
-EULASTIC_CLONES void scale_add_part(const Grid &grid, const RowPart &part, double scale, const FieldBlock &a,
-                                    const FieldBlock *b, FieldBlock &to) {
-  const Int3 n = grid.owned();
-  for (int c = 0; c < to.count(); ++c)
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = part.j_begin; j < part.j_end; ++j) {
-        const double *x = a[c].row(j, k);
-        double *out = to[c].row(j, k);
-        if (b) {
-          const double *y = (*b)[c].row(j, k);
-#pragma omp simd
-          for (int i = 0; i < n[0]; ++i) out[i] = kernels::fma(scale, x[i], y[i]);
-        } else {
-          for (int i = 0; i < n[0]; ++i) out[i] = scale * x[i];
-        }
-        if (grid.wraps_x()) grid.wrap_row(out, 1);
-      }
-}
-
-void scale_add(const Grid &grid, double scale, const FieldBlock &a, const FieldBlock *b, FieldBlock &to) {
-  in_row_parts(grid, [&](const RowPart &part) { scale_add_part(grid, part, scale, a, b, to); });
+// No flow through walls.
+void close_walls(const Grid &grid, FieldBlock &velocity) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    if (grid.is_wall(d)) close_wall_faces(grid, velocity[d], d);
 }
 
 }  // namespace
@@ -175,26 +202,27 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = grid.inverse_squares();
-  const double first = stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2);  // mu~_1
-  if (work.slope) scale_add(grid, -0.5 * dt, work.slope, &work.rate, work.rate);  // the force at the start
-  scale_add(grid, first * dt, work.rate, nullptr, work.now);
-  for (int d = 0; d < grid.dimension(); ++d)
-    if (grid.is_wall(d)) close_wall_faces(grid, work.now[d], d);
-  if (stages > 1) work.before.clear();
   const Sides sides(grid);
   const int depth = StagePass::depth(grid, sides, 2, deepest);
   std::vector<char> stressed;
+  for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
+    if (*field) close_walls(grid, *field);
   if (work.slope) {
-    PetscCall(exchange.update_rows(work.rate, depth - 1, work.slope, depth - 1));
+    PetscCall(exchange.update_rows(work.rate, depth, work.slope, depth));
     stressed = stressed_rows(grid, phases);
   } else {
-    PetscCall(exchange.update_rows(work.rate, depth - 1));
+    PetscCall(exchange.update_rows(work.rate, depth));
   }
   const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
   Pass pass;
-  for (int j = 2; j <= stages; j += pass.depth) {
-    const int passes = (stages - j + depth) / depth;  // that are left, of equal depth
-    pass.depth = (stages - j + passes) / passes;
+  pass.first = dt * (stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2));  // mu~_1 dt
+  pass.half = -0.5 * dt;  // the force at the start
+  int j = 2;
+  do {
+    const int left = stages - j + 1, passes = (left + depth - 1) / depth;  // of equal depth
+    pass.depth = passes > 0 ? (left + passes - 1) / passes : 0;
+    pass.starts = j == 2;
+    pass.ends = pass.depth == left;
     for (int s = 0; s < pass.depth; ++s) {
       pass.stage[s] = stage_coefficients(j + s, stages, dt, kinematic_viscosity);
       for (int d = 0; d < 3; ++d)
@@ -203,18 +231,19 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
           for (int a = 0; a < 3; ++a) pass.twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
         }
     }
-    if (j > 2 && pass.depth > 2)
+    if (!pass.starts && pass.depth > 2)
       PetscCall(exchange.update_rows(work.now, pass.depth, work.before, pass.depth - 1));
-    else
+    else if (!pass.starts)
       PetscCall(exchange.update_rows(work.now, pass.depth));
-    const StageFields fields{&work.rate, &work.slope, work.slope ? &stressed : nullptr, &work.now, &work.before};
-    const StagePass order(grid, sides, pass.depth, grid.dimension());
+    const StageFields fields{&work.rate, &work.slope,   work.slope ? &stressed : nullptr, &work.now, &work.before,
+                             &velocity,  &velocity_star};
+    const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());
     order.for_tasks([&](const StagePass::Task &task) {
       (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, task);
     });
     if (pass.depth % 2) work.now.swap(work.before);
-  }
-  scale_add(grid, 1, work.now, &velocity, velocity_star);
+    j += pass.depth;
+  } while (!pass.ends);
   scope.flops(grid.owned_count() * grid.dimension() *
               ((stages - 1) * (grid.dimension() == 2 ? kernels::rkl_stage_flops_2d : kernels::rkl_stage_flops_3d) + 3));
   PetscFunctionReturn(0);

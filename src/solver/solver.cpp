@@ -308,6 +308,7 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
   PetscCall(rows ? exchange_->update_wrapped(tensor, width, rows) : exchange_->update(tensor, width));
   if (extends) {
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
+    fill_wall_ghosts_tensor(*grid_, tensor, 1, rows);  // what the limit of shear at walls sees
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
     PetscCall(exchange_->update(tensor, Grid::stencil_width, rows));
   }
