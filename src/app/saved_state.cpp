@@ -123,7 +123,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
-  if (FieldBlock *memory = solver->pressure_memory()) memory->clear();  // the file may know of fewer
+  if (FieldBlock *memory = solver->pressure_memory()) memory->clear();               // the file may know of fewer
+  for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));
   take_numbers(numbers, solver, position);
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];

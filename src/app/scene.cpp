@@ -31,6 +31,8 @@ PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const 
   std::vector<BodyMove> moves;
   std::string crowded;
   for (int round = 0; round < most_colours; ++round) {
+    if (refill)  // B of a file may differ from I anywhere
+      for (Phase &phase : *colours) PetscCall(phase.rows.find(grid, phase.fraction[0]));
     PetscCall(separate_bodies(grid, exchange, colours, &moves, &crowded));
     PetscCall(fail_together(grid.comm(), crowded));
     if (moves.empty() || !refill) PetscFunctionReturn(0);

@@ -161,7 +161,7 @@ PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label,
     for (int i = row.i_begin; i < row.i_end; ++i) {
       double &phi = fraction(i, row.j, row.k);
       if (spec.voxels.invert) phi = 1 - phi;
-      name(i, row.j, row.k) = phi > 0 ? label : 0;
+      if (phi > 0) name(i, row.j, row.k) = label;
       any |= phi > 0;
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));

@@ -57,18 +57,13 @@ std::vector<FieldBlock> copies(const std::vector<Ways> &ways, std::vector<Phase>
 }  // namespace
 
 void add_colour(const Grid &grid, int like, std::vector<Phase> *phases) {
-  const auto &components = tensor_components(grid.dimension());
   const Phase &phase = (*phases)[like];
   Phase colour;
   colour.species = phase.species;
   colour.material = phase.material;
   for (const Phase &other : *phases) colour.colour += other.species == phase.species;
   colour.separate = phase.separate;
-  colour.fraction = FieldBlock(grid, 1);
-  colour.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-  for (std::size_t c = 0; c < components.size(); ++c)
-    if (components[c].a == components[c].b) colour.tensor.fill(static_cast<int>(c), 1.0);
-  if (phase.label) colour.label = FieldBlock(grid, 1);
+  colour.empty(grid, bool(phase.label));
   phases->push_back(std::move(colour));
 }
 

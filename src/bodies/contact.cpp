@@ -30,10 +30,12 @@ std::map<int, std::vector<int>> colours_of(const std::vector<Phase> &phases) {
 PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vector<int> &colours,
                              std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
-  std::vector<FieldBlock *> blocks;
-  for (const int p : colours) blocks.insert(blocks.end(), {&(*phases)[p].label, &(*phases)[p].fraction});
-  for (FieldBlock *block : blocks) PetscCall(exchange.begin(*block, reach));
-  for (FieldBlock *block : blocks) PetscCall(exchange.end(*block, reach));
+  for (const int p : colours)
+    for (FieldBlock *block : {&(*phases)[p].label, &(*phases)[p].fraction})
+      PetscCall(exchange.begin(*block, reach, &(*phases)[p].rows));
+  for (const int p : colours)
+    for (FieldBlock *block : {&(*phases)[p].label, &(*phases)[p].fraction})
+      PetscCall(exchange.end(*block, reach, &(*phases)[p].rows));
   PetscFunctionReturn(0);
 }
 

@@ -66,13 +66,13 @@ std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spe
 }
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
+  phase->tensor = tensor_at_rest(grid);
   const auto &components = tensor_components(grid.dimension());
   const ConstView fraction = phase->fraction[0];
   for (std::size_t c = 0; c < components.size(); ++c) {
     if (components[c].a != components[c].b) continue;
     const double stretch = spec.initial_stretch[components[c].a];
     const View tensor = phase->tensor[static_cast<int>(c)];
-    phase->tensor.fill(static_cast<int>(c), 1.0);
     for (const Segment &row : grid.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;
@@ -83,12 +83,9 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
                           int first_label, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const auto &components = tensor_components(grid.dimension());
   phase->species = spec.name;
   phase->material = spec.material();
-  phase->fraction = FieldBlock(grid, 1);
-  phase->tensor = FieldBlock(grid, static_cast<int>(components.size()));
-  phase->label = FieldBlock(grid, 1);
+  phase->empty(grid, true);
   add_bodies(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
   stretch_phase(grid, spec, phase);
   PetscFunctionReturn(0);
@@ -96,10 +93,7 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
 
 void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                    const std::vector<int> &colour, std::vector<Phase> *phases) {
-  for (Phase &phase : *phases) {
-    phase.fraction.clear();
-    phase.label.clear();
-  }
+  for (Phase &phase : *phases) phase.empty(grid, true);
   add_bodies(grid, spec, places, first_label, [&](std::size_t b) { return &(*phases)[colour[b]]; });
   for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
 }

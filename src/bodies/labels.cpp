@@ -74,11 +74,12 @@ std::vector<Open> open_cells(const Grid &grid, const RowPart &part, ConstView ph
     const double *fraction = phi.row(row.j, row.k);
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
-      if (fraction[i] <= label_threshold)
-        own[i] = 0;
-      else if (fraction[i] <= 0.5)
-        own[i] = -own[i];
-      if (fraction[i] > label_threshold && own[i] <= 0) open.push_back({{i, row.j, row.k}, own[i]});
+      if (fraction[i] <= label_threshold) {
+        if (own[i] != 0) own[i] = 0;  // rest is left at rest: FieldBlock::at_rest
+        continue;
+      }
+      if (fraction[i] <= 0.5) own[i] = -own[i];
+      if (own[i] <= 0) open.push_back({{i, row.j, row.k}, own[i]});
     }
   }
   return open;
@@ -89,14 +90,14 @@ std::vector<Open> open_cells(const Grid &grid, const RowPart &part, ConstView ph
 PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  PetscCall(exchange.update(phase->fraction, 1));
+  PetscCall(exchange.update(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
   std::vector<std::vector<Open>> open(row_parts(grid));
   in_row_parts(grid, [&](const RowPart &part) { open[part.number] = open_cells(grid, part, phi, label); });
   const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
-    PetscCall(exchange.update(phase->label, 1));
+    PetscCall(exchange.update(phase->label, 1, &phase->rows));
     in_row_parts(grid, [&](const RowPart &part) {
       for (Open &o : open[part.number]) {
         const Candidate best = best_neighbour(o.cell, reach, phi, label);

@@ -3,9 +3,15 @@
 #include "grid/threads.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <new>
+#include <vector>
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 namespace eulastic {
 namespace {
@@ -21,30 +27,94 @@ void in_pieces(std::ptrdiff_t size, int fields, const Work &work) {
   });
 }
 
+// A file of ones in memory, or -1 where there are none of those.
+constexpr std::size_t ones_in_file = std::size_t{1} << 17;
+int file_of_ones() {
+  static const int file = [] {
+    const int opened = memfd_create("ones", MFD_CLOEXEC);
+    const std::vector<double> ones(ones_in_file, 1.0);
+    const auto bytes = static_cast<ssize_t>(ones.size() * sizeof(double));
+    return opened >= 0 && write(opened, ones.data(), bytes) == bytes ? opened : -1;
+  }();
+  return file;
+}
+
+// Private pages of nothing (file = -1) or of a file.
+void *map_pages(void *at, std::size_t bytes, int flags, int file) {
+  void *memory = mmap(at, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | flags, file, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  return memory;
+}
+
 }  // namespace
 
-// Stencils reach over many pages at once: in huge pages, where the system has them, their addresses fit the TLB.
-double *FieldBlock::allocate(std::size_t values) {
+// Stencils reach over many pages at once: in huge pages, where the system has them, their addresses fit the TLB. Not of
+// the heap, which keeps what is freed where MPI wants it to.
+FieldBlock::Memory FieldBlock::allocate(std::size_t values) {
   constexpr std::size_t line = 64, huge = std::size_t{1} << 21;
-  const std::size_t bytes = values * sizeof(double), alignment = bytes >= huge ? huge : line;
-  void *memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) throw std::bad_alloc();
+  const std::size_t bytes = values * sizeof(double);
+  if (bytes < huge) {
+    void *memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
+    if (!memory) throw std::bad_alloc();
+    return Memory(static_cast<double *>(memory), Free{false, 0});
+  }
+  const std::size_t whole = (bytes + huge - 1) / huge * huge;
+  auto *memory = static_cast<std::byte *>(map_pages(nullptr, whole + huge, MAP_ANONYMOUS, -1));
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(memory) % huge;
+  if (before > 0) (void)munmap(memory, before);
+  memory += before;
 #ifdef MADV_HUGEPAGE
-  if (bytes >= huge) (void)madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: nothing is lost when it is refused
+  (void)madvise(memory, whole, MADV_HUGEPAGE);  // a hint: nothing is lost when it is refused
 #endif
-  return static_cast<double *>(memory);
+  return Memory(reinterpret_cast<double *>(memory), Free{false, whole + huge - before});
+}
+
+// The system copies a page when it is written.
+FieldBlock::Memory FieldBlock::allocate_at_rest(std::size_t values, std::size_t ones) {
+  const std::size_t bytes = values * sizeof(double);
+  Memory memory(static_cast<double *>(map_pages(nullptr, bytes, MAP_ANONYMOUS | MAP_NORESERVE, -1)),
+                Free{false, bytes});
+#ifdef MADV_NOHUGEPAGE
+  (void)madvise(memory.get(), bytes, MADV_NOHUGEPAGE);  // one of those holds many rows
+#endif
+  std::size_t done = 0;  // of the ones
+  if (const int file = file_of_ones(); file >= 0)
+    for (; (done + ones_in_file) <= ones; done += ones_in_file)
+      map_pages(memory.get() + done, ones_in_file * sizeof(double), MAP_FIXED | MAP_NORESERVE, file);
+  std::fill(memory.get() + done, memory.get() + ones, 1.0);
+  return memory;
+}
+
+void FieldBlock::Free::operator()(double *p) const noexcept {
+  if (borrowed) return;
+  if (mapped > 0)
+    (void)munmap(p, mapped);
+  else
+    std::free(p);
 }
 
 FieldBlock::FieldBlock(const Grid &grid, int count) : layout_(grid.layout()), count_(count) {
-  data_.reset(allocate(size()));
+  data_ = allocate(size());
   clear();
+}
+
+FieldBlock FieldBlock::at_rest(const Grid &grid, int count, int ones) {
+  FieldBlock block;
+  block.layout_ = grid.layout();
+  block.count_ = count;
+  block.rests_ = true;
+  block.ones_ = ones;
+  block.data_ = allocate_at_rest(block.size(), ones * block.layout_.size);
+  return block;
 }
 
 FieldBlock FieldBlock::part(int first, int count) noexcept {
   FieldBlock block;
   block.layout_ = layout_;
   block.count_ = count;
-  block.data_ = {data_.get() + first * layout_.size, Free{true}};
+  block.rests_ = rests_;
+  block.ones_ = std::clamp(ones_ - first, 0, count);
+  block.data_ = {data_.get() + first * layout_.size, Free{true, 0}};
   return block;
 }
 
@@ -57,15 +127,32 @@ void FieldBlock::clear() noexcept {
             [this](std::size_t begin, std::size_t n) { std::fill_n(data_.get() + begin, n, 0.0); });
 }
 
+// What is equal is not written, so that rest stays rest.
 void FieldBlock::copy_from(const FieldBlock &other) {
   if (count_ != other.count_ || layout_.size != other.layout_.size) {
-    data_ = {allocate(other.size()), Free{}};
+    rests_ = other.rests_;
+    ones_ = other.ones_;
+    data_ = rests_ ? allocate_at_rest(other.size(), ones_ * other.layout_.size) : allocate(other.size());
   }
   layout_ = other.layout_;
   count_ = other.count_;
-  const double *from = other.data_.get();
-  in_pieces(layout_.size, count_,
-            [&](std::size_t begin, std::size_t n) { std::copy_n(from + begin, n, data_.get() + begin); });
+  copy(other.data_.get());
+}
+
+void FieldBlock::leave_rest() {
+  if (!std::exchange(rests_, false)) return;
+  const Memory before = std::exchange(data_, allocate(size()));
+  copy(before.get());
+}
+
+void FieldBlock::copy(const double *values) {
+  constexpr std::size_t page = 512;
+  in_pieces(layout_.size, count_, [&](std::size_t begin, std::size_t n) {
+    for (std::size_t at = begin; at < begin + n; at += page) {
+      const std::size_t bytes = std::min(page, begin + n - at) * sizeof(double);
+      if (std::memcmp(data_.get() + at, values + at, bytes) != 0) std::memcpy(data_.get() + at, values + at, bytes);
+    }
+  });
 }
 
 }  // namespace eulastic

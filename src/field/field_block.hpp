@@ -3,7 +3,7 @@
 
 #include "grid/grid.hpp"
 
-#include <cstdlib>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -14,6 +14,9 @@ public:
   FieldBlock() = default;
   /// `count` fields on `grid`, all zero, 64-byte aligned.
   FieldBlock(const Grid &grid, int count);
+  /// The same, but 1 in the first `ones` fields, and memory follows what is written: pages that are only read, or not
+  /// even that, take none. For what differs from its rest near bodies alone.
+  static FieldBlock at_rest(const Grid &grid, int count, int ones = 0);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
   int count() const noexcept { return count_; }
@@ -36,22 +39,28 @@ public:
   void clear() noexcept;
   /// Fields first ... first + count - 1 as a block that shares this one's memory; must not outlive it.
   FieldBlock part(int first, int count) noexcept;
-  /// Makes this an equal block of its own memory.
+  /// Moves what is at rest to memory like that of other blocks, which is there from the start and faster.
+  void leave_rest();
+  /// Makes this an equal block of its own memory, at rest where the other one is.
   void copy_from(const FieldBlock &other);
   void swap(FieldBlock &other) noexcept { std::swap(*this, other); }
 
 private:
   struct Free {
     bool borrowed;
-    void operator()(double *p) const noexcept {
-      if (!borrowed) std::free(p);
-    }
+    std::size_t mapped;  ///< bytes, 0: of the heap
+    void operator()(double *p) const noexcept;
   };
-  static double *allocate(std::size_t values);
+  using Memory = std::unique_ptr<double[], Free>;
+  static Memory allocate(std::size_t values);
+  static Memory allocate_at_rest(std::size_t values, std::size_t ones);
+  void copy(const double *values);
   std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;
-  std::unique_ptr<double[], Free> data_;
+  bool rests_ = false;  ///< in pages of at_rest()
+  int ones_ = 0;        ///< first fields that rest at 1
+  Memory data_;
 };
 
 }  // namespace eulastic

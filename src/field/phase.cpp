@@ -1,6 +1,14 @@
 #include "field/phase.hpp"
 
+#include "field/walls.hpp"
+
 namespace eulastic {
+
+void Phase::empty(const Grid &grid, bool labels) {
+  fraction = FieldBlock::at_rest(grid, 1);
+  tensor = tensor_at_rest(grid);
+  label = labels ? FieldBlock::at_rest(grid, 1) : FieldBlock();
+}
 
 void Phase::copy_from(const Phase &other) {
   species = other.species;

@@ -16,13 +16,15 @@ struct Phase {
   int colour = 0;           ///< 0: the first phase of the species; the others come after the first ones of all species
   bool separate = false;    ///< bodies that come near get phases of their own; needs labels
   FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
-  OccupiedRows rows;        ///< of phi
+  OccupiedRows rows;        ///< of phi; once they are known B is I in all others
   FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
   FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
   ActiveSegments solid;     ///< points where B may evolve
   ActiveSegments strained;  ///< points where B may differ from I: those and the layers it is extended over
   ActiveSegments stressed;  ///< faces that feel the elastic stress
 
+  /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (FieldBlock::at_rest).
+  void empty(const Grid &grid, bool labels);
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);
 };

@@ -54,13 +54,6 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
   });
 }
 
-void reflect_evenly(const Grid &grid, const Staggering &staggering, View field, int width, const OccupiedRows *rows) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true})
-      if (high ? grid.touches_high(d) : grid.touches_low(d))
-        reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
-}
-
 }  // namespace
 
 void close_wall_faces(const Grid &grid, View q, int d) {
@@ -90,6 +83,11 @@ const std::vector<TensorComponent> &tensor_components(int dimension) {
   return dimension == 2 ? flat : full;
 }
 
+FieldBlock tensor_at_rest(const Grid &grid) {
+  const int dimension = grid.dimension();
+  return FieldBlock::at_rest(grid, static_cast<int>(tensor_components(dimension).size()), dimension);
+}
+
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = grid.dimension();
@@ -106,14 +104,19 @@ void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time
   }
 }
 
-void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width) {
-  reflect_evenly(grid, staggering, field, width, nullptr);
+void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
+                           const OccupiedRows *rows) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true})
+      if (high ? grid.touches_high(d) : grid.touches_low(d))
+        reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
 void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);
   const auto &components = tensor_components(grid.dimension());
-  for (int c = 0; c < tensor.count(); ++c) reflect_evenly(grid, components[c].staggering(), tensor[c], width, rows);
+  for (int c = 0; c < tensor.count(); ++c)
+    fill_wall_ghosts_even(grid, components[c].staggering(), tensor[c], width, rows);
 }
 
 }  // namespace eulastic

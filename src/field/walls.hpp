@@ -39,6 +39,8 @@ struct TensorComponent {
   }
 };
 const std::vector<TensorComponent> &tensor_components(int dimension);
+/// I everywhere.
+FieldBlock tensor_at_rest(const Grid &grid);
 
 /// No flow through the walls of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
 /// face of a neighbour whose three cells are this rank's ghosts.
@@ -46,9 +48,10 @@ void close_wall_faces(const Grid &grid, View component, int d);
 /// Fills `width` layers behind every wall this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); wall faces are set to 0.
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width);
-/// Even reflection of one field of the given staggering.
-void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width);
-/// All components of a left Cauchy-Green block; not where `rows`, if it is given, is idle before the wall.
+/// Even reflection of one field of the given staggering; not where `rows`, if it is given, is idle before the wall.
+void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
+                           const OccupiedRows *rows = nullptr);
+/// All components of a left Cauchy-Green block.
 void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows = nullptr);
 
 }  // namespace eulastic

@@ -43,7 +43,7 @@ void prefetch_ends(const double *row, Span s) {
 
 bool empty(const Span &s) { return s.begin >= s.end; }
 
-void join(const Span &more, Span *sum) {
+void add(const Span &more, Span *sum) {
   if (empty(more)) return;
   *sum = empty(*sum) ? more : Span{std::min(sum->begin, more.begin), std::max(sum->end, more.end)};
 }
@@ -86,12 +86,12 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
       prefetch_ends(value.row(j + ahead, k), {std::max(next.begin, whole_.begin), std::min(next.end, whole_.end)});
       const Span old = before.span(j, k);
       Span found = was_idle ? old : occupied(row, {std::max(old.begin, 0), std::min(old.end, n[0])});
-      join(occupied(row, {whole_.begin, 0}), &found);  // what comes from beyond
-      join(occupied(row, {n[0], whole_.end}), &found);
+      add(occupied(row, {whole_.begin, 0}), &found);  // what comes from beyond
+      add(occupied(row, {n[0], whole_.end}), &found);
       if (empty(found)) continue;
       found = {std::max(found.begin - reach, whole_.begin), std::min(found.end + reach, whole_.end)};
       for (int y = std::max(j - reach, 0); y < std::min(j + reach + 1, n[1]); ++y)
-        join(found, &along_y[y + rows * (k + ghosts[2])]);
+        add(found, &along_y[y + rows * (k + ghosts[2])]);
     }
   };
   const int planes = n[2] + 2 * ghosts[2], parts = row_parts(grid);
@@ -101,24 +101,35 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
   });
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
     for (int z = std::max(k - reach_z, 0); z < std::min(k + reach_z + 1, n[2]); ++z)
-      for (int y = 0; y < n[1]; ++y) join(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * z]);
+      for (int y = 0; y < n[1]; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * z]);
 #ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
   spans_.assign(spans_.size(), whole_);
 #endif
   int crossing = 0;
-  cells_ = 0;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Span s = span(j, k);
       if (empty(s)) continue;
-      cells_ += std::min(s.end, n[0]) - std::max(s.begin, 0);
       const bool inner[3] = {!split_x || (s.begin >= ghosts[0] && s.end <= n[0] - ghosts[0]),
                              j >= ghosts[1] && j < n[1] - ghosts[1], k >= ghosts[2] && k < n[2] - ghosts[2]};
       if (!(inner[0] && inner[1] && inner[2])) crossing = 1;
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &crossing, 1, MPI_INT, MPI_MAX, grid.comm()));
   inside_ = crossing == 0;
+  count();
   PetscFunctionReturn(0);
+}
+
+void OccupiedRows::count() noexcept {
+  const int nx = whole_.begin + whole_.end;
+  cells_ = 0;
+  for (const Span &s : spans_) cells_ += std::max(0, std::min(s.end, nx) - std::max(s.begin, 0));
+}
+
+void OccupiedRows::join(const OccupiedRows &other) {
+  for (std::size_t r = 0; r < spans_.size(); ++r) add(other.spans_[r], &spans_[r]);
+  inside_ = inside_ && other.inside_;
+  count();
 }
 
 }  // namespace eulastic

@@ -20,6 +20,9 @@ public:
   /// rows neither if all was inside().
   PetscErrorCode follow(const Grid &grid, ConstView value);
 
+  /// Adds the spans of another field of the grid.
+  void join(const OccupiedRows &other);
+
   /// Outside it row (j, k) and all that stencils join to it are zero: as far as there are ghosts, one as edges belong
   /// to the centres below them too, one for what moves within a step. All of a ghost row: what comes to it from beyond
   /// is not known.
@@ -38,6 +41,7 @@ public:
   std::ptrdiff_t cells() const noexcept { return cells_; }
 
 private:
+  void count() noexcept;
   PetscErrorCode read(const Grid &grid, ConstView value, const OccupiedRows &before);
 
   static constexpr int far = 1 << 30;

@@ -275,7 +275,7 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, Phase &phase) {
+PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, const OccupiedRows &before, Phase &phase) {
   PetscFunctionBeginUser;
   const ConstView phi = phase.fraction[0];
   const auto &components = tensor_components(grid.dimension());
@@ -284,10 +284,12 @@ PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, Phase &p
     const Staggering at = components[f].staggering();
     const View B = phase.tensor[f];
     for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-      for (int j = 0; j < grid.points_end(1, at[1]); ++j)
+      for (int j = 0; j < grid.points_end(1, at[1]); ++j) {
+        if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < grid.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            B(i, j, k) = a == b ? 1.0 : 0.0;
+            if (const double rest = a == b ? 1.0 : 0.0; B(i, j, k) != rest) B(i, j, k) = rest;  // FieldBlock::at_rest
+      }
   }
   PetscFunctionReturn(0);
 }

@@ -43,7 +43,7 @@ struct TensorStage {
 PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next);
 
-/// B = I where it does not evolve, without transport. One ghost of phi.
-PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, Phase &phase);
+/// B = I where it does not evolve, without transport, on rows that were or are occupied. One ghost of phi.
+PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, const OccupiedRows &before, Phase &phase);
 
 }  // namespace eulastic

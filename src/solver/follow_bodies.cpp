@@ -1,11 +1,54 @@
-// Solver: what is done for bodies between the steps: phases at the time of the velocity, labels, contact.
+// Solver: what is done for bodies before and between the steps: phases whose cells are set, phases at the time of the
+// velocity, labels, contact.
 #include "bodies/contact.hpp"
 #include "bodies/labels.hpp"
+#include "physics/transport.hpp"
+#include "physics/unresolved.hpp"
 #include "solver/solver.hpp"
 
 #include <set>
 
 namespace eulastic {
+
+// Ghosts, B outside the bodies and active segments of a phase whose owned cells are set.
+PetscErrorCode Solver::settle(Phase &phase) {
+  PetscFunctionBeginUser;
+  const OccupiedRows before = phase.rows;
+  PetscCall(find_rows(phase));
+  PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
+  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+  PetscCall(exchange_->update(phase.tensor, tensor_width(), &phase.rows));  // wraps what did not come of transport
+  PetscCall(complete_exterior(phase, phase.tensor, &phase.rows));
+  PetscFunctionReturn(0);
+}
+
+// Ghosts and rows of phi, of which the owned cells are set; rows without any are left at rest. A phase that fills much
+// of the grid has nothing to rest from.
+PetscErrorCode Solver::find_rows(Phase &phase) {
+  PetscFunctionBeginUser;
+  constexpr double much = 0.25;
+  const int ghosts = grid_->spec().ghosts;
+  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
+  PetscCall(exchange_->update(phase.fraction, ghosts, &phase.rows));
+  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));  // with what others have
+  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
+  const Int3 &n = grid_->owned();
+  if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
+    for (FieldBlock *block : {&phase.fraction, &phase.tensor, &next_fraction_, &next_tensor_}) block->leave_rest();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
+    long count = 0;
+    PetscCall(find_and_forget(*grid_, evolve_rule(now_.phases[p]), extremes.trace[p], now_.phases[p], &count));
+    now_.forgotten += count;
+    if (count > 0) PetscCall(settle(now_.phases[p]));
+  }
+  PetscFunctionReturn(0);
+}
 
 // The next velocity and the slope beside it.
 FieldBlock Solver::idle_tensor(int components) {

@@ -4,7 +4,6 @@
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
-#include "physics/unresolved.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
@@ -68,28 +67,17 @@ PetscErrorCode Solver::prepare() {
     velocity_star_ = flow.part(2 * dim, dim);
     flow_ = std::move(flow);
   }
-  const int components = now_.phases[0].tensor.count();
-  next_tensor_ = spec_.staggered() ? work_.part(0, components) : FieldBlock(*grid_, components);  // Euler swaps it
+  next_tensor_ = spec_.staggered() ? work_.part(0, now_.phases[0].tensor.count()) : tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::thinc)
     interface_ = std::make_unique<InterfaceTransport>(*grid_, work_ ? work_.part(0, 3) : FieldBlock(*grid_, 3));
   else
-    next_fraction_ = FieldBlock(*grid_, 1);
+    next_fraction_ = FieldBlock::at_rest(*grid_, 1);
   for (Phase &phase : now_.phases) {
     phase.material.linear = phase.material.attached && damps_short_waves(*grid_, spec_.fluid, phase.material);
     PetscCall(settle(phase));
   }
-  PetscFunctionReturn(0);
-}
-
-// Ghosts, B outside the bodies and active segments of a phase whose owned cells are set.
-PetscErrorCode Solver::settle(Phase &phase) {
-  PetscFunctionBeginUser;
-  PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
-  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
-  PetscCall(reset_exterior(*grid_, evolve_rule(phase), phase));
-  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(complete_exterior(phase, phase.tensor, nullptr));
+  next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
+  stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
   PetscFunctionReturn(0);
 }
 
@@ -101,10 +89,9 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   fill_wall_ghosts_velocity(*grid_, spec_.walls, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
-    PetscCall(update_centre_ghosts(phase.fraction, grid_->spec().ghosts));
-    PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
+    PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width));
+    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
@@ -134,17 +121,6 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   now_.crossing_rate = 0;
   for (int d = 0; d < grid_->dimension(); ++d)
     now_.crossing_rate = std::max(now_.crossing_rate, extremes->speed[d] / grid_->spacing()[d]);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
-  PetscFunctionBeginUser;
-  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
-    long count = 0;
-    PetscCall(find_and_forget(*grid_, evolve_rule(now_.phases[p]), extremes.trace[p], now_.phases[p], &count));
-    now_.forgotten += count;
-    if (count > 0) PetscCall(settle(now_.phases[p]));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -251,7 +227,13 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
   const OccupiedRows next_rows = std::exchange(next_rows_, phase.rows);
   // Ghosts need an exchange if they needed one in what is swapped in: that may be of another phase.
-  const auto rows = [&] { return phase.rows.inside() && !next_rows.inside() ? nullptr : &phase.rows; };
+  OccupiedRows joined;
+  const auto rows = [&] {
+    if (!phase.rows.inside() || next_rows.inside()) return &phase.rows;
+    joined = phase.rows;
+    joined.join(next_rows);
+    return &joined;
+  };
   const int ghosts = grid_->spec().ghosts;
   if (spec_.interface == InterfaceScheme::thinc) {
     PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
@@ -261,8 +243,8 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     phase.fraction.swap(next_fraction_);
     PetscCall(exchange_->update_wrapped(phase.fraction, ghosts, rows()));
   }
-  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts);
-  PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));
+  PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
+  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
@@ -279,7 +261,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
   const bool identity = spec_.exterior == SolidExterior::identity;
-  const int wraps = identity ? Grid::stencil_width : ExteriorLayers::layers;
+  const int wraps = tensor_width();
   if (spec_.staggered()) {
     const ActiveSegments *first = identity ? nullptr : &phase.strained;
     PetscCall(
@@ -289,9 +271,8 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
         transport_tensor(*grid_, {rule, dt, true, &before, wraps}, now_.velocity, phase, next_tensor_, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
-    const ActiveSegments *stale = stale_.rows_y() > 0 ? &stale_ : nullptr;
     PetscCall(
-        transport_tensor(*grid_, {rule, dt, false, stale, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
+        transport_tensor(*grid_, {rule, dt, false, &stale_, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
@@ -299,14 +280,18 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
   PetscFunctionReturn(0);
 }
 
+// Ghosts of B that are read before it is extended, or at all.
+int Solver::tensor_width() const {
+  return spec_.exterior == SolidExterior::extrapolate ? ExteriorLayers::layers : Grid::stencil_width;
+}
+
 // Ghosts of B, after its extension outside the body where that is wanted. With `rows` transport has wrapped what it
 // wrote.
 PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  const bool extends = spec_.exterior == SolidExterior::extrapolate;
-  const int width = extends ? ExteriorLayers::layers : Grid::stencil_width;
+  const int width = tensor_width();
   PetscCall(rows ? exchange_->update_wrapped(tensor, width, rows) : exchange_->update(tensor, width));
-  if (extends) {
+  if (spec_.exterior == SolidExterior::extrapolate) {
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     fill_wall_ghosts_tensor(*grid_, tensor, 1, rows);  // what the limit of shear at walls sees
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));

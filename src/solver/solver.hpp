@@ -75,10 +75,12 @@ private:
   PetscErrorCode transport(Phase &phase, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                              const OccupiedRows *rows);
+  int tensor_width() const;
   PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
+  PetscErrorCode find_rows(Phase &phase);
   FieldBlock idle_tensor(int components);  ///< work space between the steps
 
   const Grid *grid_ = nullptr;
@@ -90,7 +92,7 @@ private:
   std::string crowded_;
   FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
-  ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I, once it was the B of a phase
+  ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I
   FieldBlock work_;         ///< shared by what the verbs need one after the other
   FieldBlock flow_;  ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
   SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time

@@ -57,10 +57,7 @@ struct Scene {
     phase.species = "solid";
     phase.material.shear_modulus = shear_modulus;
     phase.material.attached = attached;
-    phase.fraction = FieldBlock(grid, 1);
-    const auto &components = tensor_components(grid.dimension());
-    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-    for (int c = 0; c < phase.tensor.count(); ++c) phase.tensor.fill(c, components[c].a == components[c].b ? 1.0 : 0.0);
+    phase.empty(grid, false);
     set(grid, phase.fraction[0], at_centre, fraction);
     solver.state().phases.push_back(std::move(phase));
     return solver.state().phases.back();
