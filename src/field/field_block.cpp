@@ -58,7 +58,7 @@ FieldBlock::Memory FieldBlock::allocate(std::size_t values) {
     if (!memory) throw std::bad_alloc();
     return Memory(static_cast<double *>(memory), Free{false, 0});
   }
-  const std::size_t whole = (bytes + huge - 1) / huge * huge;
+  const std::size_t whole = bytes % huge < huge / 2 ? bytes : (bytes + huge - 1) / huge * huge;  // the last one as well
   auto *memory = static_cast<std::byte *>(map_pages(nullptr, whole + huge, MAP_ANONYMOUS, -1));
   const std::size_t before = -reinterpret_cast<std::uintptr_t>(memory) % huge;
   if (before > 0) (void)munmap(memory, before);
