@@ -27,8 +27,9 @@ void in_pieces(std::ptrdiff_t size, int fields, const Work &work) {
   });
 }
 
-// A file of ones in memory, or -1 where there are none of those.
-constexpr std::size_t ones_in_file = std::size_t{1} << 17;
+// A file of ones in memory, or -1 where there are none of those; not small, as each time it is mapped counts for the
+// system.
+constexpr std::size_t ones_in_file = std::size_t{1} << 19;
 int file_of_ones() {
   static const int file = [] {
     const int opened = memfd_create("ones", MFD_CLOEXEC);
