@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace eulastic;
 using namespace eulastic::test;
 
@@ -73,5 +76,41 @@ TEST(Exterior, LinesTakeTheSmallerSlope) {
     ASSERT_EQ(layers.extend(scene.grid, scene.solver.exchange(), phase.tensor), 0);
     EXPECT_EQ(xx.row(last + 1, 0)[3], line.next);
     EXPECT_EQ(xx.row(last + 2, 0)[3], line.after);
+  }
+}
+
+// A stretched disc around cell (m, n) of a periodic box, ready to step.
+void create_disc(int m, int n, Scene *scene) {
+  GridSpec grid;
+  grid.cells = {32, 32, 1};
+  grid.length = {32, 32, 1};
+  ASSERT_EQ(scene->create(PETSC_COMM_SELF, grid, {method_preset(MethodKind::fast), {}, {}}), 0);
+  const auto along = [](double x, int centre) { return std::remainder(x - centre, 32.); };
+  const auto distance = [&](double x, double y) { return std::hypot(along(x, m), along(y, n)); };
+  scene->add_phase(1, [&](double x, double y, double) { return std::clamp(6.5 - distance(x, y), 0., 1.); });
+  FieldBlock &tensor = scene->solver.state().phases[0].tensor;
+  for (int c = 0; c < tensor.count(); ++c)
+    set(scene->grid, tensor[c], tensor_components(2)[c].staggering(), [&](double x, double y, double) {
+      return (c < 2 ? 1.2 : 0) + .1 * std::sin(c + along(x, m) / 3 + along(y, n) / 5);
+    });
+  ASSERT_EQ(scene->solver.prepare(), 0);
+}
+
+TEST(Exterior, IsTheSameAcrossPeriodicSides) {
+  Scene inside;
+  create_disc(16, 16, &inside);
+  const Phase &expected = inside.solver.state().phases[0];
+  EXPECT_NE(expected.tensor[0](16 + 8, 16, 0), 1);  // extended
+  for (int shift = 0; shift < 64; ++shift) {        // along x, along the diagonal
+    const int m = shift % 32, n = shift < 32 ? 16 : m;
+    Scene across;
+    create_disc(m, n, &across);
+    const Phase &phase = across.solver.state().phases[0];
+    for (int c = 0; c < phase.tensor.count(); ++c)
+      for (int j = 0; j < 32; ++j)
+        for (int i = 0; i < 32; ++i)
+          ASSERT_NEAR(phase.tensor[c]((i + m) % 32, (j + n) % 32, 0),
+                      expected.tensor[c]((i + 16) % 32, (j + 16) % 32, 0), 1e-13)
+              << "B " << c << " at " << i << ", " << j << " of a disc at " << m << ", " << n;
   }
 }
