@@ -244,7 +244,7 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     PetscCall(exchange_->update_wrapped(phase.fraction, ghosts, rows()));
   }
   PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
-  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
+  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, rows());
   const ActiveSegments before = std::move(phase.strained);
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
