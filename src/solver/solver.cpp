@@ -285,12 +285,11 @@ int Solver::tensor_width() const {
   return spec_.exterior == SolidExterior::extrapolate ? ExteriorLayers::layers : Grid::stencil_width;
 }
 
-// Ghosts of B, after its extension outside the body where that is wanted. With `rows` transport has wrapped what it
-// wrote.
+// Ghosts of B, after its extension outside the body where that is wanted. Rows that hold anything are wrapped
+// already.
 PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  const int width = tensor_width();
-  PetscCall(rows ? exchange_->update_wrapped(tensor, width, rows) : exchange_->update(tensor, width));
+  PetscCall(exchange_->update_wrapped(tensor, tensor_width(), rows));
   if (spec_.exterior == SolidExterior::extrapolate) {
     PetscCall(layers_.extend(*grid_, *exchange_, tensor));
     fill_wall_ghosts_tensor(*grid_, tensor, 1, rows);  // what the limit of shear at walls sees

@@ -65,7 +65,7 @@ public:
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
-  PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows = nullptr);
+  PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows);
   double speed_scale(double dt) const;
   EvolveRule evolve_rule(const Phase &phase) const;
   PetscErrorCode transport_to_middle(double dt);
