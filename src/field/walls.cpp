@@ -39,7 +39,7 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
     for (int m = first; m < first + width; ++m)
       for (int i = from; i < to; ++i) row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
   };
-  constexpr int ahead = 2;
+  constexpr int ahead = 4;
   const int low_j = plane.begin[1], low_k = plane.begin[2], lines = plane.end[1] - low_j, parts = row_parts(grid);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(static_cast<std::size_t>(lines) * (plane.end[2] - low_k), part, parts);
@@ -48,7 +48,8 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
       if (d == 1)  // rows a plane apart, which processors do not foresee
         for (int m = first; m < first + width; ++m)
-          prefetch(q.row(j, k + ahead) + wall + mirror - m * step + from, to - from);
+          for (const std::ptrdiff_t at : {mirror - m * step, m * step})
+            prefetch(q.row(j, k + ahead) + wall + at + from, to - from);
       reflect_row(q.row(j, k) + wall);
     }
   });
