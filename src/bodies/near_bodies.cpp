@@ -8,14 +8,14 @@ namespace {
 
 constexpr double nobody = std::numeric_limits<double>::infinity();
 
-// Local cells that exist: owned ones and `reach` layers around them, none behind walls.
+// The owned cells and `reach` layers of those around them.
 struct Box {
   Int3 begin{}, end{};
   Box(const Grid &grid, int reach) {
     for (int d = 0; d < 3; ++d) {
-      const int ghosts = grid.layout().ghosts[d] > 0 ? reach : 0;
-      begin[d] = grid.touches_low(d) ? 0 : -ghosts;
-      end[d] = grid.owned()[d] + (grid.touches_high(d) ? 0 : ghosts);
+      const Grid::Range near = grid.points_near(d, false, reach);
+      begin[d] = near.begin;
+      end[d] = near.end;
     }
   }
   Box around(const Int3 &cell, int reach) const {

@@ -186,21 +186,12 @@ bool GhostExchange::is_copied(int d) const {
   return d < grid_->dimension() && grid_->boundary(d) == Boundary::periodic && grid_->processors(d) == 1;
 }
 
-// Points along d that exist, `width` ghosts included where there are any.
-GhostExchange::Range GhostExchange::reach(int d, int width) const {
-  const Layout &own = grid_->layout();
-  const int ghosts = std::min(width, own.ghosts[d]);
-  Range range{-ghosts, own.cells[d] + ghosts};
-  if (grid_->is_wall(d))
-    range = {std::max(range.begin, -own.begin[d]), std::min(range.end, grid_->cells()[d] + 1 - own.begin[d])};
-  return range;
-}
-
 // Ghost rows across a periodic y and z that are not split: y first, in the planes that z takes its own from.
 void GhostExchange::copy_rows(FieldBlock &block, int width) const {
   const Int3 &n = block.layout().cells;
-  const Range x = is_copied(0) ? Range{0, n[0]} : reach(0, width), y = reach(1, width);
-  const Range z = is_copied(2) ? Range{0, n[2]} : reach(2, width);
+  const Grid::Range x = is_copied(0) ? Grid::Range{0, n[0]} : grid_->points_near(0, true, width),
+                    y = grid_->points_near(1, true, width);
+  const Grid::Range z = is_copied(2) ? Grid::Range{0, n[2]} : grid_->points_near(2, true, width);
   const std::size_t bytes = sizeof(double) * (x.end - x.begin);
   const int parts = row_parts(*grid_);
   const auto copy = [&](int d, View q, int j, int k) {  // from one end of the line of rows to the other, layer by layer
@@ -211,7 +202,7 @@ void GhostExchange::copy_rows(FieldBlock &block, int width) const {
       std::memcpy(low + last + m * s, low + (m - 1) * s, bytes);
     }
   };
-  const auto copy_all = [&](int d, const Range &lines) {
+  const auto copy_all = [&](int d, const Grid::Range &lines) {
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(lines.end - lines.begin, part, parts);
       for (int f = 0; f < block.count(); ++f)
@@ -232,7 +223,7 @@ void GhostExchange::wrap_rows(FieldBlock &block, int width, Skip skip) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
   if (!grid_->wraps_x()) return;
   const Layout &own = block.layout();
-  const Range y = reach(1, width), z = reach(2, width);
+  const Grid::Range y = grid_->points_near(1, true, width), z = grid_->points_near(2, true, width);
   const int n = own.cells[0];
   const int parts = row_parts(*grid_);
   in_parallel(parts, parts, [&](int part) {

@@ -75,10 +75,6 @@ private:
   template <class Copy>
   void for_rows(FieldBlock &block, const std::vector<Message> &messages, double *copies, const Copy &copy) const;
   PetscErrorCode end_rows(FieldBlock &block, int width, const OccupiedRows *rows);
-  struct Range {
-    int begin, end;
-  };
-  Range reach(int d, int width) const;
   bool is_copied(int d) const;
   void copy_rows(FieldBlock &block, int width) const;
   template <class Skip>

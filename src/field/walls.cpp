@@ -20,8 +20,9 @@ struct Plane {
   }
 };
 
-// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width. Runs over all ghosts
-// of the other directions, so that doing the directions in turn fills edges and corners.
+// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width, or as far as there is
+// memory behind a neighbour's wall. Runs over all ghosts of the other directions, so that doing the directions in turn
+// fills edges and corners.
 struct Reflection {
   double sign, twice_wall;
 };
@@ -29,11 +30,14 @@ struct Reflection {
 void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows = nullptr) {
   const std::ptrdiff_t s = q.stride(d);
-  const int n = grid.layout().cells[d], last = high ? n - 1 : 0;  // before the wall
-  const Plane plane(grid.layout(), d);
-  const std::ptrdiff_t step = high ? s : -s;                      // outward
-  const std::ptrdiff_t wall = high ? n * s : staggered ? 0 : -s;  // first point on (staggered) or behind the wall
-  const std::ptrdiff_t mirror = staggered ? 0 : -step;            // mirror image of that point
+  const Layout &own = grid.layout();
+  const int last = (high ? grid.cells()[d] - 1 : 0) - own.begin[d];  // before the wall
+  width = std::min(width, own.ghosts[d] + (high ? own.cells[d] - 1 - last : last));
+  if (width <= 0) return;
+  const Plane plane(own, d);
+  const std::ptrdiff_t step = high ? s : -s;                                    // outward
+  const std::ptrdiff_t wall = high || !staggered ? last * s + step : last * s;  // first point on or behind the wall
+  const std::ptrdiff_t mirror = staggered ? 0 : -step;                          // mirror image of that point
   const int from = plane.begin[0], to = plane.end[0], first = staggered ? 1 : 0;
   const auto reflect_row = [=](double *row) {
     for (int m = first; m < first + width; ++m)
@@ -109,8 +113,7 @@ void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View 
                            const OccupiedRows *rows) {
   for (int d = 0; d < grid.dimension(); ++d)
     for (const bool high : {false, true})
-      if (high ? grid.touches_high(d) : grid.touches_low(d))
-        reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
+      if (grid.is_wall(d)) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
 void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {

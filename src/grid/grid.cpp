@@ -102,6 +102,14 @@ Layout Grid::make_layout(const Int3 &position) const {
   return layout;
 }
 
+Grid::Range Grid::points_near(int d, bool staggered, int layers) const {
+  const int ghosts = std::min(layers, layout_.ghosts[d]), begin = layout_.begin[d];
+  const Range near{-ghosts, layout_.cells[d] + ghosts};
+  if (!is_wall(d)) return near;
+  const int end = spec_.cells[d] + staggered - begin;
+  return {std::max(near.begin, -begin), touches_high(d) ? end : std::min(near.end, end)};
+}
+
 Int3 Grid::place_of(int rank) const {
   const int px = processors(0), py = processors(1);
   return {rank % px, rank / px % py, rank / px / py};

@@ -106,6 +106,12 @@ public:
   /// One past the last entry of the points a field really has on this rank: one more than the cells where the
   /// field is staggered and the rank touches the high wall.
   int points_end(int d, bool staggered) const { return layout_.cells[d] + (staggered && touches_high(d) ? 1 : 0); }
+  struct Range {
+    int begin, end;
+  };
+  /// Local indices along d of the points a field really has here, with `layers` of ghosts, or as many as there are:
+  /// none behind walls, those of a neighbour too.
+  Range points_near(int d, bool staggered, int layers) const;
   /// All owned rows, whole.
   std::vector<Segment> rows() const;
 

@@ -15,15 +15,14 @@ namespace {
 
 constexpr unsigned char outside = 255;
 
-// A box of local points around the owned ones, widened by `reach` where there is something to read: everywhere but
-// behind walls.
+// The owned points of a field and `reach` layers of those around them.
 struct Reach {
   Int3 begin{}, end{};
   Reach(const Grid &grid, const Staggering &at, int reach) {
     for (int d = 0; d < 3; ++d) {
-      const int ghosts = grid.layout().ghosts[d] > 0 ? reach : 0;
-      begin[d] = grid.touches_low(d) ? 0 : -ghosts;
-      end[d] = grid.touches_high(d) ? grid.points_end(d, at[d]) : grid.owned()[d] + ghosts;
+      const Grid::Range near = grid.points_near(d, at[d], reach);
+      begin[d] = near.begin;
+      end[d] = near.end;
     }
   }
   bool contains(const Int3 &p) const {

@@ -1,6 +1,7 @@
 #include "physics/interface.hpp"
 
 #include "base/events.hpp"
+#include "field/walls.hpp"
 #include "grid/threads.hpp"
 #include "kernels/thinc.hpp"
 
@@ -72,27 +73,6 @@ void sweep_band(const Grid &grid, const Sweep &t, const ActiveSegments &cells, c
   pass(apply_fluxes, cells, t.cells);
 }
 
-// phi of the cell behind each wall is that of the cell before it; also behind the wall of a neighbour.
-void reflect_at_walls(const Grid &grid, View phi) {
-  const Layout &own = grid.layout();
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      const int behind = (high ? grid.cells()[d] : -1) - own.begin[d], before = behind + (high ? -1 : 1);
-      if (!grid.is_wall(d) || behind < -own.ghosts[d] || behind >= own.cells[d] + own.ghosts[d]) continue;
-      Int3 begin, end;
-      for (int e = 0; e < 3; ++e) {
-        begin[e] = e == d ? 0 : -own.ghosts[e];
-        end[e] = e == d ? 1 : own.cells[e] + own.ghosts[e];
-      }
-      const std::ptrdiff_t s = phi.stride(d);
-      for (int k = begin[2]; k < end[2]; ++k)
-        for (int j = begin[1]; j < end[1]; ++j) {
-          double *row = phi.row(j, k);
-          for (int i = begin[0]; i < end[0]; ++i) row[i + behind * s] = row[i + before * s];
-        }
-    }
-}
-
 // Directions of a step: every one is first, in the middle and last equally often, and each order is followed by the
 // opposite one.
 Int3 order_of_directions(int dimension, long step) {
@@ -126,7 +106,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const Int3 order = order_of_directions(dimension, step);
   const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
   const View phi = fraction[0], solid = work_[2];
-  reflect_at_walls(*grid_, phi);
+  fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
   cells_.build_band(*grid_, phi, rows, dimension);
   faces_.build_faces(*grid_, cells_);
   in_parts_of(cells_.all(), *grid_, [&](const Segment *begin, const Segment *end) {
@@ -138,7 +118,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
     Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, work_[0], work_[1], solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
     sweep_band(*grid_, sweep, cells_, faces_);
-    reflect_at_walls(*grid_, phi);
+    fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
   }
   const double slope_flops = dimension == 2 ? kernels::interface_slope_flops_2d : kernels::interface_slope_flops_3d;
   scope.flops(dimension * (cells_.points() * (slope_flops + kernels::apply_flux_flops) +
