@@ -27,32 +27,39 @@ struct RowExtremes {
 };
 
 // Of |value(i)|.
-template <class Value>
-EULASTIC_INLINE RowExtremes extremes_of(int begin, int end, Value value) {
+// `counts(i)`: whether a value may be the largest; a bad one is bad wherever it is.
+template <class Value, class Counts>
+EULASTIC_INLINE RowExtremes extremes_of(int begin, int end, Value value, Counts counts) {
   double largest = 0;
   bool bad = false;
 #pragma omp simd reduction(max : largest) reduction(| : bad)
   for (int i = begin; i < end; ++i) {
-    const double a = __builtin_fabs(value(i));
-    largest = a > largest ? a : largest;
+    const double a = __builtin_fabs(value(i)), counted = counts(i) ? a : 0;
+    largest = counted > largest ? counted : largest;
     bad |= !(a <= std::numeric_limits<double>::max());
   }
   return {largest, bad};
 }
 
 EULASTIC_CLONES RowExtremes row_extremes(const double *q, int begin, int end) {
-  return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return q[i]; });
+  return extremes_of(
+      begin, end, [=](int i) EULASTIC_BODY { return q[i]; }, [](int) EULASTIC_BODY { return true; });
 }
 
-// Of tr B; 2-D: B_zz = 1, zz is null.
-EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, const double *zz, int begin, int end) {
-  if (!zz) return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + 1.0; });
-  return extremes_of(begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + zz[i]; });
+// Of tr B where phi is at least that; 2-D: B_zz = 1, zz is null.
+EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, const double *zz, const double *phi,
+                                           double least, int begin, int end) {
+  const auto evolves = [=](int i) EULASTIC_BODY { return phi[i] >= least; };
+  if (!zz)
+    return extremes_of(
+        begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + 1.0; }, evolves);
+  return extremes_of(
+      begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + zz[i]; }, evolves);
 }
 
 // Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
 std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, const FieldBlock &velocity,
-                                     const std::vector<Phase> &phases) {
+                                     const std::vector<Phase> &phases, const std::vector<double> &least) {
   const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
   const RowPart rows = row_part(grid, part, parts);
   std::vector<double> largest(4 + phases.size());
@@ -84,7 +91,7 @@ std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, cons
       const int end = std::min(s.i_end, n[0]);
       const auto row = [&](int f) { return phase.tensor[f].row(s.j, s.k); };
       const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
-      const RowExtremes r = trace_extremes(xx, yy, zz, s.i_begin, end);
+      const RowExtremes r = trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), least[p], s.i_begin, end);
       most = std::max(most, r.largest);
       if (r.bad) {
         mark(xx, s.i_begin, end, s.j, s.k);
@@ -130,11 +137,12 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
 }
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                                FlowExtremes *extremes) {
+                                const std::vector<double> &least, FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   const int parts = row_parts(grid);
   std::vector<std::vector<double>> found(parts);
-  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases); });
+  in_parallel(parts, parts,
+              [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases, least); });
   std::vector<double> largest = found[0];
   for (const std::vector<double> &some : found)
     for (std::size_t n = 0; n < some.size(); ++n) largest[n] = std::max(largest[n], some[n]);

@@ -16,8 +16,9 @@ struct FlowExtremes {
   double max_speed() const;   ///< of the components
 };
 
+/// `least`: the solid fraction of each phase from which on B is evolved.
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                                FlowExtremes *extremes);
+                                const std::vector<double> &least, FlowExtremes *extremes);
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
 double stretch_squared(double trace, int dimension);

@@ -113,7 +113,7 @@ std::vector<double> Solver::evolved_fraction() const {
 
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, extremes));
+  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
   double scale = extremes->max_speed();
   for (const auto &pair : spec_.walls.motion)
     for (const WallMotion &wall : pair) scale = std::max(scale, wall.speed());
