@@ -131,9 +131,9 @@ anywhere. tests/convergence/tube_test.cpp asserts the order.
 {rows}
 
 u: root mean square over the lumen, in parts of the largest; order: from half as many cells, it scatters as the surface
-cuts the cells otherwise; flow rate: relative. From 40 cells on the wall is four cells thick where it is thinnest, and
-its velocity decays to nothing; two or three cells are too few. The last line is `-vessel_attached false`, which treats the
-wall like a free body ([method.md](method.md), section 7): it stands as well, but its surface is of first order and
+cuts the cells otherwise; flow rate: relative. From 40 cells on the wall is four cells thick where it is thinnest; in
+two or three the errors are larger than the order says. The last line is `-vessel_attached false`, which treats the wall like a
+free body ([method.md](method.md), section 7): it stands as well, but its surface is of first order and
 the lumen acts as if it were narrower.
 """
 
