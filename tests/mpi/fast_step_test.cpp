@@ -8,6 +8,14 @@ using namespace eulastic::test;
 
 namespace {
 
+std::uint64_t hash_at(Scene &scene, double end, int steps) {
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  EXPECT_EQ(scene.run(end, steps), 0);
+  std::uint64_t hash = 0;
+  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &hash), 0);
+  return hash;
+}
+
 // Hash after some steps of a channel with a moving upper wall, a slab on the lower wall and an off-centre sphere.
 std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, const Int3 &processors) {
   Scene scene;
@@ -34,11 +42,7 @@ std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, 
     for (Phase &phase : scene.solver.state().phases)
       phase.material.law = Law::mooney_rivlin, phase.material.c1 = 0.3, phase.material.c2 = 0.2,
       phase.material.c3 = 0.1;
-  EXPECT_EQ(scene.solver.prepare(), 0);
-  EXPECT_EQ(scene.run(0.3, 15), 0);
-  std::uint64_t hash = 0;
-  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &hash), 0);
-  return hash;
+  return hash_at(scene, 0.3, 15);
 }
 
 TEST(FastStep, SameBitsOnAnyRanks) {
@@ -76,11 +80,7 @@ std::uint64_t thin_hash(MPI_Comm comm, const Int3 &processors) {
         return std::clamp(0.5 + (std::hypot(x - 2.83, z - 1.23) - 0.57) / 0.3, 0., 1.);
       },
       true);
-  EXPECT_EQ(scene.solver.prepare(), 0);
-  EXPECT_EQ(scene.run(1.5, 20), 0);
-  std::uint64_t hash = 0;
-  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &hash), 0);
-  return hash;
+  return hash_at(scene, 1.5, 20);
 }
 
 TEST(FastStep, SameBitsWhereGhostsReachBeyondANeighboursWall) {
