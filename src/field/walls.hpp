@@ -48,8 +48,8 @@ void close_wall_faces(const Grid &grid, View component, int d);
 /// Fills `width` layers behind every wall this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); wall faces are set to 0.
 void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width);
-/// Even reflection of one field of the given staggering, also behind the wall of a neighbour as thin as the ghosts
-/// reach; not where `rows`, if it is given, is idle before the wall.
+/// Even reflection of one field of the given staggering, also behind a neighbour's wall where ghosts reach beyond it;
+/// not where `rows`, if it is given, is idle before the wall.
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
 /// All components of a left Cauchy-Green block.
