@@ -3,12 +3,22 @@
 #include "grid/threads.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 namespace eulastic {
 namespace {
 
 constexpr int vector_length = 8;
+
+// Whether one of n flags is set, n <= 8.
+bool any_set(const unsigned char *flags, int n) {
+  std::uint64_t together = 0;
+  static_assert(sizeof(together) == vector_length);
+  if (n < vector_length) return std::memchr(flags, 1, n) != nullptr;
+  std::memcpy(&together, flags, sizeof(together));
+  return together != 0;
+}
 
 // to |= from, bytes; where they are the same, the later ones are read before they are written.
 void join(std::size_t n, const unsigned char *from, unsigned char *to) {
@@ -54,7 +64,7 @@ void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::
   const std::size_t row_begin = segments->size();
   for (int i = 0; marked && i < points_x_; i += vector_length) {
     const int count = std::min(vector_length, points_x_ - i);
-    if (std::memchr(marked + i, 1, count) == nullptr) continue;
+    if (!any_set(marked + i, count)) continue;
     const int begin = begin_[0] + i, end = begin + count;
     if (segments->size() > row_begin && segments->back().i_end == begin)
       segments->back().i_end = end;
