@@ -226,10 +226,11 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
 PetscErrorCode Solver::transport(Phase &phase, double dt) {
   PetscFunctionBeginUser;
   const OccupiedRows next_rows = std::exchange(next_rows_, phase.rows);
-  // Ghosts need an exchange if they needed one in what is swapped in: that may be of another phase.
+  // Ghosts need an exchange, and those behind walls values, if they did in what is swapped in: that may be of another
+  // phase.
   OccupiedRows joined;
   const auto rows = [&] {
-    if (!phase.rows.inside() || next_rows.inside()) return &phase.rows;
+    if (next_rows.inside()) return &phase.rows;
     joined = phase.rows;
     joined.join(next_rows);
     return &joined;
