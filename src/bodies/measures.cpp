@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
+#include "field/exact_sum.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -211,11 +212,8 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       some[2 + b] = std::max(some[2 + b], trace);
     });
   });
-  std::vector<double> most = found[0];
-  for (const std::vector<double> &some : found)
-    for (std::size_t m = 0; m < some.size(); ++m) most[m] = std::max(most[m], some[m]);
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, most.data(), static_cast<int>(most.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
+  std::vector<double> most;
+  PetscCall(reduce_maxima(grid.comm(), found, &most));
   const Largest largest{most[0], most[1], {most.begin() + 2, most.end()}};
   BodySums sums(bodies(), all_sums);
   const std::vector<Int3> references = within_box(grid, references_);

@@ -112,9 +112,9 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
   const int dimension = grid.dimension(), n = grid.owned()[0], first = grid.layout().begin[0];
-  std::vector<std::array<double, maxima>> found(row_parts(grid));
+  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(maxima, 0.0));
   const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
-    std::array<double, maxima> most{};
+    std::vector<double> &most = found[part.number];
     RowMeasures measure(grid, velocity);
     std::vector<double> energy(n);
     for (const Segment &row : part.rows(grid)) {
@@ -136,15 +136,12 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
         sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
       }
     }
-    found[part.number] = most;
   };
   scope.flops(grid.owned_count() * (dimension * (10 + 4 * dimension) + phases.size() * (2 * dimension + 3)));
   std::vector<double> sum(first_of_phases + 2 * phases.size());
   PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add, sum.data()));
-  std::array<double, maxima> maximum{};
-  for (const auto &some : found)
-    for (int m = 0; m < maxima; ++m) maximum[m] = std::max(maximum[m], some[m]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maximum.data(), maxima, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  std::vector<double> maximum;
+  PetscCall(reduce_maxima(grid.comm(), found, &maximum));
 
   FlowMeasures &m = *measures;
   const double volume = grid.cell_volume(), cells = grid.cell_count();

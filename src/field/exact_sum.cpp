@@ -165,6 +165,17 @@ PetscErrorCode reduce_parts(MPI_Comm comm, std::vector<ExactSums> &parts, double
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode reduce_maxima(MPI_Comm comm, const std::vector<std::vector<double>> &parts,
+                             std::vector<double> *result) {
+  PetscFunctionBeginUser;
+  *result = parts[0];
+  for (const std::vector<double> &part : parts)
+    for (std::size_t n = 0; n < part.size(); ++n) (*result)[n] = std::max((*result)[n], part[n]);
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, result->data(), static_cast<int>(result->size()), MPI_DOUBLE, MPI_MAX, comm));
+  PetscFunctionReturn(0);
+}
+
 std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering,
                           std::uint64_t salt) {
   const Layout &own = grid.layout();

@@ -71,6 +71,8 @@ private:
 
 /// The sums of all parts over all ranks. Collective; `parts` start again from zero.
 PetscErrorCode reduce_parts(MPI_Comm comm, std::vector<ExactSums> &parts, double *result);
+/// The largest of every number of all parts, as many in each, over all ranks. Drops NaN. Collective.
+PetscErrorCode reduce_maxima(MPI_Comm comm, const std::vector<std::vector<double>> &parts, std::vector<double> *result);
 
 /// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
 template <class Add>

@@ -1,5 +1,6 @@
 #include "physics/limits.hpp"
 
+#include "field/exact_sum.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
@@ -143,11 +144,8 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
   std::vector<std::vector<double>> found(parts);
   in_parallel(parts, parts,
               [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases, least); });
-  std::vector<double> largest = found[0];
-  for (const std::vector<double> &some : found)
-    for (std::size_t n = 0; n < some.size(); ++n) largest[n] = std::max(largest[n], some[n]);
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
+  std::vector<double> largest;
+  PetscCall(reduce_maxima(grid.comm(), found, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};
   extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
   extremes->trace.assign(largest.begin() + 4, largest.end());
