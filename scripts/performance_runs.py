@@ -72,7 +72,7 @@ def write_tables(tables):
     page = PAGE.read_text()
     for name, text in tables.items():
         page, count = re.subn(rf"<!-- table {name} -->.*?<!-- end -->",
-                              lambda _: f"<!-- table {name} -->\n\n{text}\n\n<!-- end -->", page, flags=re.S)
+                              lambda _: f"<!-- table {name} -->\n{text}\n<!-- end -->", page, flags=re.S)
         if count != 1:
             sys.exit(f"docs/performance.md: no place for the table {name}")
     PAGE.write_text(page)
