@@ -2,6 +2,7 @@
 
 #include "bodies/expected_colours.hpp"
 #include "io/fail_together.hpp"
+#include "solver/solver.hpp"
 
 #include <unistd.h>
 #include <algorithm>
@@ -23,27 +24,24 @@ double phase_fields(const Config &config) {
   return (1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6)) * (config.method.staggered() ? 2 : 1);
 }
 
-/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; divergence and, but for the paper's
-/// ACM, increment, with work space or by themselves; what the parts of the method add; the phases.
+/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
+/// add; the phases.
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
   const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
-  const bool work = method.staggered() || method.viscous == ViscousScheme::rkl,
-             thinc = method.interface == InterfaceScheme::thinc;
-  double sum = 2 * dimension + 1 + (work ? 6 : method.acm_of_the_paper() ? 1 : 2);
+  double sum = 2 * dimension + 1 + method.begins_divergence() + Solver::work_fields(method, dimension, phases > 0);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
-    sum += (work ? 0 : 4) + method.acm_memory;
+    sum += method.acm_memory;
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (phases == 0) return sum;
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
-  if (!thinc) sum += 1;
-  if (thinc && !work) sum += 3;
+  if (method.interface == InterfaceScheme::weno5) sum += 1;
   sum += phases * phase_fields(config);
   return sum;
 }

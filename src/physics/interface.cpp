@@ -105,7 +105,9 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const int dimension = grid_->dimension();
   const Int3 order = order_of_directions(dimension, step);
   const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
-  const View phi = fraction[0], solid = work_[2];
+  WorkSpace::Lease work;
+  PetscCall(work_->take("fluxes of the interface", work_fields, &work));
+  const View phi = fraction[0], slope = work.fields()[0], flux = work.fields()[1], solid = work.fields()[2];
   fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
   cells_.build_band(*grid_, phi, rows, dimension);
   faces_.build_faces(*grid_, cells_);
@@ -115,7 +117,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   });
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, work_[0], work_[1], solid};
+    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, slope, flux, solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
     sweep_band(*grid_, sweep, cells_, faces_);
     fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);

@@ -4,7 +4,7 @@
 // solenoidal velocity keeps the volume to round-off, and 0 <= phi <= 1 as long as sum |u_d| dt/h_d < 1/2.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/work_space.hpp"
 #include "grid/active_segments.hpp"
 
 namespace eulastic {
@@ -14,8 +14,9 @@ public:
   /// Layers of ghosts that `advance` reads of the solid fraction; of the velocity it reads three.
   static constexpr int ghosts = 4;
 
-  /// `work`: three fields that nobody else needs during `advance`.
-  InterfaceTransport(const Grid &grid, FieldBlock work) : grid_(&grid), work_(std::move(work)) {}
+  static constexpr int work_fields = 3;  ///< of the work space, during `advance`
+
+  InterfaceTransport(const Grid &grid, WorkSpace &work) : grid_(&grid), work_(&work) {}
 
   /// Moves `fraction`, of which `rows` are occupied, over dt with face velocities. The order of directions follows from
   /// `step`: all of them in turn, each after its mirror image. Nothing is communicated: ghosts are moved along and are
@@ -24,11 +25,10 @@ public:
                          FieldBlock &fraction);
   /// Cells of the interface band in the last `advance`, ghosts included.
   double band_cells() const { return cells_.points(); }
-  std::size_t bytes() const { return work_.bytes(); }
 
 private:
   const Grid *grid_;
-  FieldBlock work_;  ///< slope, flux, whether the cell began as solid
+  WorkSpace *work_;
   ActiveSegments cells_, faces_;
 };
 

@@ -9,7 +9,7 @@
 namespace eulastic {
 
 PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options,
-                                      FieldBlock work) {
+                                      WorkSpace &work) {
   PetscFunctionBeginUser;
   PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= SweepSums::most, grid.comm(),
              PETSC_ERR_ARG_OUTOFRANGE, "sweeps %d, memory %d", options.sweeps_max, options.memory);
@@ -20,10 +20,8 @@ PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange,
     multigrid_ = std::make_unique<Multigrid>();
     PetscCall(multigrid_->create(grid));
   }
-  work_ = std::move(work);
-  residual_ = work_.part(0, 1);
-  before_ = work_.part(1, 1);
-  direction_ = work_.part(2, 1);
+  work_ = &work;
+  PetscCall(work.reserve(work_fields));
   if (options.memory > 0) memory_ = FieldBlock(grid, options.memory);
   if (options.memory == 0 && options.multigrid) own_scratch_ = FieldBlock(grid, 1);
   PetscFunctionReturn(0);
@@ -40,7 +38,7 @@ FieldBlock *AcmSweepSolver::memory() {
 }
 
 std::size_t AcmSweepSolver::bytes() const {
-  return work_.bytes() + memory_.bytes() + own_scratch_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
+  return memory_.bytes() + own_scratch_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
 }
 
 PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {
@@ -63,6 +61,11 @@ struct AcmSweepSolver::Course {
 PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
+  WorkSpace::Lease lease;
+  PetscCall(work_->take("pressure sweeps", work_fields, &lease));
+  residual_ = lease.part(0, 1);
+  before_ = lease.part(1, 1);
+  direction_ = lease.part(2, 1);
   Course course{dt, increment, memory_ ? divergence[0] : residual_[0]};
   if (memory_) {
     if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
@@ -78,7 +81,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     PetscCall(update_ghosts(residual_, Multigrid::halo));
     if (!multigrid_) sums_.start(*grid_, 1);
   }
-  FieldBlock correction = work_.part(3, 1), scratch;  // multigrid may swap them
+  FieldBlock correction = lease.part(3, 1), scratch;  // multigrid may swap them
   if (multigrid_) scratch = memory_ ? memory_.part(newest_, 1) : own_scratch_.part(0, 1);
   for (int s = 1; s <= options_.sweeps_max && !course.done; ++s) {
     if (multigrid_) {

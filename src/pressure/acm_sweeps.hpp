@@ -5,6 +5,7 @@
 // residuals). Without multigrid D itself takes the place of V(D), as in (11). Scalars only.
 #pragma once
 
+#include "field/work_space.hpp"
 #include "pressure/multigrid.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "pressure/sweep_passes.hpp"
@@ -19,10 +20,9 @@ struct AcmSweepOptions {
 
 class AcmSweepSolver final : public PressureSolver {
 public:
-  static constexpr int work_fields = 4;
-  /// Collective; `grid` and `exchange` must outlive the solver. `work`: fields that nobody else uses during a solve;
-  /// they keep nothing from one to the next.
-  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options, FieldBlock work);
+  static constexpr int work_fields = 4;  ///< of the work space, during a solve
+  /// Collective; `grid`, `exchange` and `work` must outlive the solver.
+  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
 
   /// The increment has zero mean. It is NaN where D is not finite anywhere.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
@@ -44,12 +44,13 @@ private:
   GhostExchange *exchange_ = nullptr;
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
-  FieldBlock work_, residual_, before_, direction_;  ///< the first holds the others
-  FieldBlock own_scratch_;                           ///< without memory
-  FieldBlock memory_;                                ///< the newest increment is newest_
-  int newest_ = 0;                                   ///< then those after it, around the block
-  std::vector<ConstView> directions_;                ///< of this sweep, but for d
-  RowSums sums_;                                     ///< of this sweep or, once it is done, of the next
+  WorkSpace *work_ = nullptr;
+  FieldBlock residual_, before_, direction_;  ///< of the work space, during a solve
+  FieldBlock own_scratch_;                    ///< without memory
+  FieldBlock memory_;                         ///< the newest increment is newest_
+  int newest_ = 0;                            ///< then those after it, around the block
+  std::vector<ConstView> directions_;         ///< of this sweep, but for d
+  RowSums sums_;                              ///< of this sweep or, once it is done, of the next
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
   bool ghosts_of_memory_ = true;  ///< valid

@@ -15,15 +15,23 @@
 
 namespace eulastic {
 
+int Solver::work_fields(const Method &method, int dimension, bool bodies) {
+  const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
+  const bool formula = method.pressure == PressureKind::acm && !sweeps;
+  const int pressure = !method.begins_divergence() + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
+  const int momentum = method.begins_divergence() ? 0 : 2 * dimension;
+  const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
+  const int interface = bodies && method.interface == InterfaceScheme::thinc ? InterfaceTransport::work_fields : 0;
+  return std::max({pressure, momentum, tensor, interface});
+}
+
 PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   PetscFunctionBeginUser;
   grid_ = &grid;
   spec_ = spec;
   const int dim = grid.dimension();
   exchange_ = std::make_unique<GhostExchange>(grid);
-  constexpr int sweeps_work = AcmSweepSolver::work_fields;
-  if (spec.staggered() || spec.viscous == ViscousScheme::rkl)
-    work_ = FieldBlock(grid, sweeps_work + 2);  // also enough for what solids and stages need before the pressure
+  work_ = std::make_unique<WorkSpace>(grid);
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
   } else if (spec.pressure == PressureKind::ksp) {
@@ -34,20 +42,15 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
     pressure_solver_ = std::make_unique<AcmSolver>(grid);
   } else {
     auto sweeps = std::make_unique<AcmSweepSolver>();
-    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse},
-                             work_ ? work_.part(0, sweeps_work) : FieldBlock(grid, sweeps_work)));
+    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}, *work_));
     pressure_solver_ = std::move(sweeps);
   }
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  divergence_ = work_ ? work_.part(sweeps_work, 1) : FieldBlock(grid, 1);
-  if (!pressure_solver_->formula()) increment_ = work_ ? work_.part(sweeps_work + 1, 1) : FieldBlock(grid, 1);
+  if (spec.begins_divergence()) divergence_ = FieldBlock(grid, 1);
+  PetscCall(work_->reserve(work_fields(spec, dim, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
-  if (work_) {
-    viscous_.rate = work_.part(0, dim);
-    viscous_.before = work_.part(dim, dim);
-  }
   PetscFunctionReturn(0);
 }
 
@@ -63,13 +66,14 @@ PetscErrorCode Solver::prepare() {
     FieldBlock flow(*grid_, 3 * dim);
     std::copy_n(now_.velocity.data(), grid_->layout().size * dim, flow.data());
     now_.velocity = flow.part(0, dim);
-    viscous_.slope = flow.part(dim, dim);
+    slope_ = flow.part(dim, dim);
     velocity_star_ = flow.part(2 * dim, dim);
     flow_ = std::move(flow);
   }
-  next_tensor_ = spec_.staggered() ? work_.part(0, now_.phases[0].tensor.count()) : tensor_at_rest(*grid_);
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
+  if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::thinc)
-    interface_ = std::make_unique<InterfaceTransport>(*grid_, work_ ? work_.part(0, 3) : FieldBlock(*grid_, 3));
+    interface_ = std::make_unique<InterfaceTransport>(*grid_, *work_);
   else
     next_fraction_ = FieldBlock::at_rest(*grid_, 1);
   for (Phase &phase : now_.phases) {
@@ -131,8 +135,8 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
-                    increment_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
-                    work_.bytes() + flow_.bytes() + pressure_solver_->bytes() + (interface_ ? interface_->bytes() : 0);
+                    next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() +
+                    flow_.bytes() + pressure_solver_->bytes();
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
@@ -159,7 +163,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force())
-    PetscCall(compute_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, viscous_.slope));
+    PetscCall(compute_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, slope_));
   PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
 }
@@ -172,21 +176,26 @@ PetscErrorCode Solver::predict(double dt) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
   }
-  if (spec_.viscous == ViscousScheme::explicit_euler && !spec_.staggered()) {
+  if (spec_.begins_divergence()) {
     PetscCall(
         predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_, &divergence_));
     ++stages_;
     PetscFunctionReturn(0);
   }
   ForceSlope slope;
-  if (!now_.phases.empty() && spec_.linear_force()) slope = {&viscous_.slope, 1 / (0.5 * (now_.dt + dt))};
-  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, viscous_.rate,
+  if (!now_.phases.empty() && spec_.linear_force()) slope = {&slope_, 1 / (0.5 * (now_.dt + dt))};
+  const int dim = grid_->dimension();
+  WorkSpace::Lease rate, before;
+  PetscCall(work_->take("rate of momentum", dim, &rate));
+  PetscCall(work_->take("viscous stage before", dim, &before));
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, rate.fields(),
                           slope));
-  viscous_.now = velocity_star_.part(0, grid_->dimension());
+  SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
+  if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                            now_.phases, now_.velocity, viscous_, velocity_star_));
+                            now_.phases, now_.velocity, viscous, velocity_star_));
   stages_ += stages;
   PetscFunctionReturn(0);
 }
@@ -203,16 +212,21 @@ PetscErrorCode Solver::project(double dt) {
   const double rotation = spec_.staggered() ? 0.5 * spec_.fluid.kinematic_viscosity() : 0;
   const Real3 &h = grid_->spacing();
   const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
-  const bool begun = spec_.viscous == ViscousScheme::explicit_euler && !spec_.staggered();
-  PetscCall((begun ? complete_divergence : compute_divergence)(*grid_, density, velocity_star_, divergence_));
-  PetscCall(exchange_->update_wrapped(divergence_, 1));
-  fill_wall_ghosts_even(*grid_, at_centre, divergence_[0], 1);
+  const bool begun = spec_.begins_divergence();
+  WorkSpace::Lease of_velocity, increment;
+  if (!begun) PetscCall(work_->take("divergence", 1, &of_velocity));
+  if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
+  FieldBlock &divergence = begun ? divergence_ : of_velocity.fields();
+  PetscCall((begun ? complete_divergence : compute_divergence)(*grid_, density, velocity_star_, divergence));
+  PetscCall(exchange_->update_wrapped(divergence, 1));
+  fill_wall_ghosts_even(*grid_, at_centre, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
-  PetscCall(pressure_solver_->solve(dt, divergence_, now_.pressure, increment_));  // (10) or (11)
+  PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
-    PetscCall(correct_velocity(*grid_, density, dt, rotation, *formula, divergence_, velocity_star_, now_.pressure));
+    PetscCall(correct_velocity(*grid_, density, dt, rotation, *formula, divergence, velocity_star_, now_.pressure));
   else
-    PetscCall(correct_velocity(*grid_, density, dt, rotation, increment_, divergence_, velocity_star_, now_.pressure));
+    PetscCall(
+        correct_velocity(*grid_, density, dt, rotation, increment.fields(), divergence, velocity_star_, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }
@@ -265,11 +279,12 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
   const int wraps = tensor_width();
   if (spec_.staggered()) {
     const ActiveSegments *first = identity ? nullptr : &phase.strained;
-    PetscCall(
-        transport_tensor(*grid_, {rule, dt, false, first, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
-    PetscCall(complete_exterior(phase, next_tensor_, rows));
-    PetscCall(
-        transport_tensor(*grid_, {rule, dt, true, &before, wraps}, now_.velocity, phase, next_tensor_, phase.tensor));
+    WorkSpace::Lease stage;
+    PetscCall(work_->take("first stage of B", phase.tensor.count(), &stage));
+    FieldBlock &next = stage.fields();
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, first, wraps}, now_.velocity, phase, phase.tensor, next));
+    PetscCall(complete_exterior(phase, next, rows));
+    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before, wraps}, now_.velocity, phase, next, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     PetscCall(

@@ -3,6 +3,7 @@
 
 #include "bodies/measures.hpp"
 #include "field/ghost_exchange.hpp"
+#include "field/work_space.hpp"
 #include "physics/exterior.hpp"
 #include "physics/fluid.hpp"
 #include "physics/interface.hpp"
@@ -23,6 +24,8 @@ struct SolverSpec : Method {
 
 class Solver {
 public:
+  /// Fields of the work space that the method needs, in a scene with bodies or without.
+  static int work_fields(const Method &method, int dimension, bool bodies);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -90,12 +93,14 @@ private:
   State now_;
   BodyTracker bodies_;
   std::string crowded_;
-  FieldBlock velocity_star_, divergence_, increment_, next_fraction_, next_tensor_;
+  FieldBlock velocity_star_, next_fraction_;
+  FieldBlock divergence_;   ///< where the predictor begins it
+  FieldBlock next_tensor_;  ///< Euler
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I
-  FieldBlock work_;         ///< shared by what the verbs need one after the other
-  FieldBlock flow_;  ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
-  SuperTimeStepping viscous_;  ///< with the slope of the elastic force in time
+  std::unique_ptr<WorkSpace> work_;
+  FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
+  FieldBlock slope_;  ///< of the elastic force in time
   ExteriorLayers layers_;
   std::unique_ptr<InterfaceTransport> interface_;
   std::vector<Phase> phases_now_;  ///< copies for phases_now(), the first one's B an idle_tensor()

@@ -11,9 +11,10 @@ using namespace eulastic::test;
 namespace {
 
 struct Sweeper : PoissonScene {
+  WorkSpace work{grid};
   AcmSweepSolver solver;
   Sweeper(MPI_Comm comm, const GridSpec &spec, const AcmSweepOptions &options) : PoissonScene(comm, spec) {
-    EXPECT_EQ(solver.create(grid, *exchange, options, FieldBlock(grid, AcmSweepSolver::work_fields)), 0);
+    EXPECT_EQ(solver.create(grid, *exchange, options, work), 0);
   }
   // Solves to `relative` times the rms of the divergence.
   void solve(double relative) {

@@ -130,9 +130,8 @@ constexpr double cycle_bytes = cycle_finest + (cycle_finest + (8 + 8 + 16) + 16 
 void sweep(benchmark::State &state, bool multigrid) {
   verb(state, Filling::all, [&](Scratch &s, auto measure) {
     AcmSweepSolver solver;
-    FieldBlock work(s.grid, AcmSweepSolver::work_fields);
-    if (solver.create(s.grid, s.exchange, {sweeps, 0, multigrid}, std::move(work)) != 0)
-      return state.SkipWithError("no solver");
+    WorkSpace work(s.grid);
+    if (solver.create(s.grid, s.exchange, {sweeps, 0, multigrid}, work) != 0) return state.SkipWithError("no solver");
     test::set(s.grid, s.scalar[0], at_centre,
               [](double x, double y, double z) { return std::sin(x) * std::cos(2 * y) + std::sin(3 * z); });
     solver.set_target(0);

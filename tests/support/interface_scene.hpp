@@ -67,7 +67,8 @@ public:
     velocity = FieldBlock(grid, grid.dimension());
     fraction = FieldBlock(grid, 1);
     exchange_ = std::make_unique<GhostExchange>(grid);
-    transport_ = std::make_unique<InterfaceTransport>(grid, FieldBlock(grid, 3));
+    transport_ = std::make_unique<InterfaceTransport>(grid, work_);
+    PetscCall(work_.reserve(InterfaceTransport::work_fields));
     PetscFunctionReturn(0);
   }
 
@@ -172,6 +173,7 @@ public:
 
 private:
   std::unique_ptr<GhostExchange> exchange_;
+  WorkSpace work_{grid};
   std::unique_ptr<InterfaceTransport> transport_;
 };
 

@@ -37,7 +37,8 @@ Convergence convergence(const GridSpec &spec) {
     PoissonScene s(PETSC_COMM_SELF, spec);
     s.set(f);
     AcmSweepSolver solver;
-    EXPECT_EQ(solver.create(s.grid, *s.exchange, {30, 0, true}, FieldBlock(s.grid, AcmSweepSolver::work_fields)), 0);
+    WorkSpace work(s.grid);
+    EXPECT_EQ(solver.create(s.grid, *s.exchange, {30, 0, true}, work), 0);
     solver.set_target(target * s.rms_divergence());
     EXPECT_EQ(solver.solve(s.dt, s.divergence, s.pressure, s.increment), 0);
     const double relative = s.rms_residual() / s.rms_divergence();

@@ -1,0 +1,52 @@
+#include "field/work_space.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+#if !defined(NDEBUG) || defined(EULASTIC_SKIP_NOTHING)
+constexpr bool spoils = true;
+#else
+constexpr bool spoils = false;
+#endif
+// Who reads what it has not written gets wrong results; not NaN, since the coefficient 0 stands for a wall.
+constexpr double spoilt = 1e200;
+
+}  // namespace
+
+WorkSpace::Lease::~Lease() {
+  if (space_) std::fill_n(space_->holder_.begin() + first_, fields_.count(), nullptr);
+}
+
+std::string WorkSpace::holders() const {
+  std::string text;
+  for (std::size_t f = 0; f < holder_.size(); ++f) text += std::string(f ? ", " : "") + (holder_[f] ? holder_[f] : "-");
+  return text;
+}
+
+PetscErrorCode WorkSpace::reserve(int count) {
+  PetscFunctionBeginUser;
+  if (count <= fields_.count()) PetscFunctionReturn(0);
+  const bool out = std::any_of(holder_.begin(), holder_.end(), [](const char *name) { return name != nullptr; });
+  PetscCheck(!out, grid_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s", holders().c_str());
+  fields_ = {};
+  fields_ = FieldBlock(*grid_, count);
+  holder_.assign(count, nullptr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WorkSpace::take(const char *name, int count, Lease *lease) {
+  PetscFunctionBeginUser;
+  const auto at = std::search_n(holder_.begin(), holder_.end(), count, nullptr);
+  PetscCheck(at != holder_.end() || count == 0, grid_->comm(), PETSC_ERR_PLIB, "no work space for %s (%d fields): %s",
+             name, count, holders().c_str());
+  std::fill_n(at, count, name);
+  lease->space_ = this;
+  lease->first_ = static_cast<int>(at - holder_.begin());
+  lease->fields_ = fields_.part(lease->first_, count);
+  for (int f = 0; f < count && spoils; ++f) lease->fields_.fill(f, spoilt);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,46 @@
+// Fields that the verbs of a step need one after the other: each takes what it needs, by name, for a scope.
+#pragma once
+
+#include "field/field_block.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+class WorkSpace {
+public:
+  /// Fields of the work space, given back at the end of the scope. Their values are anything; debug builds spoil them.
+  class Lease {
+  public:
+    Lease() = default;
+    Lease(const Lease &) = delete;
+    Lease &operator=(const Lease &) = delete;
+    ~Lease();
+    FieldBlock &fields() noexcept { return fields_; }
+    /// `count` of them, from `first` on.
+    FieldBlock part(int first, int count) noexcept { return fields_.part(first, count); }
+
+  private:
+    friend class WorkSpace;
+    WorkSpace *space_ = nullptr;
+    int first_ = 0;
+    FieldBlock fields_;
+  };
+
+  explicit WorkSpace(const Grid &grid) : grid_(&grid) {}
+  /// At least so many fields; while none is out.
+  PetscErrorCode reserve(int count);
+  /// `count` fields that follow each other. Fails where so many are not free, with the names of who holds them.
+  PetscErrorCode take(const char *name, int count, Lease *lease);
+  std::size_t bytes() const { return fields_.bytes(); }
+
+private:
+  std::string holders() const;
+
+  const Grid *grid_;
+  FieldBlock fields_;
+  std::vector<const char *> holder_;  ///< of every field, or null
+};
+
+}  // namespace eulastic

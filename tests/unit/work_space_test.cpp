@@ -1,0 +1,55 @@
+// Work space is taken by name, for a scope.
+#include "field/work_space.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace eulastic;
+
+namespace {
+
+struct WorkSpaceTest : testing::Test {
+  Grid grid;
+  void SetUp() override {
+    GridSpec spec;
+    spec.cells = {8, 8, 1};
+    ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  }
+  // What take() says, without PETSc's print.
+  static PetscErrorCode quietly(WorkSpace &work, int count, WorkSpace::Lease *lease) {
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    const PetscErrorCode error = work.take("more", count, lease);
+    PetscPopErrorHandler();
+    return error;
+  }
+};
+
+TEST_F(WorkSpaceTest, FieldsAreFreeAgainAfterTheScope) {
+  WorkSpace work(grid);
+  ASSERT_EQ(work.reserve(3), 0);
+  const double *first;
+  {
+    WorkSpace::Lease one, two, more;
+    ASSERT_EQ(work.take("one", 1, &one), 0);
+    ASSERT_EQ(work.take("two", 2, &two), 0);
+    first = one.fields().data();
+    EXPECT_EQ(two.fields().data(), first + grid.layout().size);
+    EXPECT_EQ(two.part(1, 1).data(), first + 2 * grid.layout().size);
+    EXPECT_NE(quietly(work, 1, &more), 0);
+  }
+  WorkSpace::Lease all;
+  ASSERT_EQ(work.take("all", 3, &all), 0);
+  EXPECT_EQ(all.fields().data(), first);
+}
+
+TEST_F(WorkSpaceTest, DoesNotGrowUnderALease) {
+  WorkSpace work(grid);
+  ASSERT_EQ(work.reserve(1), 0);
+  WorkSpace::Lease lease;
+  ASSERT_EQ(work.take("one", 1, &lease), 0);
+  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  EXPECT_NE(work.reserve(2), 0);
+  PetscPopErrorHandler();
+  EXPECT_EQ(work.reserve(1), 0);
+}
+
+}  // namespace
