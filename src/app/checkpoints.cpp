@@ -3,6 +3,7 @@
 #include "app/signals.hpp"
 #include "base/events.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace eulastic {
@@ -14,9 +15,8 @@ enum Wish : int { wish_checkpoint = 1, wish_wall_limit = 2, wish_signal = 4 };
 
 }  // namespace
 
-PetscErrorCode Checkpoints::open(const ParseResult &parsed, const std::string &directory, Solver *solver,
-                                 Outputs *outputs, Guards *guards, const std::string &restarted_from) {
-  PetscFunctionBeginUser;
+void Checkpoints::start(const ParseResult &parsed, const std::string &directory, Solver *solver, Outputs *outputs,
+                        Guards *guards, bool goes_on) {
   control_ = parsed.config.checkpoint;
   directory_ = directory;
   options_ = options_text(parsed);
@@ -25,13 +25,16 @@ PetscErrorCode Checkpoints::open(const ParseResult &parsed, const std::string &d
   guards_ = guards;
   due_ = {control_.interval, solver->state().time};
   begin_ = last_wall_ = MPI_Wtime();
-  if (restarted_from.empty() || !restarts_in_place(parsed.config)) PetscFunctionReturn(0);
-  last_step_ = solver->state().step;
-  if (solver->grid().rank() > 0) PetscFunctionReturn(0);
+  goes_on_ = goes_on;
+  if (goes_on) last_step_ = solver->state().step;
+}
+
+void Checkpoints::accept(const std::string &directory) {
+  directory_ = directory;
+  if (!goes_on_ || solver_->grid().rank() > 0) return;
   std::error_code error;
   for (const std::string &path : list_checkpoints(directory_))  // newest first: what is left always fits the series
     if (checkpoint_step(path) > last_step_) fs::remove(path, error);
-  PetscFunctionReturn(0);
 }
 
 int Checkpoints::wishes() const {
@@ -56,7 +59,7 @@ PetscErrorCode Checkpoints::after_step(const RunPosition &position, std::string 
 
 PetscErrorCode Checkpoints::before_end(const RunPosition &position, Stop *stop) {
   PetscFunctionBeginUser;
-  if (control_.regular()) PetscCall(write(position, stop));
+  if (control_.keep > 0) PetscCall(write(position, stop));
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +90,7 @@ PetscErrorCode Checkpoints::remove_old() {
   if (solver_->grid().rank() > 0) PetscFunctionReturn(0);
   const std::vector<std::string> paths = list_checkpoints(directory_);
   std::error_code error;  // one that stays does no harm
-  for (std::size_t n = static_cast<std::size_t>(control_.keep); n < paths.size(); ++n) fs::remove(paths[n], error);
+  for (std::size_t n = std::max(control_.keep, 1L); n < paths.size(); ++n) fs::remove(paths[n], error);
   PetscFunctionReturn(0);
 }
 

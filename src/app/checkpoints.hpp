@@ -9,10 +9,12 @@ namespace eulastic {
 
 class Checkpoints {
 public:
-  /// Collective. `options`: options_text() of the run. `restarted_from`: path of the checkpoint the run goes on from,
-  /// or empty; if it lies in `directory`, younger ones, which belong to a run that is no more, are removed.
-  PetscErrorCode open(const ParseResult &parsed, const std::string &directory, Solver *solver, Outputs *outputs,
-                      Guards *guards, const std::string &restarted_from);
+  /// `goes_on`: from a checkpoint in `directory`.
+  void start(const ParseResult &parsed, const std::string &directory, Solver *solver, Outputs *outputs, Guards *guards,
+             bool goes_on);
+  /// The run has been accepted; its files are in `directory`. Checkpoints younger than the one it goes on from, which
+  /// belong to a run that is no more, are removed.
+  void accept(const std::string &directory);
 
   /// Collective, after a step and what it made due. Writes a checkpoint if one is due by simulated time or by rank 0's
   /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards do not
@@ -34,6 +36,7 @@ private:
   Due due_;
   double begin_ = 0, last_wall_ = 0;  ///< MPI_Wtime
   std::int64_t last_step_ = -1;       ///< that has a checkpoint in this directory
+  bool goes_on_ = false;
 };
 
 }  // namespace eulastic

@@ -79,6 +79,7 @@ struct Config {
   GuardControl guard;
   int threads = 1;  ///< per rank
   bool check_only = false;
+  bool print_options = false;
 
   /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.
   bool separates(const SpeciesSpec &spec) const {

@@ -28,10 +28,11 @@ void print_error(const std::string &message) {
   if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
 }
 
-// What -help and -check_only print.
+// What -help, -check_only and -print_options print.
 PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
   PetscFunctionBeginUser;
   std::string text = parsed.message, overlap;
+  if (text.empty() && parsed.config.print_options) text = options_text(parsed);
   if (text.empty()) {
     text = check_report(parsed.config, ranks);
     PetscCall(find_overlap_warning(PETSC_COMM_WORLD, parsed.config, &overlap));
@@ -49,7 +50,7 @@ int act(ParseResult &parsed) {
     print_error(parsed.error);
     return exit_usage;
   }
-  if (!parsed.message.empty() || parsed.config.check_only) {
+  if (!parsed.message.empty() || parsed.config.check_only || parsed.config.print_options) {
     return print_answer(parsed, ranks) ? exit_failed : exit_fine;
   }
   std::string kept, refusal;

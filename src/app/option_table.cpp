@@ -207,7 +207,8 @@ void add_running(Rows &rows, Config &config) {
             "time between checkpoints, and one before the end; 0 = none");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
             "wall time between checkpoints, and one before the end; 0 = none");
-  rows.integer("checkpoint_keep", checkpoint.keep, at_least_one, "checkpoints that stay");
+  rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
+               "checkpoints that stay; a run that ends well leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
             "wall time after which a checkpoint is written and the run ends; 0 = never");
   rows.path("restart", checkpoint.restart,
@@ -227,6 +228,7 @@ void add_running(Rows &rows, Config &config) {
 
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
+  rows.boolean("print_options", config.print_options, "validate, print every option as resolved and stop");
   rows.add("options_file", "", "options of another file; those of this file win").accepted =
       "only in an options file; a path, from the directory of this file";
   rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =

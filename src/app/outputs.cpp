@@ -61,38 +61,42 @@ SnapshotSelection selection(const Config &config) {
 
 }  // namespace
 
-PetscErrorCode Outputs::open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory) {
-  PetscFunctionBeginUser;
-  PetscCall(resume(config, grid, solver, directory, {}, false));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Outputs::resume(const Config &config, const Grid &grid, Solver *solver, const std::string &directory,
-                               const OutputsPosition &position, bool same_directory) {
-  PetscFunctionBeginUser;
+void Outputs::start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position) {
   config_ = config;
   grid_ = &grid;
   solver_ = solver;
-  directory_ = directory;
   series_due_ = {config.output.series_interval, position.series_time};
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
   first_volume_ = position.first_volume;
   energy_ = position.energy;
-  PetscCall(
-      series_.open(grid.comm(), directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config.samples, grid, directory, position.series_time, position.profile_time));
-  if (solver->bodies().bodies() > 0) {
-    bodies_file_ = std::make_unique<BodiesFile>(grid.comm(), directory + "/bodies.h5");
+}
+
+PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition &position, bool same_directory) {
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = grid_->comm();
+  directory_ = directory;
+  PetscCall(series_.open(comm, directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
+  PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
+  if (solver_->bodies().bodies() > 0) {
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5");
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotWriter>(grid, directory);
-    snapshot_fields_ = std::make_unique<SnapshotFields>(grid);
+    snapshots_ = std::make_unique<SnapshotWriter>(*grid_, directory);
+    snapshot_fields_ = std::make_unique<SnapshotFields>(*grid_);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
+}
+
+void Outputs::moved_to(const std::string &directory) {
+  directory_ = directory;
+  series_.moved_to(directory + "/series.csv");
+  samples_.moved_to(directory);
+  if (bodies_file_) bodies_file_->moved_to(directory + "/bodies.h5");
+  if (snapshots_) snapshots_->moved_to(directory);
 }
 
 PetscErrorCode Outputs::measure() {

@@ -28,11 +28,13 @@ struct OutputsPosition {
 
 class Outputs {
 public:
-  /// Opens the files in `directory`, which exists and is ours.
-  PetscErrorCode open(const Config &config, const Grid &grid, Solver *solver, const std::string &directory);
-  /// Instead: opens them where a run goes on. In the directory of that run its files are cut back to `position`.
-  PetscErrorCode resume(const Config &config, const Grid &grid, Solver *solver, const std::string &directory,
-                        const OutputsPosition &position, bool same_directory);
+  /// Can measure from here on. `position`: how far the run had come that goes on.
+  void start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position);
+  /// Opens the files in `directory`, which exists and is ours. In that of a run that goes on its files are cut back to
+  /// `position`.
+  PetscErrorCode open(const std::string &directory, const OutputsPosition &position, bool same_directory);
+  /// Rank 0 has moved the files.
+  void moved_to(const std::string &directory);
   /// Brings all rows to the disk and says how far they are.
   PetscErrorCode sync(OutputsPosition *position);
   /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time.

@@ -3,7 +3,10 @@
 #include "app/option_table.hpp"
 #include "io/fail_together.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -81,6 +84,20 @@ bool restarts_in_place(const Config &config) {
   std::error_code error;
   const fs::path directory = fs::is_directory(source, error) ? source : fs::absolute(source, error).parent_path();
   return fs::equivalent(directory, config.output.directory, error);
+}
+
+PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away) {
+  int rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    std::ifstream rows(directory + "/series.csv");
+    double last = time;
+    for (std::string row; std::getline(rows, row);) last = std::strtod(row.c_str(), nullptr);
+    *thrown_away = std::max(0.0, last - time);
+  }
+  PetscCallMPI(MPI_Bcast(thrown_away, 1, MPI_DOUBLE, 0, comm));
+  PetscFunctionReturn(0);
 }
 
 std::string changed_option(const std::string &before, const ParseResult &now) {

@@ -15,6 +15,9 @@ PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *p
 /// Local. Whether the run goes on in the directory it began in.
 bool restarts_in_place(const Config &config);
 
+/// Collective. Simulated time after `time` that series.csv in `directory` tells of; 0 if it ends before.
+PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away);
+
 /// The first option, among those that must not change at a restart, whose value differs between two options_text();
 /// empty if there is none, else one line.
 std::string changed_option(const std::string &before, const ParseResult &now);

@@ -20,6 +20,9 @@ namespace eulastic {
 namespace {
 
 struct Run {
+  const ParseResult &parsed;
+  bool in_place;  ///< goes on where its checkpoint lies
+  RunDirectory directory;
   Solver solver;
   Outputs outputs;
   Checkpoints checkpoints;
@@ -63,8 +66,8 @@ PetscErrorCode print_warnings(const Config &config, const Run &run) {
   PetscFunctionReturn(0);
 }
 
-// The state that a run ends with has not met the guards yet.
-PetscErrorCode check_end(Run *run) {
+// The guards on a state that has not met them yet.
+PetscErrorCode check_state(Run *run) {
   PetscFunctionBeginUser;
   PetscCall(run->guards.check_finite(run->solver, &run->stop));
   if (run->stop) PetscFunctionReturn(0);
@@ -78,6 +81,31 @@ PetscErrorCode check_measured(Run *run) {
   PetscFunctionBeginUser;
   const Measured &measured = run->outputs.measured();
   if (measured.time == run->solver.state().time) PetscCall(run->guards.check(run->solver, measured, &run->stop));
+  PetscFunctionReturn(0);
+}
+
+// options.txt and the rows and files of outputs.
+PetscErrorCode open_outputs(Run *run) {
+  PetscFunctionBeginUser;
+  ParseResult whole = run->parsed;
+  if (run->in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
+  PetscCall(write_text_file(run->solver.grid().comm(), run->directory.file("options.txt"), options_text(whole)));
+  PetscCall(run->outputs.open(run->directory.path(), run->position.outputs, run->in_place));
+  PetscFunctionReturn(0);
+}
+
+// The run has passed its first step: what is in its directory may give way to it.
+PetscErrorCode accept(Run *run) {
+  PetscFunctionBeginUser;
+  if (!run->directory.pending()) PetscFunctionReturn(0);
+  PetscCall(check_state(run));
+  if (run->stop) PetscFunctionReturn(0);
+  PetscCall(run->directory.accept(run->solver.grid().comm()));
+  run->checkpoints.accept(run->directory.path());
+  if (run->in_place)
+    PetscCall(open_outputs(run));
+  else
+    run->outputs.moved_to(run->directory.path());
   PetscFunctionReturn(0);
 }
 
@@ -107,15 +135,18 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
     }
     run->position.wall_seconds += MPI_Wtime() - step_begin;
     run->position.wall_seconds_total = total + MPI_Wtime() - begin;
+    PetscCall(accept(run));
+    if (run->stop) break;
     PetscCall(run->outputs.write_due(false));
     PetscCall(check_measured(run));
     if (run->stop) break;
     if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason, &run->stop));
     progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   }
+  if (!run->stop) PetscCall(accept(run));  // there was no step to take
   if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position, &run->stop));
   const bool whole = run->exit_reason == "steps" || run->exit_reason == "time_end";
-  if (!run->stop && whole) PetscCall(check_end(run));
+  if (!run->stop && whole) PetscCall(check_state(run));
   if (run->stop) run->exit_reason = run->stop.reason;
   if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
   progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
@@ -123,33 +154,40 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
 }
 
 // The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
-PetscErrorCode begin_run(const ParseResult &parsed, const Grid &grid, RunDirectory *directory, Run *run,
-                         std::string *refusal) {
+PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
   PetscFunctionBeginUser;
+  const ParseResult &parsed = run->parsed;
   const Config &config = parsed.config;
   const std::string &path = config.output.directory, &source = config.checkpoint.restart;
-  const bool in_place = !source.empty() && restarts_in_place(config);
+  using Earlier = RunDirectory::Earlier;
   std::string restarted_from;
+  double thrown_away = 0;
   PetscCall(build_scene(config, grid, &run->solver, refusal));
   if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
-  if (refusal->empty() && in_place) PetscCall(directory->reopen(grid.comm(), path, refusal));
+  if (refusal->empty() && run->in_place) PetscCall(run->directory.open(grid.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
-  if (refusal->empty() && !in_place) PetscCall(directory->open(grid.comm(), path, config.output.overwrite, refusal));
+  if (refusal->empty() && !run->in_place)
+    PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
+                                  refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
-  ParseResult whole = parsed;
-  if (in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
-  PetscCall(write_text_file(grid.comm(), directory->file("options.txt"), options_text(whole)));
-  PetscCall(
-      run->checkpoints.open(parsed, directory->path(), &run->solver, &run->outputs, &run->guards, restarted_from));
-  PetscCall(run->outputs.resume(config, grid, &run->solver, directory->path(), run->position.outputs, in_place));
+  run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
+  run->outputs.start(config, grid, &run->solver, run->position.outputs);
+  if (run->in_place)
+    PetscCall(time_thrown_away(grid.comm(), path, run->solver.state().time, &thrown_away));
+  else
+    PetscCall(open_outputs(run));
   if (source.empty()) PetscCall(run->outputs.write_due(false));
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
   if (source.empty()) PetscCall(print_warnings(config, *run));
-  if (!source.empty())
-    PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
-                          run->solver.state().time, static_cast<long long>(run->solver.state().step)));
+  if (source.empty()) PetscFunctionReturn(0);
+  PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
+                        run->solver.state().time, static_cast<long long>(run->solver.state().step)));
+  if (thrown_away > 0)
+    PetscCall(PetscPrintf(
+        grid.comm(), "what the directory holds after that, %.3g of simulated time, is thrown away and computed again\n",
+        thrown_away));
   PetscFunctionReturn(0);
 }
 
@@ -177,9 +215,9 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   print_warning(PETSC_COMM_WORLD, thread_warning(config.threads));
   Grid grid;
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
-  RunDirectory directory;
-  Run run{{}, {}, {}, Guards(config), {}, {}, {}};
-  PetscCall(begin_run(parsed, grid, &directory, &run, refusal));
+  const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
+  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, {}, {}};
+  PetscCall(begin_run(grid, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();
   const double total_before = run.position.wall_seconds_total;
@@ -194,12 +232,16 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
     std::string ignored;
     run.exit_reason = "output_failed";
     *code = exit_failed;
+    if (run.directory.pending()) PetscFunctionReturn(0);
     PetscCall(catch_together([&] { return write_summary(begin, total_before, &run); }, &ignored));
     PetscFunctionReturn(0);
   }
   *code = exit_failed;
-  PetscCall(write_summary(begin, total_before, &run));
   *refusal = run.stop.message;
+  if (run.directory.pending())
+    *refusal += "; the earlier run in -output_dir " + config.output.directory + " is untouched";
+  else
+    PetscCall(write_summary(begin, total_before, &run));
   *code = run.stop ? exit_wrong_numbers : exit_fine;
   PetscFunctionReturn(0);
 }

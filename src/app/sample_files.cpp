@@ -22,30 +22,33 @@ PetscErrorCode SampleFiles::open(const SampleControl &samples, const Grid &grid,
   PetscFunctionBeginUser;
   grid_ = &grid;
   profile_due_ = {samples.profile_interval, profile_time};
-  if (!samples.probes.empty()) PetscCall(add(-1, false, samples.probes, directory + "/probes.csv", probes_time));
+  if (!samples.probes.empty()) PetscCall(add({-1, false, samples.probes, {}}, directory, probes_time));
   for (int d = 0; d < 3; ++d) {
     const ProfileSpec &spec = samples.profile[d];
     if (spec.kind == ProfileSpec::Kind::none) continue;
     std::vector<Real3> points(grid.cells()[d], spec.line);
     for (int n = 0; n < grid.cells()[d]; ++n) points[n][d] = (n + 0.5) * grid.spacing()[d];
-    PetscCall(add(d, spec.kind == ProfileSpec::Kind::mean, points, directory + "/profile_" + "xyz"[d] + ".csv",
-                  profile_time));
+    PetscCall(add({d, spec.kind == ProfileSpec::Kind::mean, points, {}}, directory, profile_time));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SampleFiles::add(int direction, bool mean, std::vector<Real3> points, const std::string &path,
-                                double end) {
+PetscErrorCode SampleFiles::add(File &&of, const std::string &directory, double end) {
   PetscFunctionBeginUser;
   std::vector<std::string> columns{"time"};
-  if (direction < 0)
+  if (of.direction < 0)
     columns.insert(columns.end(), {"probe", "x", "y", "z"});
   else
-    columns.push_back(std::string(1, "xyz"[direction]));
+    columns.push_back(std::string(1, "xyz"[of.direction]));
   columns.insert(columns.end(), {"velocity_x", "velocity_y", "velocity_z", "pressure", "solid_fraction"});
-  File &file = files_.emplace_back(File{direction, mean, std::move(points), {}});
+  File &file = files_.emplace_back(std::move(of));
+  const std::string path = directory + file.name();
   PetscCall(file.table.open(grid_->comm(), path, columns, rows_until(path, end)));
   PetscFunctionReturn(0);
+}
+
+void SampleFiles::moved_to(const std::string &directory) {
+  for (File &file : files_) file.table.moved_to(directory + file.name());
 }
 
 PetscErrorCode SampleFiles::sync() {

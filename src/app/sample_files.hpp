@@ -14,6 +14,7 @@ public:
   /// profiles until `profile_time` stay; negative: none.
   PetscErrorCode open(const SampleControl &samples, const Grid &grid, const std::string &directory, double probes_time,
                       double profile_time);
+  void moved_to(const std::string &directory);
   /// Collective. All rows survive a power cut when this returns.
   PetscErrorCode sync();
   /// Of the last profiles, negative if there are none yet.
@@ -28,8 +29,11 @@ private:
     bool mean;
     std::vector<Real3> points;
     Series table;
+    std::string name() const {
+      return direction < 0 ? "/probes.csv" : std::string("/profile_") + "xyz"[direction] + ".csv";
+    }
   };
-  PetscErrorCode add(int direction, bool mean, std::vector<Real3> points, const std::string &path, double end);
+  PetscErrorCode add(File &&file, const std::string &directory, double end);
   bool profiles_due(double time, bool last) const {
     return time != profile_due_.last_time && (last || profile_due_.at(time));
   }

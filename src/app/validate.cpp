@@ -186,6 +186,8 @@ std::string check_restart(const Config &config) {
   std::error_code ignored;
   if (!path.empty() && !std::filesystem::exists(path, ignored))
     return "-restart: there is no file or directory " + path;
+  if (config.checkpoint.keep == 0 && config.checkpoint.regular())
+    return "-checkpoint_keep: 0 with -checkpoint_interval or -checkpoint_wall_minutes; accepted: at least 1";
   return {};
 }
 

@@ -18,6 +18,7 @@ public:
 
   /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
+  void moved_to(const std::string &path) { path_ = path; }
   /// Collective. All rows so far are on disk when this returns.
   PetscErrorCode flush();
   /// Collective, before the first add(): goes on with the file that is there, after its first `rows` rows. If it has

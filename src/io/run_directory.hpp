@@ -1,4 +1,5 @@
-// The output directory: made, locked against a second run, and emptied only of files that are ours.
+// The output directory: made, locked against a second run, and emptied only of files that are ours, and only once the
+// new run has been accepted.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,25 +13,31 @@ public:
   RunDirectory() = default;
   RunDirectory(const RunDirectory &) = delete;
   RunDirectory &operator=(const RunDirectory &) = delete;
-  ~RunDirectory();  ///< unlocks
+  ~RunDirectory();  ///< unlocks; files of a run that was not accepted go
 
+  /// What becomes of the files of an earlier run (see is_output_file); all others stay.
+  enum class Earlier { refused, replaced, continued };
   /// Collective. Makes `path` (parents too) and locks it. `refusal` is empty, or one line on every rank: it is not
-  /// a directory, holds files and `overwrite` is false, is in use by another run, or cannot be written. With
-  /// `overwrite` the files of an earlier run go (see is_output_file), all others stay.
-  PetscErrorCode open(MPI_Comm comm, const std::string &path, bool overwrite, std::string *refusal);
-  /// The same for a run that goes on in its own directory: nothing goes but what a crash left half
-  /// written, and the summary, which is not true any more.
-  PetscErrorCode reopen(MPI_Comm comm, const std::string &path, std::string *refusal);
+  /// a directory, holds files and `earlier` is refused, is in use by another run, or cannot be written. Nothing that
+  /// is there is touched.
+  PetscErrorCode open(MPI_Comm comm, const std::string &path, Earlier earlier, std::string *refusal);
+  /// Whether an earlier run's files stand there and accept() has not been called.
+  bool pending() const { return pending_; }
+  /// Collective. Files of an earlier run give way to those written since. A run that goes on loses nothing but what
+  /// a crash left half written, and the summary, which is not true any more.
+  PetscErrorCode accept(MPI_Comm comm);
 
-  const std::string &path() const { return path_; }
-  std::string file(const std::string &name) const { return path_ + "/" + name; }
+  /// Where the run writes: until it is accepted beside what it will replace.
+  std::string path() const { return pending_ && earlier_ == Earlier::replaced ? path_ + "/.new" : path_; }
+  std::string file(const std::string &name) const { return path() + "/" + name; }
 
 private:
-  enum class Old { refused, replaced, continued };
-  std::string open_locally(Old old);
-  PetscErrorCode open(MPI_Comm comm, const std::string &path, Old old, std::string *refusal);
+  std::string open_locally();
+  std::string accept_locally() const;
 
   std::string path_;
+  Earlier earlier_ = Earlier::refused;
+  bool pending_ = false;
   int lock_ = -1;  ///< rank 0: descriptor of the flock'ed file; the system unlocks it when the process dies
 };
 

@@ -21,6 +21,8 @@ public:
   PetscErrorCode write(const std::vector<double> &values);
   /// Collective. All rows survive a power cut when this returns.
   PetscErrorCode sync();
+  /// Rank 0 has renamed the file.
+  void moved_to(const std::string &path) { path_ = path; }
   /// In the file.
   long rows() const { return rows_; }
 

@@ -18,6 +18,7 @@ public:
   /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
   /// index goes on too, and later ones are removed.
   PetscErrorCode resume(int count, bool same_directory);
+  void moved_to(const std::string &directory) { directory_ = directory; }
   int count() const { return count_; }
   /// Collective. Writes one file with its attributes, then the index anew.
   PetscErrorCode write(double time, long step, const std::vector<SnapshotField> &fields);

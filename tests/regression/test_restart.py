@@ -86,13 +86,13 @@ class SameBits(Restart):
     def test_older_one_by_name(self):
         self.run_case("whole", *FLAT, "-time_steps_max", 16)
         self.run_case("run", *FLAT, "-time_steps_max", 12, "-checkpoint_keep", 9, *OFTEN)
-        self.run_case("run", *FLAT, "-time_steps_max", 16, "-restart", "run/checkpoint_00000007.h5")
+        self.run_case("run", *FLAT, "-time_steps_max", 16, "-checkpoint_keep", 9, "-restart", "run/checkpoint_00000007.h5")
         self.assert_same("whole", "run")
         # Those after step 7 belonged to a run that is no more.
-        self.assertEqual([p.name for p in self.checkpoints()], [f"checkpoint_{n:08}.h5" for n in (4, 5, 6, 7)])
+        self.assertEqual([p.name for p in self.checkpoints()], [f"checkpoint_{n:08}.h5" for n in (4, 5, 6, 7, 16)])
         # At its end already: nothing to do, and the summary says so.
-        self.run_case("run", *FLAT, "-time_steps_max", 7, "-restart", "run")
-        self.assertEqual((self.summary("run")["exit_reason"], self.summary("run")["steps"]), ("steps", 7))
+        self.run_case("run", *FLAT, "-time_steps_max", 16, "-restart", "run")
+        self.assertEqual((self.summary("run")["exit_reason"], self.summary("run")["steps"]), ("steps", 16))
 
 
 class Refusals(Restart):

@@ -1,5 +1,6 @@
 """The scripts: help, counting of tests, the reader, plots, pictures and comparison on data of known content, and a
 small real run that is reused."""
+import hashlib
 import importlib.machinery
 import importlib.util
 import os
@@ -20,6 +21,12 @@ sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
 from read_run import Run, Units, parse_options  # noqa: E402
+
+
+def listing(folder):
+    """{file: checksum} of all that is in a folder."""
+    return {path.relative_to(folder): hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.rglob("*")
+            if path.is_file()}
 
 
 def load(script):
@@ -229,19 +236,44 @@ class RealRun(WithFolder):
                    "-time_end", "20", "-series_interval", "2", "-checkpoint_interval", "7")
         self.assertEqual(start(*command).returncode, 0)
         whole = Run(self.folder)
-        (self.folder / "request.txt").rename(self.folder / "unfinished.txt")  # as if it had been killed
-        (self.folder / "summary.json").unlink()
+        (self.folder / "summary.json").unlink()  # as if it had been killed
         again = start(*command)
         self.assertIn("goes on from its checkpoint", again.stdout)
-        self.assertTrue((self.folder / "request.txt").exists())
         half = Run(self.folder)
         self.assertEqual(half.summary["state_hash"], whole.summary["state_hash"])
         numpy.testing.assert_array_equal(half.series.kinetic_energy, whole.series.kinetic_energy)
-        (self.folder / "request.txt").rename(self.folder / "unfinished.txt")
         other = start(*command, "-fluid_viscosity", "2")  # another run: from its beginning
         self.assertEqual(other.returncode, 0, other.stderr)
         self.assertNotIn("goes on", other.stdout)
         self.assertNotEqual(Run(self.folder).summary["state_hash"], whole.summary["state_hash"])
+
+    def test_a_run_is_extended_and_never_lost(self):
+        out = self.folder / "out"
+        case = ROOT / "options/disc_in_channel.opts"
+        words = "-grid_cells", "16,16,1"
+        run = lambda *options, at=out: start(SCRIPTS / "run", *options[:options[0] == "--ranks" and 2 or 0], case, at,
+                                             *words, *options[options[0] == "--ranks" and 2 or 0:])
+        self.assertEqual(run("-time_end", "10").returncode, 0)
+        kept = listing(out)
+        for wrong in ("-disc_radios", "3"), ("-time_end", "5", "-disc_radius", "-1"):
+            done = run(*wrong)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(listing(out), kept, wrong)
+        self.assertIn("already", run("--ranks", "1", "-time_end", "10").stdout)
+        self.assertEqual(listing(out), kept)
+        longer = run("--ranks", "3", "-time_end", "20")
+        self.assertIn("goes on from its checkpoint", longer.stdout)
+        self.assertEqual(run("-time_end", "20", at=self.folder / "whole").returncode, 0)
+        self.assertEqual(Run(out).summary["state_hash"], Run(self.folder / "whole").summary["state_hash"])
+        other = self.folder / "mine"
+        other.mkdir()
+        (other / "notes.txt").write_text("mine")
+        done = run("-time_end", "10", at=other)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertEqual([path.name for path in other.iterdir()], ["notes.txt"])
+        done = start(SCRIPTS / "run", self.folder / "nosuch.opts", self.folder / "new")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertFalse((self.folder / "new").exists())
 
     def test_figure_of_the_paper(self):
         command = SCRIPTS / "paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10

@@ -11,9 +11,11 @@ using namespace test;
 
 void put(const std::string &path, const std::string &text) { std::ofstream(path) << text; }
 
+using Earlier = RunDirectory::Earlier;
+
 std::string refusal_of(RunDirectory &run, const std::string &path, bool overwrite) {
   std::string refusal;
-  EXPECT_EQ(run.open(PETSC_COMM_SELF, path, overwrite, &refusal), 0);
+  EXPECT_EQ(run.open(PETSC_COMM_SELF, path, overwrite ? Earlier::replaced : Earlier::refused, &refusal), 0);
   EXPECT_EQ(refusal.find('\n'), std::string::npos);
   return refusal;
 }
@@ -48,9 +50,24 @@ TEST(RunDirectory, OverwriteTakesOnlyWhatIsOurs) {
                                 "optionsXtxt"};
   for (const char *name : ours) put(base / ("run/" + std::string(name)), "x");
   for (const char *name : theirs) put(base / ("run/" + std::string(name)), "x");
+  {
+    RunDirectory refused;
+    EXPECT_EQ(refusal_of(refused, base / "run", true), "");
+    EXPECT_TRUE(refused.pending());
+    put(refused.file("options.txt"), "new");
+  }
+  for (const char *name : ours) EXPECT_EQ(text_of(base / ("run/" + std::string(name))), "x") << name;
+  EXPECT_FALSE(fs::exists(base / "run/.new"));
   RunDirectory run;
   EXPECT_EQ(refusal_of(run, base / "run", true), "");
-  for (const char *name : ours) EXPECT_FALSE(fs::exists(base / ("run/" + std::string(name)))) << name;
+  put(run.file("options.txt"), "new");
+  EXPECT_EQ(run.accept(PETSC_COMM_SELF), 0);
+  EXPECT_FALSE(run.pending());
+  EXPECT_EQ(run.path(), base / "run");
+  EXPECT_EQ(text_of(base / "run/options.txt"), "new");
+  EXPECT_FALSE(fs::exists(base / "run/.new"));
+  for (const char *name : ours)
+    EXPECT_EQ(fs::exists(base / ("run/" + std::string(name))), name == ours[0]) << name;
   for (const char *name : theirs) EXPECT_TRUE(fs::exists(base / ("run/" + std::string(name)))) << name;
 }
 
@@ -86,7 +103,7 @@ TEST(RunDirectory, TheLockDiesWithItsProcess) {
   if (child == 0) {  // no MPI here: only the lock itself, as rank 0 takes it
     RunDirectory run;
     std::string refusal;
-    (void)run.open(PETSC_COMM_SELF, path, false, &refusal);
+    (void)run.open(PETSC_COMM_SELF, path, Earlier::refused, &refusal);
     (void)!::write(ready[1], "x", 1);
     for (;;) ::pause();
   }
