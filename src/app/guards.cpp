@@ -93,14 +93,14 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   PetscFunctionBeginUser;
   const State &state = solver.state();
   const double energy = m.flow.kinetic_energy + m.flow.elastic_energy;
-  if (first_energy_ < 0) {
-    first_energy_ = lowest_energy_ = std::max(energy, 0.0);
+  if (energy_.first < 0) {
+    energy_.first = energy_.lowest = std::max(energy, 0.0);
     PetscFunctionReturn(0);
   }
   if (state.step == 0) PetscFunctionReturn(0);
-  lowest_energy_ = std::min(lowest_energy_, energy);
-  const double scale = first_energy_ + round_off(solver);
-  const double growth = first_energy_ > 0 && !forced_ ? (energy - lowest_energy_) / scale : 0;
+  energy_.lowest = std::min(energy_.lowest, energy);
+  const double scale = energy_.first + round_off(solver);
+  const double growth = energy_.first > 0 && !forced_ ? (energy - energy_.lowest) / scale : 0;
   // Flow that has come to rest has no scale: no smaller one than a Courant number of 1e-6, as in the solver.
   const Real3 &h = solver.grid().spacing();
   const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.grid().dimension()) / state.dt;
@@ -112,7 +112,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
     what = text(
         "kinetic + elastic energy %.4g has grown without forcing, by %.3g of the %.4g at the start, above "
         "-guard_energy_growth %g; lower -time_step (%.3g now)",
-        energy, growth, first_energy_, control_.energy_growth, state.dt);
+        energy, growth, energy_.first, control_.energy_growth, state.dt);
   } else if (beyond(divergence, control_.divergence)) {
     what = text("rms(div v) h/U = %.3g is above -guard_divergence %g; %s (%.3g now)", divergence, control_.divergence,
                 pressure_advice_.c_str(), state.dt);

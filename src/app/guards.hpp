@@ -29,6 +29,12 @@ struct Measured {
   double mach = 0;            ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 
+/// What -guard_energy_growth compares with; of all runs that led here.
+struct GuardedEnergy {
+  double first = -1;  ///< negative: not measured yet
+  double lowest = 0;
+};
+
 class Guards {
 public:
   explicit Guards(const Config &config);
@@ -39,12 +45,14 @@ public:
   PetscErrorCode check_finite(const Solver &solver, Stop *stop) const;
   /// Collective. A measured state. The first one is what energy is compared with; it passes.
   PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop);
+  const GuardedEnergy &energy() const { return energy_; }
+  void resume(const GuardedEnergy &energy) { energy_ = energy; }
 
 private:
   GuardControl control_;
   std::string pressure_advice_;
   bool forced_ = false;
-  double first_energy_ = -1, lowest_energy_ = 0;  ///< negative: not measured yet
+  GuardedEnergy energy_;
 };
 
 }  // namespace eulastic

@@ -69,6 +69,7 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
   first_volume_ = position.first_volume;
   energy_ = position.energy;
+  mach_max_ = position.mach_max;
 }
 
 PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition &position, bool same_directory) {
@@ -250,6 +251,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   position->profile_time = samples_.profile_time();
   position->first_volume = first_volume_;
   position->energy = energy_;
+  position->mach_max = mach_max_;
   PetscFunctionReturn(0);
 }
 

@@ -24,6 +24,7 @@ struct OutputsPosition {
   double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
   std::vector<double> first_volume;                                ///< of every body, at t = 0
   EnergyBudget energy;
+  double mach_max = 0;
 };
 
 class Outputs {

@@ -56,6 +56,8 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   *refusal = changed_option(options, parsed);
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(load_state(&file, path, solver, position));
+  const std::string step = "time_step";
+  if (values_of(options)[step] != values_of(options_text(parsed))[step]) position->dt = 0;  // chosen anew at once
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(solver->grid().comm(), stderr,
                        "eulastic: warning: %s was written by version %s: the same bits are not certain\n", path.c_str(),

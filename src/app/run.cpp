@@ -121,8 +121,10 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
       StageScope stage(Stage::step);
       PetscCall(control->choose(&solver, run->guards, &dt, &run->stop, &warning));
     }
-    print_warning(solver.grid().comm(), warning);
-    if (run->stop) break;
+    if (run->stop) {
+      print_warning(solver.grid().comm(), warning);
+      break;
+    }
     run->position.dt = control->dt();
     run->position.wall_seconds += MPI_Wtime() - step_begin;
     // A shortened step is no part of a longer run.
@@ -131,8 +133,10 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
     step_begin = MPI_Wtime();
     {
       StageScope stage(Stage::step);
+      PetscCall(control->forget_unresolved(&solver, &warning));
       PetscCall(solver.step(dt));
     }
+    print_warning(solver.grid().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin;
     run->position.wall_seconds_total = total + MPI_Wtime() - begin;
     PetscCall(accept(run));
@@ -173,6 +177,7 @@ PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
   if (!refusal->empty()) PetscFunctionReturn(0);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);
+  run->guards.resume(run->position.energy);
   if (run->in_place)
     PetscCall(time_thrown_away(grid.comm(), path, run->solver.state().time, &thrown_away));
   else

@@ -46,6 +46,8 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
   reals["output_times"] = {o.series_time, o.snapshot_time, o.profile_time};
   reals["energy_budget"] = o.energy.numbers();
+  reals["guarded_energy"] = {position.energy.first, position.energy.lowest};
+  reals["mach_max"] = {o.mach_max};
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
@@ -85,6 +87,8 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.snapshot_time = reals["output_times"][1];
   o.profile_time = reals["output_times"][2];
   o.energy.set_numbers(reals["energy_budget"]);
+  position->energy = {reals["guarded_energy"][0], reals["guarded_energy"][1]};
+  o.mach_max = reals["mach_max"][0];
   s.step = integers["step"][0];
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];

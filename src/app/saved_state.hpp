@@ -11,6 +11,7 @@ struct RunPosition {
   double dt = 0;                                    ///< of the time step control
   double wall_seconds = 0, wall_seconds_total = 0;  ///< of all runs that led here
   OutputsPosition outputs;
+  GuardedEnergy energy;
 };
 
 /// Collective.

@@ -36,11 +36,11 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
   const bool large_steps = solver->spec().staggered() || solver->spec().viscous == ViscousScheme::rkl;
   const int interval = large_steps ? 1 : euler_interval;
   const bool look = state.step % interval == 0 || dt_ == 0;
-  FlowExtremes extremes;
+  measured_ = look;
   if (look) {
-    PetscCall(solver->measure(&extremes));
-    if (extremes.first_bad < 0) PetscCall(solver->forget_unresolved(extremes));
-    const TimeStepLimits limits = solver->limits(extremes);
+    extremes_ = {};
+    PetscCall(solver->measure(&extremes_));
+    const TimeStepLimits limits = solver->limits(extremes_);
     if (time_.step > 0) {
       dt_ = time_.step;
       if (const char *limit = limits.broken(dt_); limit && !warned_) {
@@ -57,10 +57,6 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     }
     if (warning->empty() && !warned_) *warning = too_many_steps(state);
     warned_ = warned_ || !warning->empty();
-    if (state.forgotten > 0 && !unresolved_ && warning->empty()) {
-      *warning = unresolved(state);
-      unresolved_ = true;
-    }
   }
   *dt = dt_;
   if (time_.end > 0) {
@@ -68,7 +64,17 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     ends_ = left <= *dt * (1 + 1e-9);
     if (ends_) *dt = left;
   }
-  if (look) PetscCall(guards.before_step(*solver, extremes, *dt, stop));
+  if (look) PetscCall(guards.before_step(*solver, extremes_, *dt, stop));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimeStepControl::forget_unresolved(Solver *solver, std::string *warning) {
+  PetscFunctionBeginUser;
+  if (!measured_) PetscFunctionReturn(0);
+  PetscCall(solver->forget_unresolved(extremes_));
+  if (solver->state().forgotten == 0 || unresolved_ || !warning->empty()) PetscFunctionReturn(0);
+  *warning = unresolved(solver->state());
+  unresolved_ = true;
   PetscFunctionReturn(0);
 }
 

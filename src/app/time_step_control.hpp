@@ -12,6 +12,9 @@ public:
   /// The dt of the next step, if the guards let it pass. A dt that the user forces beyond a limit, or one with which
   /// the run will hardly end, makes `warning` one line, once.
   PetscErrorCode choose(Solver *solver, const Guards &guards, double *dt, Stop *stop, std::string *warning);
+  /// After choose(), before the step: what the grid does not resolve is forgotten, where choose() has measured. A
+  /// checkpoint between the two restarts to the same bits.
+  PetscErrorCode forget_unresolved(Solver *solver, std::string *warning);
 
   /// The dt of the last choose() ends the run exactly at -time_end.
   bool ends() const { return ends_; }
@@ -24,6 +27,8 @@ private:
 
   TimeControl time_;
   double dt_ = 0;  ///< since the last measurement
+  FlowExtremes extremes_;
+  bool measured_ = false;  ///< by the last choose()
   bool warned_ = false, unresolved_ = false, ends_ = false;
 };
 

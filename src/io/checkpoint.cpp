@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char *kind = "eulastic checkpoint";
-constexpr long format = 1;  // raised whenever a file means something else
+constexpr long format = 2;  // raised whenever a file means something else
 
 template <class T>
 PetscErrorCode write_all(Hdf5File &file, const std::map<std::string, std::vector<T>> &arrays) {

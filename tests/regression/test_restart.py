@@ -94,6 +94,25 @@ class SameBits(Restart):
         self.run_case("run", *FLAT, "-time_steps_max", 16, "-restart", "run")
         self.assertEqual((self.summary("run")["exit_reason"], self.summary("run")["steps"]), ("steps", 16))
 
+    def test_what_guards_and_summary_compare_with_is_that_of_all_runs(self):
+        case = [*FLAT, "-method", "classic", "-time_step", ".01"]
+        self.run_case("whole", *case, "-time_steps_max", 12)
+        for n, options in ((4, []), (8, ["-restart", "run"]), (12, ["-restart", "run"])):
+            self.run_case("run", *case, "-time_steps_max", n, *options)
+        self.assertEqual(self.summary("run")["mach_max"], self.summary("whole")["mach_max"])
+        with h5py.File(self.checkpoints("run")[-1]) as run, h5py.File(self.checkpoints("whole")[-1]) as whole:
+            for name in "guarded_energy", "mach_max":
+                self.assertEqual(list(run[name]), list(whole[name]), name)
+
+    def test_a_changed_time_step_holds_from_the_first_step(self):
+        case = [*FLAT[:-2], "-method", "classic", "-series_interval", "1e-9"]
+        self.run_case("run", *case, "-time_steps_max", 3, "-time_step", ".01")
+        steps = lambda: [float(row.split(",")[2]) for row in self.series("run").splitlines()[-2:]]
+        self.run_case("run", *case, "-time_steps_max", 5, "-time_step", ".005", "-restart", "run")
+        self.assertEqual(steps(), [.005, .005])
+        self.run_case("run", *case, "-time_steps_max", 7, "-restart", "run")
+        self.assertNotEqual(steps()[0], .005)  # the automatic one
+
 
 class Refusals(Restart):
     def test_options(self):

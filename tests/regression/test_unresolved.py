@@ -7,6 +7,7 @@ Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE.
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -53,6 +54,18 @@ class Unresolved(unittest.TestCase):
                     other, _ = self.run_scene(*options, **more)
                     self.assertEqual(other["state_hash"], one["state_hash"])
                     self.assertEqual(other["strain_forgotten"], one["strain_forgotten"])
+
+    def test_a_step_that_forgets_is_repeated_by_a_restart(self):
+        # The checkpoint of a run's end is that of the state before its last step, in which strain is forgotten.
+        for name, scene in (("cavity", CAVITY + ["-a_shear_modulus", "1"]), ("shear", SHEAR + ["-a_shear_modulus", ".01"])):
+            with self.subTest(name):
+                scene = scene + COARSE
+                whole, said = self.run_scene(*scene, "-time_end", "5.5", directory=f"{name}_whole")
+                begin = float(re.search(r"t = ([\d.]+):", said)[1])
+                self.run_scene(*scene, "-time_end", begin + 1e-5, directory=name)
+                part, _ = self.run_scene(*scene, "-time_end", "5.5", "-restart", self.room / name, directory=name)
+                for key in "state_hash", "strain_forgotten":
+                    self.assertEqual(part[key], whole[key], key)
 
     def test_restart(self):
         for method, (scene, steps) in SCENES.items():
