@@ -159,7 +159,9 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
-            "principal stretches l along x, y, z: B = diag(l^2); the shape is given in the stretched state");
+            "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
+            "the shape is "
+            "given in the stretched state");
   add_attached_row(rows, spec);
   add_contact(rows, spec);
   add_placement(rows, spec);

@@ -54,6 +54,63 @@ void add_bodies(const Grid &grid, const SpeciesSpec &spec, const std::vector<Bod
   }
 }
 
+// The points of a staggering that have a cell of the body beside them: f(local point, the same global and unwrapped).
+template <class F>
+void for_points_of(const Grid &grid, const PlacedBody &body, const Staggering &at, const F &f) {
+  const auto ranges = [&](int d) {
+    const int first = grid.layout().begin[d], end = first + grid.points_end(d, at[d]);
+    std::vector<PlacedBody::Range> found = body.ranges(d, first - at[d], end);
+    for (PlacedBody::Range &r : found) r = {std::max(r.begin, first), std::min(r.end + at[d], end), r.shift};
+    return found;
+  };
+  const Int3 &first = grid.layout().begin;
+  for (const PlacedBody::Range &z : ranges(2))
+    for (const PlacedBody::Range &y : ranges(1))
+      for (const PlacedBody::Range &x : ranges(0))
+        for (int k = z.begin; k < z.end; ++k)
+          for (int j = y.begin; j < y.end; ++j)
+            for (int i = x.begin; i < x.end; ++i)
+              f(Int3{i - first[0], j - first[1], k - first[2]}, Int3{i + x.shift, j + y.shift, k + z.shift});
+}
+
+// B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
+// that has a part of them.
+template <class PhaseOf>
+void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
+                  PhaseOf phase_of) {
+  const Real3 &l = spec.initial_stretch;
+  if (l[0] == l[1] && l[1] == l[2]) return;
+  const Surface surface(spec, grid.dimension());
+  const auto &components = tensor_components(grid.dimension());
+  for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
+    if (places[b].orientation == Real3{}) continue;
+    const Rotation R = rotation(places[b].orientation);
+    const PlacedBody body(surface, grid.spec(), places[b]);
+    Phase &phase = *phase_of(b);
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const auto [x, y] = components[c];
+      double turned = 0;
+      for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
+      const View B = phase.tensor[static_cast<int>(c)], label = phase.label[0];
+      for_points_of(grid, body, components[c].staggering(), [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
+        double &value = B(p[0], p[1], p[2]);
+        if (x == y) {
+          if (label(p[0], p[1], p[2]) == first_label + double(b)) value = turned;
+          return;
+        }
+        double sum = 0;  // of the four cells around the edge
+        for (int n = 0; n < 4; ++n) {
+          Int3 beside = cell;
+          beside[x] -= n % 2;
+          beside[y] -= n / 2;
+          sum += body.fraction(beside);
+        }
+        if (sum >= 2 || (sum > 0 && value == 0)) value = turned;
+      });
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spec,
@@ -88,14 +145,17 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
   phase->empty(grid, true);
   add_bodies(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
   stretch_phase(grid, spec, phase);
+  turn_stretch(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
   PetscFunctionReturn(0);
 }
 
 void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                    const std::vector<int> &colour, std::vector<Phase> *phases) {
   for (Phase &phase : *phases) phase.empty(grid, true);
-  add_bodies(grid, spec, places, first_label, [&](std::size_t b) { return &(*phases)[colour[b]]; });
+  const auto phase_of = [&](std::size_t b) { return &(*phases)[colour[b]]; };
+  add_bodies(grid, spec, places, first_label, phase_of);
   for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
+  turn_stretch(grid, spec, places, first_label, phase_of);
 }
 
 }  // namespace eulastic

@@ -11,7 +11,8 @@ std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spe
                                         const std::vector<BodyPlace> &places);
 
 /// Allocates `phase` and fills its owned cells; ghosts are the caller's. Fraction: of the fullest body of a cell.
-/// Tensor: B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere. Label: first_label + index in `places`
+/// Tensor: B = R diag(initial_stretch^2) R^T, R the body's orientation, in cells with phi > 0 and on edges beside them, I
+/// elsewhere. Label: first_label + index in `places`
 /// (first_label >= 1) of the fullest body where phi > 0, the first of equals; else 0.
 PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
                           int first_label, Phase *phase);

@@ -46,7 +46,7 @@ struct SpeciesSpec {
   double c1 = 0, c2 = 0, c3 = 0;   ///< Mooney-Rivlin; pressure units
   std::optional<bool> attached;    ///< default by shape: is_attached()
   std::optional<Contact> contact;  ///< default by method: Config::separates()
-  Real3 initial_stretch{1, 1, 1};  ///< along x, y, z: B = diag(l^2); the shape is given in the stretched state
+  Real3 initial_stretch{1, 1, 1};  ///< B = diag(l^2), turned with the body; the shape is given in the stretched state
   Placement placement = Placement::one;
   Real3 centre{};
   bool centre_given = false;  ///< default: box centre

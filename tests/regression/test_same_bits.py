@@ -6,6 +6,7 @@ that only: tests/CMakeLists.txt).
 Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE.
 """
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -114,6 +115,27 @@ class SameBits(unittest.TestCase):
                 one = run()
                 self.assertEqual(run(program="EULASTIC_WHOLE")["state_hash"], one["state_hash"])
                 self.assertEqual(run(ranks=2)["state_hash"], one["state_hash"])
+
+    def test_turned_bodies_with_prestrain(self):
+        # B = R diag(l^2) R^T: a turned disc relaxes as one that is not turned, on any ranks.
+        scene = ("-grid_cells 96,96,1 -grid_length 2,2,1 -fluid_viscosity 1 -species a -a_shape ellipsoid -a_semi_axes "
+                 ".24,.15,.2 -a_shear_modulus 1 -a_initial_stretch 1.25,.8,1 -a_centre .53,.26,.5 -time_end .5").split()
+        energy = {}
+        for angle in (0, 30, 90):
+            one = self.run_program(*scene, "-a_orientation", f"0,0,{angle}")
+            energy[angle] = one["elastic_energy"]
+            for n in (2, 3, 4):
+                self.same(one, self.run_program(*scene, "-a_orientation", f"0,0,{angle}", ranks=n), f"{n} ranks")
+        start = 0.5 * math.pi * .24 * .15 * (1.25 ** 2 + .8 ** 2 - 2)
+        self.assertLess(energy[0], .8 * start)
+        self.assertAlmostEqual(energy[30] / energy[0], 1, delta=.02)
+        self.assertAlmostEqual(energy[90] / energy[0], 1, delta=1e-3)
+        solid = ("-grid_cells 24,20,18 -grid_length 1.2,1,.9 -boundary_z wall -fluid_viscosity 1 -species a -a_shape "
+                 "biconcave -a_diameter .5 -a_shear_modulus 1 -a_initial_stretch 1.2,.9,.9259259259259258 -a_placement "
+                 "random -a_count 3 -a_orientation random -time_end 1 -time_steps_max 3").split()
+        one = self.run_program(*solid)
+        for n in (2, 4):
+            self.same(one, self.run_program(*solid, ranks=n), f"{n} ranks")
 
     def test_body_that_crosses_ranks_along_x(self):
         # x is cut at a multiple of 256 cells only: whoever receives the body has seen nothing but empty rows before. The

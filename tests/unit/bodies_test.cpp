@@ -257,6 +257,35 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
   EXPECT_EQ(phase.label[0](6, 6, 30), 14);
 }
 
+TEST(FillPhase, StretchTurnsWithTheBody) {
+  SpeciesSpec spec = species(Shape::ellipsoid, 0.25, {0.05, 0.5, 0.5});  // across the periodic x
+  spec.initial_stretch = {1.5, 0.5, 4. / 3};
+  spec.orientation = {20, -35, 70};
+  const Scene turned(box({32, 32, 32}, {1, 1, 1}), spec);
+  const Rotation R = rotation(spec.orientation);
+  const auto &components = tensor_components(3);
+  int full[6] = {};
+  for (std::size_t c = 0; c < 6; ++c) {
+    const auto [a, b] = components[c];
+    double expected = 0;
+    for (int m = 0; m < 3; ++m) expected += R[a][m] * spec.initial_stretch[m] * spec.initial_stretch[m] * R[b][m];
+    for (const Segment &row : turned.grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        int solid = 0;  // of the cells around the point
+        for (int n = 0; n < (a == b ? 1 : 4); ++n) {
+          Int3 cell{i, row.j, row.k};
+          if (n % 2) cell[a] = (cell[a] + 31) % 32;
+          if (n / 2) cell[b] = (cell[b] + 31) % 32;
+          solid += turned.phi(cell[0], cell[1], cell[2]) > 0;
+        }
+        full[c] += solid > 0;
+        ASSERT_NEAR(turned.phase.tensor[static_cast<int>(c)](i, row.j, row.k), solid > 0 ? expected : a == b, 1e-14)
+            << c << " at " << i << ' ' << row.j << ' ' << row.k;
+      }
+  }
+  for (const int count : full) EXPECT_GT(count, 1000);
+}
+
 TEST(FillPhase, OverlappingBodiesTakeTheLargerFraction) {
   SpeciesSpec spec = species(Shape::sphere, 0.3, {});
   std::vector<BodyPlace> places{{{0.4, 0.5, 0.5}, {}}, {{0.62, 0.5, 0.5}, {}}};
