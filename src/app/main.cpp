@@ -1,4 +1,5 @@
 // eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
+#include "app/attachment_warning.hpp"
 #include "app/check_only.hpp"
 #include "app/overlap_warning.hpp"
 #include "app/run.hpp"
@@ -37,6 +38,7 @@ PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
     text = check_report(parsed.config, ranks);
     PetscCall(find_overlap_warning(PETSC_COMM_WORLD, parsed.config, &overlap));
     if (!overlap.empty()) text += "warning: " + overlap + "\n";
+    for (const std::string &warning : attachment_warnings(parsed.config)) text += "warning: " + warning + "\n";
   }
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str()));
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 #include "app/run.hpp"
 
+#include "app/attachment_warning.hpp"
 #include "app/checkpoints.hpp"
 #include "app/memory.hpp"
 #include "app/overlap_warning.hpp"
@@ -63,6 +64,7 @@ PetscErrorCode print_warnings(const Config &config, const Run &run) {
   PetscCall(find_overlap_warning(comm, config, &overlap));
   print_warning(comm, overlap);
   print_warning(comm, run.outputs.unresolved_bodies());
+  for (const std::string &warning : attachment_warnings(config)) print_warning(comm, warning);
   PetscFunctionReturn(0);
 }
 

@@ -32,12 +32,8 @@ public:
   }
 
   void add_viscous(int c, double viscosity, double wall, ConstView q, WallStress *stress) const {
-    const std::ptrdiff_t inward = high_ ? -q.stride(d_) : q.stride(d_);
-    const double factor = viscosity / (3 * grid_.spacing()[d_]);
-    add(c, stress, [=](const Int3 &cell) {
-      const double *p = &q(cell[0], cell[1], cell[2]);
-      return factor * (9 * p[0] - p[inward] - 8 * wall);
-    });
+    const double factor = 2 * viscosity / grid_.spacing()[d_];  // the stress that the momentum equation sees
+    add(c, stress, [=](const Int3 &cell) { return factor * (q(cell[0], cell[1], cell[2]) - wall); });
   }
 
   void add_elastic(int c, const Phase &phase, WallStress *stress) const {

@@ -122,9 +122,12 @@ double extend_fields(const Entries &entries, Piece piece, int dimension, const s
 
 }  // namespace
 
-bool damps_short_waves(const Grid &grid, const Fluid &fluid, const Material &material) {
-  double shortest = grid.spacing()[0];
-  for (int d = 1; d < grid.dimension(); ++d) shortest = std::fmin(shortest, grid.spacing()[d]);
+double damping_spacing(const Fluid &fluid, const Material &material) {
+  return fluid.kinematic_viscosity() / std::sqrt(material.shear_modulus / fluid.density);
+}
+
+bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material) {
+  const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
   return std::sqrt(material.shear_modulus / fluid.density) * shortest <= fluid.kinematic_viscosity();
 }
 

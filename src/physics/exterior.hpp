@@ -25,7 +25,9 @@ inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
 
 /// Whether the fluid's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
 /// attached body amplifies those that it does not.
-bool damps_short_waves(const Grid &grid, const Fluid &fluid, const Material &material);
+bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material);
+/// The largest spacing at which it does; infinite without elasticity.
+double damping_spacing(const Fluid &fluid, const Material &material);
 
 /// Which points each layer holds; made anew whenever phi has changed.
 class ExteriorLayers {

@@ -77,7 +77,8 @@ PetscErrorCode Solver::prepare() {
   else
     next_fraction_ = FieldBlock::at_rest(*grid_, 1);
   for (Phase &phase : now_.phases) {
-    phase.material.linear = phase.material.attached && damps_short_waves(*grid_, spec_.fluid, phase.material);
+    phase.material.linear =
+        phase.material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, phase.material);
     PetscCall(settle(phase));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
