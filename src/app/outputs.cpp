@@ -123,8 +123,9 @@ PetscErrorCode Outputs::measure() {
     m.resolved_drift = drift;
     m.drifting_body = static_cast<int>(b);
   }
-  // beta follows from div v; where that is round-off, so is beta.
-  const double sound_speed = m.flow.divergence_rms > 1e-10 ? solver_->sound_speed() : 0;
+  // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
+  constexpr double noise = 1e-5;  // of U/h
+  const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
   m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
   mach_max_ = std::max(mach_max_, m.mach);
   m.time = state.time;

@@ -131,6 +131,20 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(done.returncode, 0)
             self.assertEqual(done.stderr[:len(warning)] if warning else done.stderr, warning)
 
+    def test_attached_bodies_too_stiff_for_the_grid_are_a_warning(self):
+        scene = ("-grid_cells 16,16,1 -grid_length 2,1,1 -fluid_density 4 -fluid_viscosity 2 -boundary_y wall -time_end 1 "
+                 "-time_steps_max 1 -output_overwrite -species a -a_shape slab -a_interval 0,.3 -a_shear_modulus").split()
+        text = "a is attached and too stiff for the grid: "  # sqrt(G/rho) h <= nu: G <= 4 (.5 16)^2 = 256
+        for modulus, spacing in ((250, None), (260, "0.062"), (25600, "0.00625")):
+            for words in ([], ["-check_only"]):
+                done = self.run_program(*scene, str(modulus), *words)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                said = [line for line in (done.stdout + done.stderr).splitlines() if text in line]
+                self.assertEqual(len(said), spacing is not None, done.stdout + done.stderr)
+                self.assertTrue(spacing is None or f"a spacing of at most {spacing}" in said[0], said)
+        free = self.run_program(*scene, "260", "-a_attached", "false", "-check_only")
+        self.assertNotIn(text, free.stdout)
+
     def test_more_threads_than_processors_are_a_warning(self):
         allowed = os.sched_getaffinity(0)
         self.addCleanup(os.sched_setaffinity, 0, allowed)
