@@ -63,7 +63,7 @@ class Guards(Restart):
             file["velocity_x"], file["velocity_y"], file["solid_fraction"] = wave, -wave, numpy.ones((1, n, n))
         end = self.run_case("wave", "-grid_cells", f"{n},{n},1", "-fluid_viscosity", ".01", "-method", "classic",
                             "-initial_state", "wave.h5", "-species", "g", "-g_shear_modulus", "1", "-time_end", ".8")
-        self.assertTrue(0 < end["mach_max"] < .5, end["mach_max"])
+        self.assertTrue(0 < end["mach_max"] < 1, end["mach_max"])
 
     def test_cfl(self):
         self.stopped(*FREE, "-method", "classic", "-time_step", ".1", says=["CFL number 1.5", "-guard_cfl 1;"])
