@@ -97,7 +97,7 @@ public:
     report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
     for (const SpeciesSpec &spec : config_.species) {
       const double modulus = spec.material().shear_modulus;
-      if (spec.law == Law::mooney_rivlin)
+      if (modulus != spec.shear_modulus)
         report.line("shear modulus of " + spec.name, "%.6g (at rest: 2 (c1 + c2))", modulus);
       if (modulus > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",

@@ -1,7 +1,7 @@
 // A species: bodies of one shape and one material, and where they are placed.
 #pragma once
 
-#include "field/material.hpp"
+#include "field/law.hpp"
 #include "grid/grid.hpp"
 
 #include <array>
@@ -62,9 +62,8 @@ struct SpeciesSpec {
   bool random_orientation = false;
 
   Material material() const {
-    Material m = law == Law::neo_hookean ? Material{shear_modulus} : Material::mooney_rivlin(c1, c2, c3);
-    m.attached = attached.value_or(is_attached(shape));
-    return m;
+    const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
+    return {at_rest, attached.value_or(is_attached(shape)), false, law, c1, c2, c3};
   }
 };
 

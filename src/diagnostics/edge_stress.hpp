@@ -1,17 +1,12 @@
 // The elastic shear stress of a phase on one edge, as the momentum equation sees it.
 #pragma once
 
+#include "field/law.hpp"
 #include "field/phase.hpp"
-#include "kernels/elastic_energy.hpp"
 
 #include <algorithm>
 
 namespace eulastic {
-
-inline kernels::MooneyRivlin law_of(const Material &material) {
-  const auto k = material.coefficients();
-  return {k[0], k[1], k[2]};
-}
 
 /// Pointers to the components of B of one cell, in their order; 2-D has three.
 struct CellTensor {
@@ -27,10 +22,10 @@ inline double edge_stress(int dimension, const Phase &phase, int a, int b, int i
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
   const CellTensor B(phase.tensor, i, j, k);
   const double *fraction = &phi(i, j, k);
-  const kernels::MooneyRivlin law = law_of(phase.material);
-  return dimension == 2
-             ? kernels::mooney_rivlin_shear<2>(fraction, kernels::tensor_at<2>(B.component, stride, a, b), 0, law)
-             : kernels::mooney_rivlin_shear<3>(fraction, kernels::tensor_at<3>(B.component, stride, a, b), 0, law);
+  return with_law(phase.material, [&](const auto &law) {
+    return dimension == 2 ? law.shear_stress(fraction, kernels::tensor_at<2>(B.component, stride, a, b), 0)
+                          : law.shear_stress(fraction, kernels::tensor_at<3>(B.component, stride, a, b), 0);
+  });
 }
 
 }  // namespace eulastic

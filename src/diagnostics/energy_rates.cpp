@@ -17,14 +17,14 @@ struct Row {
   CellTensor B;  // of its cell 0
   int begin, end;
   std::ptrdiff_t stride[3];
-  kernels::MooneyRivlin law;
+  const Material &material;
 
   Row(const Phase &phase, const Segment &row)
       : phi(phase.fraction[0].row(row.j, row.k)),
         B(phase.tensor, 0, row.j, row.k),
         begin(row.i_begin),
         end(row.i_end),
-        law(law_of(phase.material)) {
+        material(phase.material) {
     for (int d = 0; d < 3; ++d) stride[d] = phase.fraction[0].stride(d);
   }
 };
@@ -39,23 +39,20 @@ EULASTIC_INLINE void times_fraction(const double *phi, int begin, int end, doubl
   }
 }
 
-template <int Dim, bool WithSecond>
+template <int Dim>
 EULASTIC_INLINE void energy_row(const Row &row, double *out) {
-  times_fraction(row.phi, row.begin, row.end, out, [&row](int i) EULASTIC_BODY {
-    return kernels::energy_density<Dim, WithSecond>(row.B.component, i, row.stride, row.law);
+  const kernels::TensorAt<Dim> t = kernels::tensor_at<Dim>(row.B.component, row.stride, 0, 1);
+  with_law(row.material, [&](const auto &law) EULASTIC_BODY {
+    times_fraction(row.phi, row.begin, row.end, out, [=](int i) EULASTIC_BODY { return law.energy(t, i); });
   });
 }
 
-EULASTIC_CLONES void energy_2d(const Row &row, double *out) {
-  row.law.k2 == 0 ? energy_row<2, false>(row, out) : energy_row<2, true>(row, out);
-}
-EULASTIC_CLONES void energy_3d(const Row &row, double *out) {
-  row.law.k2 == 0 ? energy_row<3, false>(row, out) : energy_row<3, true>(row, out);
-}
+EULASTIC_CLONES void energy_2d(const Row &row, double *out) { energy_row<2>(row, out); }
+EULASTIC_CLONES void energy_3d(const Row &row, double *out) { energy_row<3>(row, out); }
 
 // phi sigma_e : grad v, by runs of vectors that hold any solid.
-template <int Dim>
-EULASTIC_INLINE void power_row(const Row &row, const double *inverse, double *out) {
+template <int Dim, class Law>
+EULASTIC_INLINE void power_row(const Row &row, const double *inverse, const Law &law, double *out) {
   constexpr int width = 8;
   std::fill(out + row.begin, out + row.end, 0.0);
   int run = row.begin;  // where the one begins that has come so far
@@ -66,14 +63,18 @@ EULASTIC_INLINE void power_row(const Row &row, const double *inverse, double *ou
     for (int i = begin; i < end; ++i) any |= row.phi[i] != 0;
     if (any && end < row.end) continue;
     times_fraction(row.phi, run, any ? end : begin, out, [&](int i) EULASTIC_BODY {
-      return kernels::power_density<Dim>(row.B.component, row.v, i, row.stride, inverse, row.law);
+      return kernels::stress_power<Dim>(row.B.component, row.v, i, row.stride, inverse, law);
     });
     run = end;
   }
 }
 
-EULASTIC_CLONES void power_2d(const Row &row, const double *inverse, double *out) { power_row<2>(row, inverse, out); }
-EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out) { power_row<3>(row, inverse, out); }
+EULASTIC_CLONES void power_2d(const Row &row, const double *inverse, double *out) {
+  with_law(row.material, [&](const auto &law) EULASTIC_BODY { power_row<2>(row, inverse, law, out); });
+}
+EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out) {
+  with_law(row.material, [&](const auto &law) EULASTIC_BODY { power_row<3>(row, inverse, law, out); });
+}
 
 void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
   Row at(phase, row);

@@ -1,8 +1,6 @@
 // What a body is made of.
 #pragma once
 
-#include <array>
-
 namespace eulastic {
 
 enum class Law { neo_hookean, mooney_rivlin };
@@ -10,24 +8,12 @@ enum class Law { neo_hookean, mooney_rivlin };
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I
 /// and II the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
 struct Material {
-  double shear_modulus = 0;  ///< G = 2 (c1 + c2) at rest, pressure units
+  double shear_modulus = 0;  ///< G at rest, pressure units
   bool attached = false;     ///< to a wall, hardly moving (slab, tube)
   bool linear = false;       ///< B is extended linearly: attached, and the grid sees its waves damped
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
 
-  static Material mooney_rivlin(double c1, double c2, double c3) {
-    Material m;
-    m.shear_modulus = 2 * (c1 + c2);
-    m.law = Law::mooney_rivlin;
-    m.c1 = c1, m.c2 = c2, m.c3 = c3;
-    return m;
-  }
-  /// 2 c1, 2 c2, 4 c3 of either law: what the kernels take.
-  std::array<double, 3> coefficients() const {
-    if (law == Law::neo_hookean) return {shear_modulus, 0, 0};
-    return {2 * c1, 2 * c2, 4 * c3};
-  }
   /// false: a marked part of the fluid.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }
 };

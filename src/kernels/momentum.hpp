@@ -7,24 +7,27 @@ namespace eulastic::kernels {
 
 inline constexpr double viscous_pressure_flops_per_direction = 6;
 
-/// total = rate + nu lap q - (p - p[-step]) pressure_factor + force; out = total, or q + dt total. `second[d]` =
-/// 1/h_d^2.
-template <int Dim, bool RateOnly>
-EULASTIC_INLINE void add_viscous_pressure_force(const Segment &s, ConstView q, double viscosity, const double *second,
-                                                ConstView p, std::ptrdiff_t step, double pressure_factor, double force,
-                                                const double *rate, double dt, double *out) noexcept {
+/// Compact Laplacian of a centred field at q[0].
+template <int Dim>
+EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, InverseSquares h) noexcept {
+  const double twice = 2 * q[0];
+  double sum = h.x * ((q[1] + q[-1]) - twice);
+  sum = fma(h.y, (q[sy] + q[-sy]) - twice, sum);
+  if constexpr (Dim == 3) sum = fma(h.z, (q[sz] + q[-sz]) - twice, sum);
+  return sum;
+}
+
+/// out = advection + nu lap q - (p - p[-step]) pressure_factor + force; `viscosity` = nu/h_d^2.
+template <int Dim>
+EULASTIC_INLINE void fluid_rate(const Segment &s, const double *advection, ConstView q, InverseSquares viscosity,
+                                ConstView p, std::ptrdiff_t step, double pressure_factor, double force,
+                                double *out) noexcept {
   const double *u = q.row(s.j, s.k), *pressure = p.row(s.j, s.k);
   const std::ptrdiff_t sy = q.sy, sz = q.sz;
-  const double ax = viscosity * second[0], ay = viscosity * second[1], az = viscosity * second[2];
 #pragma omp simd
   for (int i = s.i_begin; i < s.i_end; ++i) {
-    const double twice = 2 * u[i];
-    double sum = ax * ((u[i + 1] + u[i - 1]) - twice);
-    sum = fma(ay, (u[i + sy] + u[i - sy]) - twice, sum);
-    if constexpr (Dim == 3) sum = fma(az, (u[i + sz] + u[i - sz]) - twice, sum);
-    sum = fma(-pressure_factor, pressure[i] - pressure[i - step], sum);
-    const double total = rate[i] + (sum + force);
-    out[i] = RateOnly ? total : fma(dt, total, u[i]);
+    const double viscous = laplacian<Dim>(u + i, sy, sz, viscosity);
+    out[i] = advection[i] + (fma(-pressure_factor, pressure[i] - pressure[i - step], viscous) + force);
   }
 }
 
@@ -51,15 +54,5 @@ struct AcmIncrement {
     return -inverse_dt * fma(kappa, divergence, g * (pressure - mean)) - mean;
   }
 };
-
-/// Compact Laplacian of a centred field at q[0].
-template <int Dim>
-EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, InverseSquares h) noexcept {
-  const double twice = 2 * q[0];
-  double sum = h.x * ((q[1] + q[-1]) - twice);
-  sum = fma(h.y, (q[sy] + q[-sy]) - twice, sum);
-  if constexpr (Dim == 3) sum = fma(h.z, (q[sz] + q[-sz]) - twice, sum);
-  return sum;
-}
 
 }  // namespace eulastic::kernels

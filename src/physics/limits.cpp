@@ -1,6 +1,7 @@
 #include "physics/limits.hpp"
 
 #include "field/exact_sum.hpp"
+#include "field/law.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
@@ -129,12 +130,9 @@ double inverse_stretch_squared(double trace, int dimension) {
 }
 
 double largest_stiffness(const Material &material, double trace, int dimension) {
-  const double stretch = stretch_squared(trace, dimension);
-  if (material.law == Law::neo_hookean) return material.shear_modulus * stretch;
-  const double inverse = inverse_stretch_squared(trace, dimension), excess = std::max(trace - 3, 0.0);
-  const double spread = stretch - 1 / inverse;
-  return 2 * (material.c1 + 2 * material.c3 * excess) * stretch + 2 * material.c2 * inverse +
-         2 * material.c3 * spread * spread;
+  const kernels::StretchBounds bounds{stretch_squared(trace, dimension), inverse_stretch_squared(trace, dimension),
+                                      std::max(trace - 3, 0.0)};
+  return with_law(material, [&](const auto &law) { return law.stiffness(bounds); });
 }
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,

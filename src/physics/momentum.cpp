@@ -4,88 +4,67 @@
 #include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
 #include "kernels/momentum.hpp"
-#include "kernels/mooney_rivlin.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/advection.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace eulastic {
 namespace {
 
-struct PredictorTerms {
-  const Grid *grid;
-  const FieldBlock *velocity, *pressure;
-  const std::vector<Phase> *phases;
-  bool inertia;
-  double dt, density, kinematic_viscosity, epsilon;
-  AdvectionWeights weights;
-  FieldBlock *advection;   // null: not kept
-  FieldBlock *divergence;  // of v*; null: not wanted
-  bool rate_only;          // write dv/dt instead of v + dt dv/dt
+struct RateTerms {
+  const Grid &grid;
+  const FieldBlock &velocity, &pressure;
+  const std::vector<Phase> &phases;
+  FieldBlock *advection;  // null: not kept
   ForceSlope slope;
-  Real3 force, inverse, inverse_squared;
+  bool inertia;
+  double density, epsilon;
+  AdvectionWeights weights;
+  Real3 body_force, inverse;  // the latter of the spacing
+  InverseSquares viscosity;   // nu/h^2
 };
 
-// force += scale div(sigma), the law's stress, on the stressed segments of rows j_begin <= j < j_end of plane k; times
-// `factor` also to `slope`, where it is given.
-template <int Dim, bool WithSlope>
-EULASTIC_INLINE void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin,
-                                       int j_end, int k, FieldBlock &force, const ForceSlope &slope) {
-  // Block position of a tensor component, see tensor_components().
-  const auto at = [](int x, int y) { return x == y ? x : Dim == 2 ? 2 : 6 - x - y; };
-  for (const Phase &phase : phases) {
-    const Material &material = phase.material;
-    if (!material.elastic()) continue;
-    const FieldBlock &B = phase.tensor;
-    const ConstView phi = phase.fraction[0];
-    const kernels::MooneyRivlin law{scale * 2 * material.c1, scale * 2 * material.c2, scale * 4 * material.c3};
-    const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
-      for (int a = 0; a < Dim; ++a) {
-        const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
-        if (Dim == 3) {  // two planes on
-          batch.ahead[0] = B[at(a, a)].origin + 2 * phi.sz;
-          batch.ahead[1] = B[at(a, b)].origin + 2 * phi.sz;
-        }
-        const kernels::TensorViews views{B[at(a, a)], B[at(b, b)], B[at(c, c)], B[at(a, b)], B[at(a, c)]};
-        const std::ptrdiff_t stride[3] = {phi.stride(a), phi.stride(b), phi.stride(c)};
-        const Real3 &h = grid.spacing();
-        const double inverse[3] = {1 / h[a], 1 / h[b], 1 / h[c]};
-        double *sum = force[a].origin, *change = WithSlope ? (*slope.field)[a].origin : nullptr;
-        const double factor = slope.factor;
-        const auto add_to = [=](std::ptrdiff_t o, double f) EULASTIC_BODY {
-          sum[o] += f;
-          if (WithSlope) change[o] = kernels::fma(factor, f, change[o]);
-        };
-        if (material.law == Law::neo_hookean)
-          kernels::elastic_force<Dim>(batch, phi, views, stride, inverse, scale * material.shear_modulus, add_to);
-        else
-          kernels::mooney_rivlin_force<Dim>(batch, phi, views, B[at(b, c)], stride, inverse, law, add_to);
-      }
-    };
-    if (phase.stressed.idle_rows(j_begin, j_end, k)) continue;
-    kernels::Batch batch;
-    for (int j = j_begin; j < j_end; ++j)
-      for (const Segment &s : phase.stressed.row(j, k)) {
-        if (Dim == 3) {                                            // what is beside the vectors there, and phi
-          const int i = s.i_begin - 1, length = s.size() + 2 + 7;  // up to its last cache line
-          prefetch(phi.row(j, k + 2) + i, length);
-          for (int f = 0; f < B.count(); ++f) {
-            const double *row = B[f].row(j, k + 2);
-            prefetch(row + i, 1);
-            prefetch(row + s.i_end, 1);
-          }
-          for (const int y : {j - 1, j + 1}) {
-            if (!phase.stressed.idle(y, k)) continue;
-            prefetch(phi.row(y, k + 2) + i, length);
-            for (int f = 0; f < B.count(); ++f) prefetch(B[f].row(y, k + 2) + i, length);
-          }
-        }
-        kernels::gather(batch, j * phi.sy + k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
-      }
-    add(batch);
-  }
+RateTerms rate_terms(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+                     const FieldBlock &pressure, const std::vector<Phase> &phases) {
+  const Real3 &h = grid.spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const double nu = fluid.kinematic_viscosity();
+  const auto over_square = [&](int d) { return nu * (inverse[d] * inverse[d]); };
+  return {grid,
+          velocity,
+          pressure,
+          phases,
+          nullptr,
+          {},
+          fluid.inertia,
+          fluid.density,
+          weno_epsilon(step.speed_scale),
+          step.weights,
+          fluid.body_force.at(step.force_time),
+          inverse,
+          {over_square(0), over_square(1), over_square(2)}};
+}
+
+// Rows of a block in a plane.
+struct BlockRows {
+  int begin, end, k;
+};
+
+// What is asked for ahead of row j of component a: the rows of its stencil, at the block's sides too, of the result and
+// of what goes with it.
+RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, const FieldBlock &out) {
+  constexpr int reach = Grid::stencil_width;
+  const RowAhead next(block.begin, block.end, j, block.k);
+  const auto at = [&](ConstView q, int y, int z) { return q.row(next.j + y, next.k + z) - reach; };
+  const int side = next.j < block.begin + reach ? -reach : next.j >= block.end - reach ? reach : 0;
+  RowsAhead ahead;
+  ahead.length = t.grid.owned()[0] + 2 * reach + 7;  // up to the last cache line
+  ahead.rows[0][0] = at(t.velocity[a], 0, reach);
+  if (side != 0) ahead.rows[0][1] = at(t.velocity[a], side, 0);
+  ahead.rows[1][0] = at(out[a], 0, 0);
+  if (a == 1) ahead.rows[1][1] = at(t.pressure[0], 0, 0);
+  if (t.advection) ahead.rows[2][1] = at((*t.advection)[a], 0, 0);
+  return ahead;
 }
 
 // rate holds -v.grad v of now and `kept` that of the last step; they trade places, weighted.
@@ -98,244 +77,93 @@ EULASTIC_INLINE void combine_advection(int n, AdvectionWeights weights, double *
   }
 }
 
-// No flow through the low walls, before the divergence is taken.
+// All terms but the elastic force. `advection`: a row of scratch.
 template <int Dim>
-EULASTIC_INLINE void close_low_faces(const Grid &grid, int begin, int end, int k, FieldBlock &v) {
-  const int n = grid.owned()[0];
-  for (int j = begin; j < end; ++j) {
-    if (grid.touches_low(0)) v[0](0, j, k) = 0;
-    if (grid.touches_low(1) && j == 0) std::fill_n(v[1].row(j, k), n, 0.0);
-    if (Dim == 3 && grid.touches_low(2) && k == 0) std::fill_n(v[2].row(j, k), n, 0.0);
+EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+  const FieldBlock &v = t.velocity;
+  const ConstView p = t.pressure[0];
+  const int n = t.grid.owned()[0];
+  for (int j = block.begin; j < block.end; ++j) {
+    const Segment row{0, n, j, block.k};
+    for (int a = 0; a < Dim; ++a) {
+      const RowsAhead ahead = Dim == 3 ? rows_ahead(t, block, a, j, out) : RowsAhead{};
+      if (t.inertia) {
+        face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, advection);
+        if (t.advection) combine_advection(n, t.weights, (*t.advection)[a].row(j, block.k), advection);
+      } else {
+        for (int d = 0; d < Dim; ++d) ahead.ask(d, 0, ahead.length);
+        std::fill_n(advection, n, 0.0);
+      }
+      kernels::fluid_rate<Dim>(row, advection, v[a], t.viscosity, p, p.stride(a), t.inverse[a] / t.density,
+                               t.body_force[a], out[a].row(j, block.k));
+    }
   }
 }
 
-// Rows begin <= j < end of plane k, from cell `first` on.
-template <int Dim>
-EULASTIC_INLINE void divergence_rows(const Grid &grid, double density, const FieldBlock &v, int first, int begin,
-                                     int end, int k, FieldBlock &out) {
-  const Real3 inverse{1 / grid.spacing()[0], 1 / grid.spacing()[1], 1 / grid.spacing()[2]};
-  for (int j = begin; j < end; ++j) {
-    double *row = out[0].row(j, k);
-    kernels::divergence<Dim>({first, grid.owned()[0], j, k}, v[0], v[1], v[Dim - 1], inverse.data(), density, row);
-    if (grid.wraps_x()) grid.wrap_row(row, 1);
-  }
+EULASTIC_CLONES void fluid_rate_2d(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+  fluid_rate<2>(t, block, advection, out);
+}
+EULASTIC_CLONES void fluid_rate_3d(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+  fluid_rate<3>(t, block, advection, out);
 }
 
 // Fewer rows than for other verbs, as nine fields share the cache.
 constexpr int rows_of_block = block_rows / 2;
 
-template <int Dim, bool RateOnly>
-EULASTIC_INLINE void predict(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &scratch) {
-  const FieldBlock &v = *t.velocity;
-  const ConstView p = (*t.pressure)[0];
-  const Int3 n = t.grid->owned();
-  double *rate = scratch.row(0);
-  for (int block = part.j_begin; block < part.j_end; block += rows_of_block)
-    for (int k = part.k_begin; k < part.k_end; ++k) {
-      const int end = std::min(block + rows_of_block, part.j_end);
-      for (int j = block; j < end; ++j) {
-        const Segment row{0, n[0], j, k};
-        for (int a = 0; a < Dim; ++a) {
-          RowsAhead ahead;
-          if (Dim == 3) {  // rows of the stencil, at the block's sides too, and of the result
-            constexpr int reach = Grid::stencil_width;
-            const RowAhead next(block, end, j, k);
-            const auto at = [&](ConstView q, int y, int z) { return q.row(next.j + y, next.k + z) - reach; };
-            const int side = next.j < block + reach ? -reach : next.j >= end - reach ? reach : 0;
-            ahead.length = n[0] + 2 * reach + 7;  // up to the last cache line
-            ahead.rows[0][0] = at(v[a], 0, reach);
-            if (side != 0) ahead.rows[0][1] = at(v[a], side, 0);
-            ahead.rows[1][0] = at(out[a], 0, 0);
-            if (a == 1) ahead.rows[1][1] = at(p, 0, 0);
-            if (a == 2 && t.divergence) ahead.rows[2][0] = at((*t.divergence)[0], 0, -1);
-            if (t.advection) ahead.rows[2][1] = at((*t.advection)[a], 0, 0);
-          }
-          if (t.inertia) {
-            face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, rate);
-            if (t.advection) combine_advection(n[0], t.weights, (*t.advection)[a].row(j, k), rate);
-          } else {
-            for (int d = 0; d < Dim; ++d) ahead.ask(d, 0, ahead.length);
-            std::fill_n(rate, n[0], 0.0);
-          }
-          kernels::add_viscous_pressure_force<Dim, RateOnly>(row, v[a], t.kinematic_viscosity, t.inverse_squared.data(),
-                                                             p, p.stride(a), t.inverse[a] / t.density, t.force[a], rate,
-                                                             t.dt, out[a].row(j, k));
-        }
+// The rate, and after(rows) while it is in the caches.
+template <class After>
+void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
+  VerbScope scope(Verb::momentum);
+  const int dim = t.grid.dimension();
+  in_row_parts(t.grid, [&](const RowPart &part) {
+    RowScratch scratch(t.grid, 1);
+    for (int begin = part.j_begin; begin < part.j_end; begin += rows_of_block)
+      for (int k = part.k_begin; k < part.k_end; ++k) {
+        const BlockRows block{begin, std::min(begin + rows_of_block, part.j_end), k};
+        (dim == 2 ? fluid_rate_2d : fluid_rate_3d)(t, block, scratch.row(0), out);
+        add_elastic_force(t.grid, t.phases, 1 / t.density, block.begin, block.end, k, out, t.slope);
+        after(block);
       }
-      if (RateOnly && t.slope.field)
-        add_elastic_force<Dim, true>(*t.grid, *t.phases, 1 / t.density, block, end, k, out, t.slope);
-      else
-        add_elastic_force<Dim, false>(*t.grid, *t.phases, (RateOnly ? 1 : t.dt) / t.density, block, end, k, out, {});
-      if (RateOnly) continue;
-      close_low_faces<Dim>(*t.grid, block, end, k, out);
-      if (t.grid->wraps_x())
-        for (int a = 0; a < Dim; ++a)
-          for (int j = block; j < end; ++j) t.grid->wrap_row(out[a].row(j, k), 1);
-      const int before = Dim == 3 ? k - 1 : k;  // where the faces above are known, but for the last row's
-      if (t.divergence && before >= part.k_begin)
-        divergence_rows<Dim>(*t.grid, t.density, out, 0, std::max(block - 1, part.j_begin), end - 1, before,
-                             *t.divergence);
+  });
+  const double per_face = (t.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
+                          dim * kernels::viscous_pressure_flops_per_direction + 5;
+  scope.flops(dim * t.grid.owned_count() * per_face + elastic_flops(dim, t.phases));
+  if (t.slope.field)
+    for (const Phase &phase : t.phases) scope.flops(dim * 2 * phase.stressed.points());
+}
+
+// v + dt rate, in place of the rate.
+EULASTIC_CLONES void advance_by_rate(const Grid &grid, const BlockRows &block, double dt, const FieldBlock &velocity,
+                                     FieldBlock &rate) {
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (int j = block.begin; j < block.end; ++j) {
+      const double *v = velocity[a].row(j, block.k);
+      double *out = rate[a].row(j, block.k);
+#pragma omp simd
+      for (int i = 0; i < grid.owned()[0]; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
+      if (grid.wraps_x()) grid.wrap_row(out, 1);
     }
 }
 
-EULASTIC_CLONES void predict_2d(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &s) {
-  t.rate_only ? predict<2, true>(t, part, out, s) : predict<2, false>(t, part, out, s);
-}
-EULASTIC_CLONES void predict_3d(const PredictorTerms &t, const RowPart &part, FieldBlock &out, RowScratch &s) {
-  t.rate_only ? predict<3, true>(t, part, out, s) : predict<3, false>(t, part, out, s);
-}
-
-template <int Dim>
-EULASTIC_INLINE void elastic_rows(const Grid &grid, const RowPart &part, double scale, const std::vector<Phase> &phases,
-                                  FieldBlock &force) {
-  for_rows_in_blocks(
-      part,
-      [&](int j, int k) EULASTIC_BODY {
-        for (int a = 0; a < Dim; ++a) {
-          if (Dim == 3) prefetch(force[a].row(j, k + 1), grid.owned()[0]);
-          std::fill_n(force[a].row(j, k), grid.owned()[0], 0.0);
-        }
-      },
-      [&](int begin, int end, int k)
-          EULASTIC_BODY { add_elastic_force<Dim, false>(grid, phases, scale, begin, end, k, force, {}); });
-}
-
-EULASTIC_CLONES void elastic_2d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,
-                                FieldBlock &force) {
-  elastic_rows<2>(g, part, scale, phases, force);
-}
-EULASTIC_CLONES void elastic_3d(const Grid &g, const RowPart &part, double scale, const std::vector<Phase> &phases,
-                                FieldBlock &force) {
-  elastic_rows<3>(g, part, scale, phases, force);
-}
-
-// Flops per component of the velocity.
-double elastic_flops(int dimension, const std::vector<Phase> &phases) {
-  double sum = 0;
-  for (const Phase &phase : phases) {
-    const bool flat = dimension == 2, neo_hookean = phase.material.law == Law::neo_hookean;
-    const double per_face = neo_hookean ? (flat ? kernels::elastic_flops_2d : kernels::elastic_flops_3d)
-                                        : (flat ? kernels::mooney_rivlin_flops_2d : kernels::mooney_rivlin_flops_3d);
-    sum += phase.stressed.points() * per_face;
-  }
-  return sum;
-}
-
-// All rows, or those that predict() leaves.
-template <int Dim>
-EULASTIC_INLINE void divergence_everywhere(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,
-                                           bool left_only, FieldBlock &out) {
-  const Int3 n = grid.owned();
-  for (int k = part.k_begin; k < part.k_end; ++k) {
-    const int inner = left_only && (Dim == 2 || k < part.k_end - 1) ? part.j_end - 1 : part.j_begin;
-    if (!grid.wraps_x()) divergence_rows<Dim>(grid, density, v, n[0] - 1, part.j_begin, inner, k, out);
-    divergence_rows<Dim>(grid, density, v, 0, inner, part.j_end, k, out);
-  }
-}
-
-EULASTIC_CLONES void divergence_2d(const Grid &g, const RowPart &part, double density, const FieldBlock &v,
-                                   bool left_only, FieldBlock &out) {
-  divergence_everywhere<2>(g, part, density, v, left_only, out);
-}
-EULASTIC_CLONES void divergence_3d(const Grid &g, const RowPart &part, double density, const FieldBlock &v,
-                                   bool left_only, FieldBlock &out) {
-  divergence_everywhere<3>(g, part, density, v, left_only, out);
-}
-
-void run_divergence(const Grid &grid, double density, const FieldBlock &v, bool left_only, FieldBlock &out) {
-  in_row_parts(grid, [&](const RowPart &part) {
-    (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, part, density, v, left_only, out);
-  });
-}
-
-double divergence_flops(int dimension) { return 3 * dimension - 1; }
-
-// Cells of which predict() knows all faces.
-double inner_count(const Grid &grid) {
-  const Int3 n = grid.owned();
-  const int x = n[0] - (grid.wraps_x() ? 0 : 1), parts = row_parts(grid);
-  return grid.dimension() == 3 ? double(x) * (n[1] - 1) * (n[2] - parts) : double(x) * (n[1] - parts);
-}
-
-void run_predictor(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
-                   const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock *advection,
-                   FieldBlock *divergence, bool rate_only, const ForceSlope &slope, FieldBlock &out) {
-  VerbScope scope(Verb::momentum);
-  const int dim = grid.dimension();
-  const Real3 &h = grid.spacing();
-  const PredictorTerms terms{&grid,
-                             &velocity,
-                             &pressure,
-                             &phases,
-                             fluid.inertia,
-                             step.dt,
-                             fluid.density,
-                             fluid.kinematic_viscosity(),
-                             weno_epsilon(step.speed_scale),
-                             step.weights,
-                             advection,
-                             divergence,
-                             rate_only,
-                             slope,
-                             fluid.body_force.at(step.force_time),
-                             {1 / h[0], 1 / h[1], 1 / h[2]},
-                             {1 / h[0] * (1 / h[0]), 1 / h[1] * (1 / h[1]), 1 / h[2] * (1 / h[2])}};
-  in_row_parts(grid, [&](const RowPart &part) {
-    RowScratch scratch(grid, 1);
-    (dim == 2 ? predict_2d : predict_3d)(terms, part, out, scratch);
-  });
-  const double per_face = (fluid.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
-                          dim * kernels::viscous_pressure_flops_per_direction + 5;
-  scope.flops(dim * (grid.owned_count() * per_face + elastic_flops(dim, phases)));
-  if (slope.field)
-    for (const Phase &phase : phases) scope.flops(dim * 2 * phase.stressed.points());
-  if (divergence) scope.flops(inner_count(grid) * divergence_flops(dim));
-}
-
 }  // namespace
-
-PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
-                                const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star, FieldBlock *divergence) {
-  PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, nullptr, divergence, false, {}, velocity_star);
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
                              FieldBlock &rate, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  run_predictor(grid, fluid, step, velocity, pressure, phases, advection ? &advection : nullptr, nullptr, true, slope,
-                rate);
+  RateTerms terms = rate_terms(grid, fluid, step, velocity, pressure, phases);
+  terms.advection = advection ? &advection : nullptr;
+  terms.slope = slope;
+  compute_rate(terms, rate, [](const BlockRows &) {});
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
-                                     FieldBlock &force) {
+PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
+                                const FieldBlock &velocity, const FieldBlock &pressure,
+                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::momentum);
-  const bool flat = grid.dimension() == 2;
-  in_row_parts(grid, [&](const RowPart &part) { (flat ? elastic_2d : elastic_3d)(grid, part, scale, phases, force); });
-  scope.flops(grid.dimension() * elastic_flops(grid.dimension(), phases));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
-                                  FieldBlock &divergence) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::divergence);
-  run_divergence(grid, density, velocity_star, false, divergence);
-  scope.flops(grid.owned_count() * divergence_flops(grid.dimension()));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode complete_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
-                                   FieldBlock &divergence) {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::divergence);
-  run_divergence(grid, density, velocity_star, true, divergence);
-  scope.flops((grid.owned_count() - inner_count(grid)) * divergence_flops(grid.dimension()));
+  compute_rate(rate_terms(grid, fluid, step, velocity, pressure, phases), velocity_star,
+               [&](const BlockRows &block) { advance_by_rate(grid, block, step.dt, velocity, velocity_star); });
   PetscFunctionReturn(0);
 }
 

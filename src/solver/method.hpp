@@ -27,8 +27,8 @@ struct Method {
 
   bool staggered() const { return integrator == TimeIntegrator::staggered; }
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
-  /// The predictor takes the divergence of what it writes.
-  bool begins_divergence() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
+  /// v* = v + dt dv/dt, without more stages.
+  bool explicit_predictor() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
   /// One step of (11)-(13) and nothing else.
   bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };

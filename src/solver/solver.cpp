@@ -1,6 +1,8 @@
 #include "solver/solver.hpp"
 
+#include "field/law.hpp"
 #include "physics/correction.hpp"
+#include "physics/divergence.hpp"
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
@@ -18,8 +20,8 @@ namespace eulastic {
 int Solver::work_fields(const Method &method, int dimension, bool bodies) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
-  const int pressure = !method.begins_divergence() + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
-  const int momentum = method.begins_divergence() ? 0 : 2 * dimension;
+  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
+  const int momentum = method.explicit_predictor() ? 0 : 2 * dimension;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::thinc ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -48,7 +50,6 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  if (spec.begins_divergence()) divergence_ = FieldBlock(grid, 1);
   PetscCall(work_->reserve(work_fields(spec, dim, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
@@ -105,7 +106,8 @@ EvolveRule Solver::evolve_rule(const Phase &phase) const {
   const bool reset = spec_.exterior == SolidExterior::identity;
   EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
-  if (!spec_.staggered() && phase.material.law == Law::neo_hookean) rule.reach = 1;
+  const bool edges = with_law(phase.material, [](const auto &law) { return law.couples_edges; });
+  if (!spec_.staggered() && !edges) rule.reach = 1;
   if (!reset && spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
   return rule;
 }
@@ -135,9 +137,9 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
 }
 
 std::size_t Solver::bytes() const {
-  std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + divergence_.bytes() +
-                    next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() +
-                    flow_.bytes() + pressure_solver_->bytes();
+  std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
+                    next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
+                    pressure_solver_->bytes();
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
@@ -177,9 +179,8 @@ PetscErrorCode Solver::predict(double dt) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
   }
-  if (spec_.begins_divergence()) {
-    PetscCall(
-        predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_, &divergence_));
+  if (spec_.explicit_predictor()) {
+    PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
     ++stages_;
     PetscFunctionReturn(0);
   }
@@ -213,12 +214,11 @@ PetscErrorCode Solver::project(double dt) {
   const double rotation = spec_.staggered() ? 0.5 * spec_.fluid.kinematic_viscosity() : 0;
   const Real3 &h = grid_->spacing();
   const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
-  const bool begun = spec_.begins_divergence();
   WorkSpace::Lease of_velocity, increment;
-  if (!begun) PetscCall(work_->take("divergence", 1, &of_velocity));
+  PetscCall(work_->take("divergence", 1, &of_velocity));
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
-  FieldBlock &divergence = begun ? divergence_ : of_velocity.fields();
-  PetscCall((begun ? complete_divergence : compute_divergence)(*grid_, density, velocity_star_, divergence));
+  FieldBlock &divergence = of_velocity.fields();
+  PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence));
   PetscCall(exchange_->update_wrapped(divergence, 1));
   fill_wall_ghosts_even(*grid_, at_centre, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);

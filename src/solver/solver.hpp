@@ -94,7 +94,6 @@ private:
   BodyTracker bodies_;
   std::string crowded_;
   FieldBlock velocity_star_, next_fraction_;
-  FieldBlock divergence_;   ///< where the predictor begins it
   FieldBlock next_tensor_;  ///< Euler
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I

@@ -1,4 +1,5 @@
 // Steady flows of the fast method: F6, the lid-driven cavity at Re = 100, and S3, a solid layer under a driven fluid.
+#include "support/materials.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -93,7 +94,7 @@ std::array<double, 3> layers(int cells, const Material &material) {
 }
 
 TEST(RestingLayer, ConvergesToTheExactState) {
-  for (const Material &material : {Material{1}, Material::mooney_rivlin(0.3, 0.2, 2)}) {
+  for (const Material &material : {Material{1}, test::mooney_rivlin(0.3, 0.2, 2)}) {
     const auto coarse = layers(16, material), fine = layers(32, material);
     std::printf("  S3, c3 = %g, at 16, 32: u %.3e %.3e, B_xy %.3e %.3e, at the wall %.3e %.3e\n", material.c3,
                 coarse[0], fine[0], coarse[1], fine[1], coarse[2], fine[2]);

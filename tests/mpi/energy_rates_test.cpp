@@ -2,6 +2,7 @@
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "physics/momentum.hpp"
+#include "support/materials.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -124,7 +125,7 @@ TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
     Box box(PETSC_COMM_WORLD, flat, {false, true, true});
     box.move_walls({0.7, 0, 0});
     box.add_phase(Material{0.6}, 4);
-    box.add_phase(Material::mooney_rivlin(0.3, 0.4, 0.2), 9);
+    box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
     const Measures m = measure(box, 0.2);
     EXPECT_GT(std::fabs(m.rates.elastic_power), 0.1);
     EXPECT_NEAR(box.power_of_forces(0.2), m.rates.wall_power - m.flow.viscous_dissipation - m.rates.elastic_power,
@@ -140,7 +141,7 @@ TEST(EnergyRates, SameBitsAsOnOneRank) {
     for (int alone = 0; alone < 2; ++alone) {
       Box box(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, flat, {true, true, false});
       box.move_walls({0.7, -0.4, 0});
-      box.add_phase(Material::mooney_rivlin(0.3, 0.4, 0.2), 9);
+      box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
       m[alone] = measure(box, 0.2);
       EXPECT_NE(m[alone].rates.extended_power, 0);
       EXPECT_NE(m[alone].rates.extended_energy, 0);

@@ -1,4 +1,5 @@
 // The same bits on any number of ranks: the state after twenty steps has the hash of the run on one rank.
+#include "support/materials.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -64,7 +65,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps, double force =
       }
       return std::min(1.0, std::max(0.0, 0.5 + (1.4 - std::sqrt(r)) / 0.5));
     });
-  if (c.phases > 1) scene.solver.state().phases[1].material = Material::mooney_rivlin(0.3, 0.4, 0.2);
+  if (c.phases > 1) scene.solver.state().phases[1].material = test::mooney_rivlin(0.3, 0.4, 0.2);
   EXPECT_EQ(scene.solver.prepare(), 0);
   FlowExtremes extremes;
   EXPECT_EQ(scene.solver.measure(&extremes), 0);

@@ -47,9 +47,9 @@ EULASTIC_CLONES void weno5(Block &b) {
 }
 
 EULASTIC_CLONES void viscous(Block &b) {
+  const InverseSquares h = b.grid.inverse_squares();
   for (const Segment &s : b.rows)
-    kernels::add_viscous_pressure_force<3, false>(s, b.fields[0], 1, b.inverse, b.fields[3], 1, 64, 1, b.rate.data(), 1,
-                                                  b.carried[0].data());
+    kernels::fluid_rate<3>(s, b.rate.data(), b.fields[0], h, b.fields[3], 1, 64, 1, b.carried[0].data());
 }
 
 EULASTIC_CLONES void rkl_stage(Block &b) {
@@ -85,9 +85,10 @@ EULASTIC_CLONES void sweep_sums(Block &b) {
 
 EULASTIC_CLONES void elastic(Block &b) {
   const std::ptrdiff_t stride[3] = {b.directions.a, b.directions.b, b.directions.c};
-  const kernels::TensorViews views{b.fields[4], b.fields[5], b.fields[6], b.fields[9], b.fields[8]};
+  const double *B[6];
+  for (int c = 0; c < 6; ++c) B[c] = b.fields[4 + c].origin;
   for (const Segment &s : b.rows)
-    kernels::elastic_force<3>(s, b.fields[3], views, stride, b.inverse, 1,
+    kernels::elastic_force<3>(s, b.fields[3], B, stride, b.inverse, 0, kernels::NeoHookean{1},
                               [to = b.fields[0].row(0, 0)](std::ptrdiff_t o, double f) EULASTIC_BODY { to[o] += f; });
 }
 
@@ -131,7 +132,7 @@ BENCHMARK_CAPTURE(kernel, viscous_pressure, viscous, 3 * kernels::viscous_pressu
     ->UseRealTime();
 BENCHMARK_CAPTURE(kernel, rkl_stage, rkl_stage, kernels::rkl_stage_flops_3d)->Iterations(1000)->UseRealTime();
 BENCHMARK_CAPTURE(kernel, sweep_sums, sweep_sums, 13 + 1 + 14)->Iterations(1000)->UseRealTime();
-BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::elastic_flops_3d)->Iterations(1000)->UseRealTime();
+BENCHMARK_CAPTURE(kernel, elastic_force, elastic, kernels::NeoHookean::flops(3))->Iterations(1000)->UseRealTime();
 BENCHMARK_CAPTURE(kernel, stretch_diagonal, stretch_diagonal, kernels::stretch_diagonal_flops_3d)
     ->Iterations(1000)
     ->UseRealTime();

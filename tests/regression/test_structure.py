@@ -5,7 +5,7 @@ import re
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LEVELS = [{"base"}, {"grid"}, {"kernels", "field"}, {"physics", "pressure", "bodies", "diagnostics", "io"},
+LEVELS = [{"base"}, {"grid"}, {"kernels"}, {"field"}, {"physics", "pressure", "bodies", "diagnostics", "io"},
           {"solver"}, {"app"}]
 LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
 ROOMS = ["src", "tests", "options", "scripts", "docs", "cmake", ".ci"]

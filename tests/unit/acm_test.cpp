@@ -1,5 +1,6 @@
 // (12) against brute force, its guards, and what one step of the solver does to the divergence.
 #include "pressure/acm.hpp"
+#include "physics/divergence.hpp"
 
 #include "physics/correction.hpp"
 #include "support/polynomials.hpp"

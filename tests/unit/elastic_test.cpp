@@ -1,5 +1,6 @@
 // Elastic force and stretching on fields for which central differences are exact, in every component; energy.
 #include "kernels/upper_convected.hpp"
+#include "physics/divergence.hpp"
 #include "support/solid_box.hpp"
 
 #include <gtest/gtest.h>

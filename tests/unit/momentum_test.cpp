@@ -1,6 +1,7 @@
 // Carried velocities, the predictor's terms, divergence and correction: exact on polynomials, unequal spacings.
 #include "kernels/momentum.hpp"
 #include "physics/correction.hpp"
+#include "physics/divergence.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -149,6 +150,20 @@ TEST(Laplacian, ExactOnQuadratics) {
         EXPECT_NEAR(flat ? kernels::laplacian<2>(q, p.sy, p.sz, h) : kernels::laplacian<3>(q, p.sy, p.sz, h),
                     flow.p.laplacian(flow.grid.dimension()), 5e-13);
       }
+  }
+}
+
+TEST(Rate, IsWhatThePredictorAdvancesBy) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat, 1, 9);
+    FieldBlock none, rate(flow.grid, flow.grid.dimension());
+    const MomentumStep step{0, 0.37, 1, {}};
+    ASSERT_EQ(momentum_rate(flow.grid, flow.fluid, step, flow.velocity, flow.pressure, {}, none, rate), 0);
+    ASSERT_EQ(predict_velocity(flow.grid, flow.fluid, step, flow.velocity, flow.pressure, {}, flow.out), 0);
+    for (int a = 0; a < flow.grid.dimension(); ++a)
+      for (const Segment &s : flow.grid.rows())
+        for (int i = 0; i < s.i_end; ++i)
+          EXPECT_EQ(flow.out[a](i, s.j, s.k), std::fma(step.dt, rate[a](i, s.j, s.k), flow.velocity[a](i, s.j, s.k)));
   }
 }
 

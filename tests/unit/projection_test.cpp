@@ -1,6 +1,7 @@
 // What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
 #include "grid/blocks.hpp"
 #include "physics/correction.hpp"
+#include "physics/divergence.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -62,24 +63,6 @@ bool same_rows(const Grid &grid, const FieldBlock &a, const FieldBlock &b, int b
 
 class Projection : public ::testing::TestWithParam<Sides> {};
 
-TEST_P(Projection, DivergenceByThePredictorHasTheBitsOfItsOwnPass) {
-  RandomFlow flow(GetParam());
-  const Grid &grid = flow.grid;
-  const int wrapped = grid.wraps_x() ? 1 : 0;
-  Fluid fluid;
-  fluid.body_force.force = {0.1, 0.2, 0.3};  // also through walls, until their faces are closed
-  FieldBlock star(grid, grid.dimension()), D(grid, 1), expected(grid, 1);
-  ASSERT_EQ(predict_velocity(grid, fluid, {0, 0.1, 1, {}}, flow.velocity, flow.pressure, {}, star, &D), 0);
-  flow.fill(star, 1, true);
-  ASSERT_EQ(complete_divergence(grid, 1.7, star, D), 0);
-  ASSERT_EQ(compute_divergence(grid, 1.7, star, expected), 0);
-  // The predictor takes the fluid's density, 1; it must not have done all.
-  EXPECT_FALSE(same_rows(grid, D, expected, wrapped));
-  ASSERT_EQ(complete_divergence(grid, 1, star, D), 0);
-  ASSERT_EQ(compute_divergence(grid, 1, star, expected), 0);
-  EXPECT_TRUE(same_rows(grid, D, expected, wrapped));
-}
-
 TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   RandomFlow flow(GetParam()), other(GetParam());
   const Grid &grid = flow.grid;
@@ -88,7 +71,8 @@ TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   FieldBlock D(grid, 1), increment(grid, 1);
   ASSERT_EQ(compute_divergence(grid, 1, flow.velocity, D), 0);
   flow.fill_centre(D);
-  for (std::ptrdiff_t i = 0; i < D.layout().size; ++i) increment.data()[i] = formula(D.data()[i], flow.pressure.data()[i]);
+  for (std::ptrdiff_t i = 0; i < D.layout().size; ++i)
+    increment.data()[i] = formula(D.data()[i], flow.pressure.data()[i]);
   ASSERT_EQ(correct_velocity(grid, 1.7, 0.1, rotation, increment, D, flow.velocity, flow.pressure), 0);
   ASSERT_EQ(correct_velocity(grid, 1.7, 0.1, rotation, formula, D, other.velocity, other.pressure), 0);
   EXPECT_TRUE(same_rows(grid, flow.velocity, other.velocity, grid.wraps_x() ? 3 : 0));

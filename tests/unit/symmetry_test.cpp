@@ -1,4 +1,5 @@
 // The whole step: mirrored, rotated and moving scenes, solids that carry no stress.
+#include "support/materials.hpp"
 #include "support/polynomials.hpp"
 
 #include <gtest/gtest.h>
@@ -145,7 +146,7 @@ TEST(MirroredScene, GivesTheMirroredResult) {
       for (const bool walls_x : {false, true}) {
         Setting setting;
         setting.pressure = pressure;
-        if (walls_x) setting.material = Material::mooney_rivlin(0.1, 0.1, 0.2);
+        if (walls_x) setting.material = test::mooney_rivlin(0.1, 0.1, 0.2);
         if (walls_x) {
           setting.boundary[0] = Boundary::wall;
           setting.wall_velocity[0][0] = {0, 1, 0.5};
@@ -179,7 +180,7 @@ TEST(RotatedScene, GivesTheRotatedResult) {
     for (const Permutation &p : {Permutation{{1, 2, 0}}, Permutation{{2, 0, 1}}, Permutation{{0, 2, 1}}}) {
       Setting setting;
       setting.pressure = pressure;
-      if (pressure == PressureKind::acm) setting.material = Material::mooney_rivlin(0.1, 0.1, 0.2);
+      if (pressure == PressureKind::acm) setting.material = test::mooney_rivlin(0.1, 0.1, 0.2);
       Scene original, rotated;
       run(setting, original);
       run(permuted(setting, p), rotated);

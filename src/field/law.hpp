@@ -1,0 +1,21 @@
+// The one place that knows which law a material has.
+#pragma once
+
+#include "field/material.hpp"
+#include "kernels/elastic.hpp"
+
+namespace eulastic {
+
+/// use(law) with the law of a material, or of whatever else has its coefficients.
+template <class Material, class Use>
+EULASTIC_INLINE auto with_law(const Material &m, const Use &use) {
+  switch (m.law) {
+    case Law::mooney_rivlin:
+      return use(kernels::MooneyRivlin{2 * m.c1, 2 * m.c2, 4 * m.c3});
+    case Law::neo_hookean:
+      break;
+  }
+  return use(kernels::NeoHookean{m.shear_modulus});
+}
+
+}  // namespace eulastic

@@ -1,0 +1,44 @@
+#include "physics/divergence.hpp"
+
+#include "base/events.hpp"
+#include "grid/threads.hpp"
+#include "kernels/momentum.hpp"
+
+namespace eulastic {
+namespace {
+
+template <int Dim>
+EULASTIC_INLINE void divergence_rows(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,
+                                     FieldBlock &out) {
+  const Real3 &h = grid.spacing();
+  const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
+  for (const Segment &s : part.rows(grid)) {
+    double *row = out[0].row(s.j, s.k);
+    kernels::divergence<Dim>(s, v[0], v[1], v[Dim - 1], inverse, density, row);
+    if (grid.wraps_x()) grid.wrap_row(row, 1);
+  }
+}
+
+EULASTIC_CLONES void divergence_2d(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,
+                                   FieldBlock &out) {
+  divergence_rows<2>(grid, part, density, v, out);
+}
+EULASTIC_CLONES void divergence_3d(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,
+                                   FieldBlock &out) {
+  divergence_rows<3>(grid, part, density, v, out);
+}
+
+}  // namespace
+
+PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+                                  FieldBlock &divergence) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::divergence);
+  in_row_parts(grid, [&](const RowPart &part) {
+    (grid.dimension() == 2 ? divergence_2d : divergence_3d)(grid, part, density, velocity_star, divergence);
+  });
+  scope.flops(grid.owned_count() * (3 * grid.dimension() - 1));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

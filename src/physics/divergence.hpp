@@ -1,0 +1,12 @@
+// The divergence that the projection removes.
+#pragma once
+
+#include "field/field_block.hpp"
+
+namespace eulastic {
+
+/// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
+PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+                                  FieldBlock &divergence);
+
+}  // namespace eulastic

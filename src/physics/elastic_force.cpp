@@ -1,0 +1,121 @@
+#include "physics/elastic_force.hpp"
+
+#include "base/events.hpp"
+#include "field/law.hpp"
+#include "grid/blocks.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+struct Rows {
+  int j_begin, j_end, k;
+};
+
+// Asks for what the batches do not: beside the vectors of a segment two planes on, and phi up to its last cache line.
+void prefetch_beside(const Phase &phase, const Segment &s) {
+  const ConstView phi = phase.fraction[0];
+  const FieldBlock &B = phase.tensor;
+  const int i = s.i_begin - 1, length = s.size() + 2 + 7, k = s.k + 2;
+  prefetch(phi.row(s.j, k) + i, length);
+  for (int f = 0; f < B.count(); ++f)
+    for (const int end : {i, s.i_end}) prefetch(B[f].row(s.j, k) + end, 1);
+  for (const int j : {s.j - 1, s.j + 1}) {
+    if (!phase.stressed.idle(j, s.k)) continue;
+    prefetch(phi.row(j, k) + i, length);
+    for (int f = 0; f < B.count(); ++f) prefetch(B[f].row(j, k) + i, length);
+  }
+}
+
+template <int Dim, bool WithSlope, class Law>
+EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &law, const Rows &rows,
+                               FieldBlock &force, const ForceSlope &slope) {
+  const ConstView phi = phase.fraction[0];
+  const Real3 &h = grid.spacing();
+  const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
+  const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
+  const double *B[6] = {};
+  for (int f = 0; f < phase.tensor.count(); ++f) B[f] = phase.tensor[f].origin;
+  const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
+    for (int a = 0; a < Dim; ++a) {
+      if (Dim == 3) {  // two planes on
+        batch.ahead[0] = B[a] + 2 * phi.sz;
+        batch.ahead[1] = B[kernels::position<Dim>(a, (a + 1) % Dim)] + 2 * phi.sz;
+      }
+      double *sum = force[a].origin, *change = WithSlope ? (*slope.field)[a].origin : nullptr;
+      const double factor = slope.factor;
+      kernels::elastic_force<Dim>(batch, phi, B, stride, inverse, a, law,
+                                  [=](std::ptrdiff_t o, double f) EULASTIC_BODY {
+                                    sum[o] += f;
+                                    if (WithSlope) change[o] = kernels::fma(factor, f, change[o]);
+                                  });
+    }
+  };
+  kernels::Batch batch;
+  for (int j = rows.j_begin; j < rows.j_end; ++j)
+    for (const Segment &s : phase.stressed.row(j, rows.k)) {
+      if (Dim == 3) prefetch_beside(phase, s);
+      kernels::gather(batch, j * phi.sy + rows.k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
+    }
+  add(batch);
+}
+
+template <int Dim>
+EULASTIC_INLINE void add_force_of_law(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
+                                      FieldBlock &force, const ForceSlope &slope) {
+  with_law(phase.material, [&](const auto &law) EULASTIC_BODY {
+    if (slope.field)
+      add_force<Dim, true>(grid, phase, law.scaled(scale), rows, force, slope);
+    else
+      add_force<Dim, false>(grid, phase, law.scaled(scale), rows, force, slope);
+  });
+}
+
+EULASTIC_CLONES void add_force_2d(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
+                                  FieldBlock &force, const ForceSlope &slope) {
+  add_force_of_law<2>(grid, phase, scale, rows, force, slope);
+}
+EULASTIC_CLONES void add_force_3d(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
+                                  FieldBlock &force, const ForceSlope &slope) {
+  add_force_of_law<3>(grid, phase, scale, rows, force, slope);
+}
+
+}  // namespace
+
+void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
+                       FieldBlock &force, const ForceSlope &slope) {
+  for (const Phase &phase : phases)
+    if (phase.material.elastic() && !phase.stressed.idle_rows(j_begin, j_end, k))
+      (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, phase, scale, {j_begin, j_end, k}, force, slope);
+}
+
+PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
+                                     FieldBlock &force) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::momentum);
+  const int dim = grid.dimension(), n = grid.owned()[0];
+  in_row_parts(grid, [&](const RowPart &part) {
+    for_rows_in_blocks(
+        part,
+        [&](int j, int k) {
+          for (int a = 0; a < dim; ++a) {
+            if (dim == 3) prefetch(force[a].row(j, k + 1), n);
+            std::fill_n(force[a].row(j, k), n, 0.0);
+          }
+        },
+        [&](int begin, int end, int k) { add_elastic_force(grid, phases, scale, begin, end, k, force); });
+  });
+  scope.flops(elastic_flops(dim, phases));
+  PetscFunctionReturn(0);
+}
+
+double elastic_flops(int dimension, const std::vector<Phase> &phases) {
+  double sum = 0;
+  for (const Phase &phase : phases)
+    sum += dimension * phase.stressed.points() *
+           with_law(phase.material, [&](const auto &law) { return law.flops(dimension); });
+  return sum;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,28 @@
+// The elastic force div(sigma) per mass at faces, of the law of every phase; (7).
+#pragma once
+
+#include "field/phase.hpp"
+
+#include <vector>
+
+namespace eulastic {
+
+/// Where the elastic force per mass goes beside the rate, to say how it changes in time.
+struct ForceSlope {
+  FieldBlock *field = nullptr;  ///< factor times that force is added; null: nowhere
+  double factor = 0;
+};
+
+/// force += scale div(sigma) on rows j_begin <= j < j_end of plane k, where they feel any; with a factor also to
+/// `slope`. One ghost of phi and B.
+void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
+                       FieldBlock &force, const ForceSlope &slope = {});
+
+/// force = scale div(sigma), 0 at owned faces that feel none.
+PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
+                                     FieldBlock &force);
+
+/// Of all owned faces.
+double elastic_flops(int dimension, const std::vector<Phase> &phases);
+
+}  // namespace eulastic
