@@ -119,6 +119,14 @@ class Run:
         return (numpy.arange(self.cells[d]) + 0.5) * self.spacing[d]
 
 
+def open_run(directory):
+    """The run, for a script: where there is none, the script ends with one line."""
+    try:
+        return Run(directory)
+    except FileNotFoundError as error:
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}")
+
+
 def read_series(path):
     return numpy.atleast_1d(numpy.genfromtxt(path, delimiter=",", names=True, deletechars="")).view(numpy.recarray)
 

@@ -218,6 +218,24 @@ class Pictures(WithFolder):
         self.assertEqual([frame.name for frame in frames], [f"frame_{n:04}.png" for n in range(3)])
         self.assertNotEqual(frames[0].read_bytes(), frames[2].read_bytes())
 
+    def test_a_run_that_is_not_there_is_one_line(self):
+        for script, *words in (("plot", "nosuch"), ("render", "nosuch"), ("run", "nosuch.opts"),
+                               ("run", "nosuch.opts", self.folder / "x"), ("run", ROOT / "options/disc_in_channel.opts")):
+            done = start(SCRIPTS / script, *words, cwd=self.folder)
+            self.assertNotEqual(done.returncode, 0, script)
+            self.assertRegex(done.stdout + done.stderr, rf"\A{script}: [^\n]+\n\Z")
+
+    def test_comparison_takes_its_options_anywhere(self):
+        echo = self.folder / "program"
+        echo.write_text('#!/bin/sh\necho "got $*"; exit 1\n')
+        echo.chmod(0o755)
+        case = ROOT / "options/disc_in_channel.opts"
+        done = start(SCRIPTS / "compare_pressure_solvers", case, "-body_force", "-1,0,0", "--output", "x", "-time_end", "1",
+                     env=dict(os.environ, EULASTIC=str(echo)), cwd=self.folder)
+        self.assertIn("compare_pressure_solvers: the run with acm failed", done.stderr)
+        self.assertNotIn("error: unrecognized", done.stderr)
+        self.assertFalse((self.folder / "output").exists())
+
     def test_comparison(self):
         faster = synthetic_run.write_run(self.folder / "faster", speed=1.01 * synthetic_run.SPEED, pressure_offset=3.0)
         other = Run(faster)

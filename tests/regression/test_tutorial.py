@@ -20,29 +20,39 @@ from read_run import Run  # noqa: E402
 PAGE = ROOT / "docs/tutorial.md"
 
 
+def pictures():
+    return {path: path.stat().st_mtime_ns for path in (ROOT / "docs/images").iterdir()}
+
+
 class Tutorial(unittest.TestCase):
     def test_every_command(self):
         with tempfile.TemporaryDirectory() as room:
             room = pathlib.Path(room)
-            done = subprocess.run([ROOT / "scripts/tutorial", "--folder", room / "clone", "--docs", room / "docs"],
+            before = pictures()
+            done = subprocess.run([ROOT / "scripts/tutorial", "--folder", room / "clone"],
                                   env=dict(os.environ, PETSC_OPTIONS="-time_steps_max 2"), capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertEqual(pictures(), before, "scripts/tutorial changed the clone")
             wanted = re.findall(r"images/(tutorial_\w+\.png)", PAGE.read_text())
             self.assertGreaterEqual(len(wanted), 5)
-            self.assertEqual(sorted(path.name for path in (room / "docs/images").iterdir()), sorted(wanted))
+            self.assertEqual(sorted(path.name for path in (room / "clone/docs/images").iterdir()), sorted(wanted))
             for name in wanted:
-                picture = matplotlib.image.imread(room / "docs/images" / name)[..., :3]
+                picture = matplotlib.image.imread(room / "clone/docs/images" / name)[..., :3]
                 self.assertGreater((picture < 0.7).any(axis=2).sum(), 1000, name)
-            runs = {name: Run(room / "clone/output" / name) for name in ("first", "pair", "mine", "capillary")}
+            runs = {name: Run(room / "clone/output" / name) for name in ("first", "pair", "vessel", "capillary")}
             self.assertEqual({run.summary["exit_reason"] for run in runs.values()}, {"steps"})
             self.assertEqual([len(runs[name].bodies.id) for name in ("first", "pair")], [16, 2])
-            self.assertEqual(set(runs["mine"].bodies.species), {"vessel", "platelet", "rbc"})
+            self.assertEqual(set(runs["vessel"].bodies.species), {"vessel", "platelet", "rbc"})
             cells = runs["capillary"].bodies.volume[0, runs["capillary"].bodies.species == "rbc"].sum()
             lumen = 3.14159265 * 12 ** 2 * runs["capillary"].length[0]
             self.assertAlmostEqual(cells / lumen, 0.2, delta=0.004)
             self.assertEqual(len(list((room / "clone/output/frames").iterdir())), 2)
             self.assertIn("flow rate:", done.stdout)
             self.assertIn("platelet [", done.stdout)
+
+    def test_no_directory_of_the_readme(self):
+        of = lambda page: set(re.findall(r"output/\w+", (ROOT / page).read_text()))  # noqa: E731
+        self.assertLessEqual(of("README.md") & of("docs/tutorial.md"), {"output/channel_rbc"})  # scripts/quickstart's
 
     def test_the_page_is_read_as_it_is_meant(self):
         found = list(blocks(PAGE))
