@@ -152,16 +152,20 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
     spacing_[d] = spec.length[d] / spec.cells[d];
     starts_[d] = split(spec.cells[d], ranks[d], d == 0);
   }
-  layout_ = make_layout({rank_ % ranks[0], rank_ / ranks[0] % ranks[1], rank_ / ranks[0] / ranks[1]});
+  PetscCall(create_dm(DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));
+  Int3 position;
+  PetscCall(ask_dm(&position));
+  layout_ = make_layout(position);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Grid::create_dm(DM *dm) const {
+PetscErrorCode Grid::create_dm(DMDAStencilType stencil, int width, DM *dm) const {
   PetscFunctionBeginUser;
   std::array<std::vector<PetscInt>, 3> counts;
   std::array<DMBoundaryType, 3> type{};
   for (int d = 0; d < 3; ++d) {
     for (int p = 0; p < processors(d); ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
+    if (d < dimension()) width = std::min<int>(width, *std::min_element(counts[d].begin(), counts[d].end()));
     type[d] = is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
   }
   const Int3 &n = cells();
@@ -172,9 +176,25 @@ PetscErrorCode Grid::create_dm(DM *dm) const {
   PetscCall(DMDASetOwnershipRanges(*dm, counts[0].data(), counts[1].data(), counts[2].data()));
   PetscCall(DMDASetBoundaryType(*dm, type[0], type[1], type[2]));
   PetscCall(DMDASetDof(*dm, 1));
-  PetscCall(DMDASetStencilType(*dm, DMDA_STENCIL_STAR));
-  PetscCall(DMDASetStencilWidth(*dm, 1));
+  PetscCall(DMDASetStencilType(*dm, stencil));
+  PetscCall(DMDASetStencilWidth(*dm, width));
+  PetscCall(DMSetFromOptions(*dm));
   PetscCall(DMSetUp(*dm));
+  PetscFunctionReturn(0);
+}
+
+// What each rank owns, and the place of this one.
+PetscErrorCode Grid::ask_dm(Int3 *place) {
+  PetscFunctionBeginUser;
+  const PetscInt *counts[3];
+  PetscInt begin[3];
+  PetscCall(DMDAGetOwnershipRanges(dm_.get(), &counts[0], &counts[1], &counts[2]));
+  PetscCall(DMDAGetCorners(dm_.get(), &begin[0], &begin[1], &begin[2], nullptr, nullptr, nullptr));
+  for (int d = 0; d < 3; ++d) {
+    for (int p = 0; p < processors(d); ++p)
+      starts_[d][p + 1] = starts_[d][p] + (counts[d] ? static_cast<int>(counts[d][p]) : 1);
+    (*place)[d] = owner_along(d, static_cast<int>(begin[d]));
+  }
   PetscFunctionReturn(0);
 }
 

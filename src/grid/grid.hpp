@@ -52,9 +52,11 @@ public:
   /// Ranks per direction that `create` would use; {0,0,0} when impossible.
   static Int3 decompose(const GridSpec &spec, int ranks);
 
-  /// A DMDA of the same split, one value per cell, with a STAR stencil of width 1: for PETSc's own solvers. The fields
-  /// of a run do without, as that of PETSc 3.18 costs 20 bytes per cell.
-  PetscErrorCode create_dm(DM *dm) const;
+  /// The DMDA, one value per cell, that says which rank owns what. Its stencil is a box as wide as there are ghosts, or
+  /// as the narrowest rank has cells. None of a coarse() grid.
+  DM dm() const { return dm_.get(); }
+  /// Another one of the same split: matrices of PETSc's solvers have a column for each point of the stencil.
+  PetscErrorCode create_dm(DMDAStencilType stencil, int width, DM *dm) const;
 
   /// The same box in fewer cells, for multigrid, without a DM. Where a direction has fewer cells, ranks begin at half
   /// of their first cell, rounded up; a rank may end up with none. With `everywhere` every rank holds all of it.
@@ -116,10 +118,12 @@ public:
   std::vector<Segment> rows() const;
 
 private:
+  PetscErrorCode ask_dm(Int3 *place);
   Layout make_layout(const Int3 &position) const;
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, ranks_ = 1;
+  DmHandle dm_;
   GridSpec spec_;
   Real3 spacing_{};
   std::array<std::vector<int>, 3> starts_;  ///< first cell of every rank along a direction, and N at the end

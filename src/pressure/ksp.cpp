@@ -1,6 +1,7 @@
 #include "pressure/ksp.hpp"
 
 #include "field/exact_sum.hpp"
+#include "field/global_vector.hpp"
 #include "field/walls.hpp"
 
 #include <algorithm>
@@ -107,7 +108,7 @@ PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
   PetscFunctionBeginUser;
   grid_ = &grid;
   exchange_ = &exchange;
-  PetscCall(grid.create_dm(cells_.put()));
+  PetscCall(grid.create_dm(DMDA_STENCIL_STAR, 1, cells_.put()));
   PetscCall(DMDASetInterpolationType(cells_.get(), DMDA_Q0));
   PetscCall(DMCreateGlobalVector(cells_.get(), rhs_.put()));
   PetscCall(VecDuplicate(rhs_.get(), solution_.put()));
@@ -154,21 +155,17 @@ PetscErrorCode KspSolver::set_preset() {
 }
 
 PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
-  const int nx = grid_->owned()[0], ny = grid_->owned()[1];
   const double factor = -shortest(*grid_) * shortest(*grid_) / dt;
   ExactSums sum(1);
   double mean, rest;
-  double *b;
-  const double *q;
   PetscFunctionBeginUser;
-  for (const Segment &s : grid_->rows()) sum.add_row(0, divergence[0].row(s.j, s.k), nx, grid_->layout().begin[0]);
+  for (const Segment &s : grid_->rows())
+    sum.add_row(0, divergence[0].row(s.j, s.k), s.size(), grid_->layout().begin[0]);
   PetscCall(sum.reduce(grid_->comm(), &mean));
   mean /= grid_->cell_count();
-  PetscCall(VecGetArray(rhs_.get(), &b));
-  for (const Segment &s : grid_->rows())
-    for (int i = 0; i < nx; ++i)
-      b[i + nx * (s.j + std::ptrdiff_t(ny) * s.k)] = factor * (divergence[0](i, s.j, s.k) - mean);
-  PetscCall(VecRestoreArray(rhs_.get(), &b));
+  PetscCall(to_global_vector(*grid_, divergence[0], rhs_.get()));
+  PetscCall(VecShift(rhs_.get(), -mean));
+  PetscCall(VecScale(rhs_.get(), factor));
   PetscCall(VecNorm(rhs_.get(), NORM_2, &rest));
   // D is a constant, but for the rounding of its mean: no increment removes it.
   if (rest <= 1e-15 * std::abs(factor * mean) * std::sqrt(grid_->cell_count()))
@@ -177,10 +174,7 @@ PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBl
     PetscCall(VecSet(solution_.get(), NAN));
   else
     PetscCall(iterate());
-  PetscCall(VecGetArrayRead(solution_.get(), &q));
-  for (const Segment &s : grid_->rows())
-    std::copy_n(q + nx * (s.j + std::ptrdiff_t(ny) * s.k), nx, increment[0].row(s.j, s.k));
-  PetscCall(VecRestoreArrayRead(solution_.get(), &q));
+  PetscCall(from_global_vector(*grid_, solution_.get(), increment[0]));
   PetscCall(exchange_->update(increment, 1));
   fill_wall_ghosts_even(*grid_, at_centre, increment[0], 1);
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 // Every rank's view of the decomposition: complete, disjoint, the same everywhere and the same as the DMDA's.
-#include "grid/grid.hpp"
+#include "field/field_block.hpp"
+#include "field/global_vector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,9 +22,7 @@ void check(const GridSpec &spec) {
   const Layout &own = grid.layout();
 
   PetscInt x, y, z, nx, ny, nz;
-  DmHandle dm;
-  ASSERT_EQ(grid.create_dm(dm.put()), 0);
-  ASSERT_EQ(DMDAGetCorners(dm.get(), &x, &y, &z, &nx, &ny, &nz), 0);
+  ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
   EXPECT_EQ(own.begin, (Int3{x, y, z}));
   EXPECT_EQ(own.cells, (Int3{nx, ny, nz}));
 
@@ -87,6 +86,44 @@ TEST(Decomposition, CoversEveryCellOnceAndAgreesWithTheDmda) {
         }
   EXPECT_GE(tried, 10);
   EXPECT_GE(split_x, ranks > 1 ? 10 : 0);
+}
+
+// The DMDA serves narrow ranks as well, and a field comes back from a Vec that PETSc has put in its natural order.
+TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
+  int tried = 0;
+  for (const Int3 &cells : {Int3{13, 10, 11}, Int3{17, 12, 1}, Int3{3, 12, 3}})
+    for (const Boundary x : {Boundary::periodic, Boundary::wall}) {
+      GridSpec spec;
+      spec.cells = cells;
+      spec.boundary = {x, Boundary::wall, Boundary::periodic};
+      if (!Grid::why_not(spec, world_size()).empty()) continue;
+      Grid grid;
+      ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+      FieldBlock before(grid, 1), after(grid, 1);
+      const Int3 &begin = grid.layout().begin;
+      const auto truth = [&](int i, int j, int k) {
+        return begin[0] + i + double(cells[0]) * (begin[1] + j + double(cells[1]) * (begin[2] + k));
+      };
+      for (const Segment &s : grid.rows())
+        for (int i = 0; i < s.size(); ++i) before[0](i, s.j, s.k) = truth(i, s.j, s.k);
+      VecHandle global, natural;
+      ASSERT_EQ(DMCreateGlobalVector(grid.dm(), global.put()), 0);
+      ASSERT_EQ(DMDACreateNaturalVector(grid.dm(), natural.put()), 0);
+      ASSERT_EQ(to_global_vector(grid, before[0], global.get()), 0);
+      ASSERT_EQ(DMDAGlobalToNaturalBegin(grid.dm(), global.get(), INSERT_VALUES, natural.get()), 0);
+      ASSERT_EQ(DMDAGlobalToNaturalEnd(grid.dm(), global.get(), INSERT_VALUES, natural.get()), 0);
+      PetscInt first, end;
+      const double *values;
+      ASSERT_EQ(VecGetOwnershipRange(natural.get(), &first, &end), 0);
+      ASSERT_EQ(VecGetArrayRead(natural.get(), &values), 0);
+      for (PetscInt n = first; n < end; ++n) EXPECT_EQ(values[n - first], n);
+      ASSERT_EQ(VecRestoreArrayRead(natural.get(), &values), 0);
+      ASSERT_EQ(from_global_vector(grid, global.get(), after[0]), 0);
+      for (const Segment &s : grid.rows())
+        for (int i = 0; i < s.size(); ++i) EXPECT_EQ(after[0](i, s.j, s.k), truth(i, s.j, s.k));
+      ++tried;
+    }
+  EXPECT_GE(tried, 4);
 }
 
 }  // namespace
