@@ -96,11 +96,12 @@ PetscErrorCode open_outputs(Run *run) {
   PetscFunctionReturn(0);
 }
 
-// The run has passed its first step: what is in its directory may give way to it.
+// The run has passed its first step: what is in its directory may give way to it. Whether a run goes on must not depend
+// on what its directory held, so guards look when they would have looked anyway.
 PetscErrorCode accept(Run *run) {
   PetscFunctionBeginUser;
   if (!run->directory.pending()) PetscFunctionReturn(0);
-  PetscCall(check_state(run));
+  PetscCall(run->guards.check_finite(run->solver, &run->stop));
   if (run->stop) PetscFunctionReturn(0);
   PetscCall(run->directory.accept(run->solver.grid().comm()));
   run->checkpoints.accept(run->directory.path());

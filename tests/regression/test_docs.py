@@ -100,8 +100,8 @@ class Docs(unittest.TestCase):
     def test_options_that_are_mentioned_exist(self):
         known = {name.replace("NAME_", "") for name in
                  re.findall(r"^\| `-(\w+)`", (ROOT / "docs/options.md").read_text(), re.MULTILINE)}
-        petsc = ("log_", "ksp_", "pc_", "pressure_", "malloc", "info", "mat_", "vec_", "sf_", "options_", "memory_",
-                 "mg_", "ff", "fno", "fopenmp", "march")  # of the compiler
+        petsc = ("log_", "ksp_", "pc_", "pressure_", "malloc", "info", "mat_", "vec_", "sf_", "da_", "dm_", "options_",
+                 "memory_", "mg_", "ff", "fno", "fopenmp", "march")  # of the compiler
         for page in pages():
             for name in set(re.findall(r"`-([a-z]\w+)", page.read_text())):
                 plain = re.sub(r"^(rbc|cell|disc|gel|layer|a|b|vessel)_", "", name)

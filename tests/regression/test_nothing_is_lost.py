@@ -27,7 +27,7 @@ RESTARTS = {
     "no such file": ("-restart nowhere -time_end .2", 2),
     "a damaged checkpoint": ("-restart DAMAGED -time_end .2 -output_overwrite", 2),
     "a guard at its first step": ("-restart RUN -time_end .2 -guard_cfl 1e-9", 3),
-    "a guard after its first step": ("-restart RUN -time_end .2 -guard_divergence 1e-30", 3),
+    "a first step that is not finite": ("-restart RUN -time_end 2e15 -time_step 1e13 -guard_cfl 0", 3),
     "memory": ("-restart RUN -time_end .2 -guard_memory 1e-12", 2),
     "a KSP that does not converge": ("-restart RUN -time_end .2 -pressure_solver ksp -pressure_ksp_max_it 1 "
                                      "-pressure_ksp_rtol 1e-14 -pressure_pc_type none", 1),
@@ -38,7 +38,7 @@ NEW = {
     "memory": ("-output_overwrite -time_end .1 -guard_memory 1e-12", 2),
     "a missing file": ("-output_overwrite -time_end .1 -initial_state nowhere.h5", 2),
     "a guard at its start": ("-output_overwrite -time_end .1 -initial_velocity_mean 1,0,0 -guard_cfl 1e-9", 3),
-    "a guard after its first step": ("-output_overwrite -time_end .1 -guard_divergence 1e-30", 3),
+    "a first step that is not finite": ("-output_overwrite -time_end 2e17 -time_step 1e17 -guard_cfl 0", 3),
     "a PETSc option nobody reads": ("-output_overwrite -time_end .1 -pressure_solver ksp -pressure_ksp_nonsense 1", 2),
     "a KSP that does not converge": ("-output_overwrite -time_end .1 -pressure_solver ksp -pressure_ksp_max_it 1 "
                                      "-pressure_ksp_rtol 1e-14 -pressure_pc_type none", 1),

@@ -29,7 +29,7 @@ FLAT = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -wall_ymax_velo
 SOLID = ("-grid_cells 12,10,9 -grid_length 3,2.5,2.2 -boundary_y wall -boundary_z wall -wall_zmax_velocity .3,.1,0 "
          "-fluid_viscosity .3 -initial_velocity_mean .5,0,0 -species cell -cell_shape sphere -cell_radius .7 "
          "-cell_centre .2,1.2,1 -cell_shear_modulus 1 -time_end 100 -series_interval .11").split()
-SLAB = ("-species cell,plate -plate_shape slab -plate_axis y -plate_interval 0,.6 -plate_shear_modulus 2").split()
+SLAB = ("-species cell,plate -plate_shape slab -plate_axis y -plate_interval 0,.6 -plate_shear_modulus 1").split()
 ATTACHED = [w for w in FLAT[:FLAT.index("-species")]] + SLAB + FLAT[FLAT.index("-cell_shape"):
                                                                  FLAT.index("-bead_shape")] + FLAT[-4:]
 OFTEN = "-checkpoint_interval 1e-9".split()  # after every step
