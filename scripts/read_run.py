@@ -111,8 +111,17 @@ class Run:
     def spacing(self):
         return self.length / self.cells
 
-    def is_wall(self, d):
-        return self.cells[d] > 1 and self.options.get("boundary_" + "xyz"[d], "periodic") == "wall"
+    def side(self, d, high):
+        """periodic, wall or symmetry."""
+        name = "boundary_" + "xyz"[d]
+        both, own, other = (self.options.get(name + end, "same") for end in ("", *("min", "max")[::1 - 2 * high]))
+        both = "periodic" if both == "same" else both
+        if self.cells[d] == 1 or (both == "periodic" and "same" in (own, other)):
+            return "periodic"
+        return both if own == "same" else own
+
+    def is_bounded(self, d):
+        return self.side(d, 0) != "periodic"
 
     def centres(self, d):
         """Coordinates of the cell centres along direction d."""

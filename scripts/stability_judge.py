@@ -90,7 +90,7 @@ def judge(directory, method):
             m["phi"] = max(m["phi"], float(-phi.min()))
             m[beyond] = max(m[beyond], float(phi.max() - 1))
             solid, inside = phi > 0.5, phi > 0.999
-            free = free and not any(run.is_wall(d) and solid.take([0, -1], 2 - d).any() for d in range(3))
+            free = free and not any(run.is_bounded(d) and solid.take([0, -1], 2 - d).any() for d in range(3))
             if solid.any():
                 largest = max(largest, stretch_of(float(trace[solid].max()), flat))
             if free and largest <= STRETCH and inside.any():

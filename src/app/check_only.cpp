@@ -114,7 +114,7 @@ public:
       extremes.stiffness = std::max(extremes.stiffness, largest_stiffness(spec.material(), trace, dimension_));
     }
     const TimeStepLimits limits =
-        time_step_limits(spacing_, dimension_, config_.fluid, config_.walls, extremes,
+        time_step_limits(spacing_, dimension_, config_.fluid, config_.sides, extremes,
                          {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
     report.line("dt limit, viscous", "%.6g", limits.viscous);
     report.line("dt limit, elastic wave", "%.6g", limits.elastic);
@@ -159,13 +159,18 @@ private:
                 cores > 1 ? "s" : "", 1e-3 * ns);
   }
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
+  /// Between walls, those that planes of symmetry mirror included; 0 where there is none.
+  double gap(int d) const {
+    const int walls = d < dimension_ ? config_.boundary.is_wall(d, 0) + config_.boundary.is_wall(d, 1) : 0;
+    return walls == 0 ? 0 : (walls == 1 ? 2 : 1) * config_.grid.length[d];
+  }
 
   FlowScale flow_scale() const {
     FlowScale scale;
     const Real3 &length = config_.grid.length;
     double gap = std::numeric_limits<double>::infinity();
     for (int d = 0; d < dimension_; ++d)
-      if (is_wall(d)) gap = std::min(gap, length[d]);
+      if (this->gap(d) > 0) gap = std::min(gap, this->gap(d));
     for (const SpeciesSpec &spec : config_.species)
       if (is_tube(spec.shape)) gap = std::min(gap, 2 * spec.radius);
     scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
@@ -183,7 +188,7 @@ private:
   void driven_by_walls(FlowScale &scale) const {
     for (int d = 0; d < dimension_; ++d) {
       if (!is_wall(d)) continue;
-      const WallMotion &low = config_.walls.motion[d][0], &high = config_.walls.motion[d][1];
+      const WallMotion &low = config_.sides[d][0].motion, &high = config_.sides[d][1].motion;
       for (int c = 0; c < dimension_; ++c) {
         scale.speed[c] = std::max({scale.speed[c], std::fabs(low.velocity[c]), std::fabs(high.velocity[c])});
         scale.shear_rate =
@@ -208,8 +213,8 @@ private:
         scale.shear_rate = std::max(scale.shear_rate, f * tube->radius / (2 * nu));
       }
       for (int d = 0; d < dimension_; ++d) {
-        if (tube || !is_wall(d) || d == c || is_wall(c) || nu == 0) continue;
-        const double height = config_.grid.length[d];
+        const double height = gap(d);
+        if (tube || height == 0 || d == c || is_wall(c) || nu == 0) continue;
         speed = std::min(speed, f * height * height / (8 * nu));
         scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));
       }

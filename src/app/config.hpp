@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bodies/placement.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "grid/grid.hpp"
 #include "physics/fluid.hpp"
 #include "physics/initial_velocity.hpp"
@@ -12,6 +12,26 @@
 #include <vector>
 
 namespace eulastic {
+
+/// What -boundary_x and -boundary_xmin say.
+enum class BoundaryChoice { periodic, wall, symmetry };
+enum class SideChoice { same, wall, symmetry };
+
+struct BoundaryControl {
+  std::array<BoundaryChoice, 3> both{};
+  std::array<std::array<SideChoice, 2>, 3> side{};  ///< [direction][low, high]; `same` as -boundary_x says
+
+  /// Whether direction d is not periodic: one side alone cannot be.
+  bool bounded(int d) const {
+    return both[d] != BoundaryChoice::periodic || (side[d][0] != SideChoice::same && side[d][1] != SideChoice::same);
+  }
+  SideKind kind(int d, int high) const {
+    const bool symmetric = side[d][high] == SideChoice::same ? both[d] == BoundaryChoice::symmetry
+                                                             : side[d][high] == SideChoice::symmetry;
+    return symmetric ? SideKind::symmetry : SideKind::wall;
+  }
+  bool is_wall(int d, int high) const { return bounded(d) && kind(d, high) == SideKind::wall; }
+};
 
 struct TimeControl {
   double end = 0;
@@ -63,7 +83,8 @@ struct GuardControl {
 
 struct Config {
   GridSpec grid;
-  Walls walls;
+  BoundaryControl boundary;
+  BoxSides sides;  ///< and grid.boundary: after parsing, as `boundary` says
   Fluid fluid;
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none

@@ -58,8 +58,7 @@ Guards::Guards(const Config &config) : control_(config.guard) {
                      : pressure == PressureKind::ksp ? "lower -pressure_ksp_rtol or -time_step"
                                                      : "lower -time_step";
   for (double f : config.fluid.body_force.force) forced_ = forced_ || f != 0;
-  for (const auto &pair : config.walls.motion)
-    for (const WallMotion &wall : pair) forced_ = forced_ || wall.speed() != 0;
+  forced_ = forced_ || wall_speed(config.sides) != 0;
 }
 
 PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const {

@@ -9,7 +9,7 @@
 namespace eulastic {
 namespace {
 
-const Names boundary_names{"periodic", "wall"};
+const Names boundary_names{"periodic", "wall", "symmetry"}, side_names{"same", "wall", "symmetry"};
 const Names method_names{"fast", "classic"};
 
 void add_grid(Rows &rows, Config &config) {
@@ -17,9 +17,13 @@ void add_grid(Rows &rows, Config &config) {
   rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
                 "cells in x, y, z; 1 in z is 2-D, shapes then ignore z");
   rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
-  for (int d = 0; d < 3; ++d)
-    rows.choice(std::string("boundary_") + "xyz"[d], config.grid.boundary[d], boundary_names,
-                std::string("both sides in ") + "xyz"[d]);
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("boundary_") + "xyz"[d];
+    rows.choice(name, config.boundary.both[d], boundary_names, std::string("both sides in ") + "xyz"[d]);
+    for (int high = 0; high < 2; ++high)
+      rows.choice(name + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
+                  std::string("the ") + (high ? "high" : "low") + " side; same as -" + name + " says, or another");
+  }
   const std::size_t processors = rows.rows.size();
   for (int d = 0; d < 3; ++d)
     rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
@@ -34,14 +38,16 @@ void add_walls(Rows &rows, Config &config) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string wall = std::string("wall_") + "xyz"[d] + (side ? "max" : "min");
-      WallMotion &motion = config.walls.motion[d][side];
+      WallMotion &motion = config.sides[d][side].motion;
       const std::size_t first = rows.rows.size();
       rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
                 "velocity U; the component normal to the wall is 0");
       rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
       rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
-      rows.restrict(first, std::string("boundary_") + "xyz"[d], config.grid.boundary[d], boundary_names,
-                    {Boundary::wall});
+      for (std::size_t r = first; r < rows.rows.size(); ++r) {
+        rows.rows[r].only_with = std::string("-boundary_") + "xyz"[d] + " wall";
+        rows.rows[r].applies = [&config, d, side] { return config.boundary.is_wall(d, side); };
+      }
     }
 }
 

@@ -152,7 +152,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   energy->elastic = measured_.flow.elastic_energy;
   energy->dissipation = measured_.flow.viscous_dissipation;
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.walls, state.time,      solver_->evolved_fraction()};
+                              &config_.sides, state.time,      solver_->evolved_fraction()};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
   PetscFunctionReturn(0);
 }
@@ -232,7 +232,7 @@ PetscErrorCode Outputs::write_due(bool last) {
     std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
     std::vector<WallStress> walls;
     if (wants(config_.output, "wall_shear_stress"))
-      walls = wall_shear_stress(*grid_, config_.walls, state.time, config_.fluid.viscosity, state.velocity, *phases);
+      walls = wall_shear_stress(*grid_, config_.sides, state.time, config_.fluid.viscosity, state.velocity, *phases);
     for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
     PetscCall(snapshots_->write(state.time, static_cast<long>(state.step), fields));
   }

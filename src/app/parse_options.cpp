@@ -111,6 +111,10 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   Reader reader(table);
   for (const Source &source : sources)
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
+  for (int d = 0; d < 3; ++d) {
+    config->grid.boundary[d] = config->boundary.bounded(d) ? Boundary::wall : Boundary::periodic;
+    for (int high = 0; high < 2; ++high) config->sides[d][high].kind = config->boundary.kind(d, high);
+  }
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
   for (const Source &source : sources)
     for (const Entry &entry : source) {

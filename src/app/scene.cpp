@@ -45,7 +45,7 @@ PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const 
 PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver) {
   PetscFunctionBeginUser;
   State &state = solver->state();
-  set_initial_velocity(grid, config.walls, config.initial, state.velocity);
+  set_initial_velocity(grid, config.sides, config.initial, state.velocity);
   InitialState file(config, grid);
   PetscCall(file.open());
   PetscCall(file.read_flow(&state));
@@ -77,7 +77,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
 PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
-  PetscCall(solver->create(grid, {config.method, config.fluid, config.walls}));
+  PetscCall(solver->create(grid, {config.method, config.fluid, config.sides}));
   PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   PetscCall(solver->prepare());

@@ -25,8 +25,15 @@ std::string check_grid(const Config &config) {
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
   if (const std::string reason = Grid::why_not(serial, 1); !reason.empty()) return reason;
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("-boundary_") + "xyz"[d];
+    for (int high = 0; high < 2; ++high)
+      if (!config.boundary.bounded(d) && config.boundary.side[d][high] != SideChoice::same)
+        return name + (high ? "max" : "min") + ": one side alone cannot be periodic; accepted: same, or with " + name +
+               (high ? "min" : "max") + " or " + name;
+  }
   if (flat(config) && config.grid.boundary[2] == Boundary::wall)
-    return "-boundary_z: wall needs more than one cell in z; accepted in 2-D: periodic";
+    return "-boundary_z: a side needs more than one cell in z; accepted in 2-D: periodic";
   double cells = 1;
   for (int n : config.grid.cells) cells *= n;
   if (!config.check_only && cells > std::numeric_limits<PetscInt>::max())
@@ -55,7 +62,7 @@ std::string check_vector(const Config &config, const std::string &name, const Re
 std::string check_walls(const Config &config) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
-      const Real3 &velocity = config.walls.motion[d][side].velocity;
+      const Real3 &velocity = config.sides[d][side].motion.velocity;
       const std::string name = std::string("wall_") + "xyz"[d] + (side ? "max" : "min") + "_velocity";
       if (velocity[d] != 0) return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall and must be 0";
       if (const std::string wrong = check_vector(config, name, velocity); !wrong.empty()) return wrong;
@@ -73,10 +80,10 @@ std::string check_flow(const Config &config) {
     return wrong;
   for (int d = 0; d < 3; ++d)
     if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0)
-      return std::string("-initial_velocity_mean: the ") + "xyz"[d] + " component must be 0 between walls";
+      return std::string("-initial_velocity_mean: the ") + "xyz"[d] + " component must be 0 between sides that are not periodic";
   const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
   const bool between_walls = initial.kind == InitialVelocity::couette || initial.kind == InitialVelocity::poiseuille;
-  if (between_walls && config.grid.boundary[1] != Boundary::wall)
+  if (between_walls && !(config.boundary.is_wall(1, 0) && config.boundary.is_wall(1, 1)))
     return "-initial_velocity: " + name + " needs -boundary_y wall";
   const auto [component, along] = shear_wave_directions(initial.kind);
   if (flat(config) && (component == 2 || along == 2 || initial.kind == InitialVelocity::taylor_green_3d))

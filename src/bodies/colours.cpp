@@ -1,7 +1,7 @@
 #include "bodies/colours.hpp"
 
 #include "bodies/near_bodies.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <algorithm>
 

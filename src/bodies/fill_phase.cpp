@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "bodies/volume_fraction.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>

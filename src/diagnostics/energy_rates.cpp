@@ -160,10 +160,10 @@ PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity
     for (std::size_t p = 0; p < phases.size(); ++p)
       add_elastic(grid, part, velocity, phases[p], numbers.evolved[p], &all);
     const WallPower walls(grid, velocity, phases, numbers.viscosity);
-    for (int d = 0; part.first && numbers.walls && d < grid.dimension(); ++d)
+    for (int d = 0; part.first && numbers.sides && d < grid.dimension(); ++d)
       for (const bool high : {false, true})
         if (high ? grid.touches_high(d) : grid.touches_low(d))
-          walls.add(d, high, numbers.walls->motion[d][high].at(numbers.time), &all);
+          walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
   };
   double sum[sums];
   PetscCall(sum_row_parts(grid, sums, add, sum));

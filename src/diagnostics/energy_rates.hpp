@@ -5,7 +5,7 @@
 #pragma once
 
 #include "field/phase.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -13,7 +13,7 @@ namespace eulastic {
 struct EnergyNumbers {
   double density = 1, viscosity = 1;  ///< rho and mu (dynamic)
   Real3 force{};                      ///< body force per mass, now
-  const Walls *walls = nullptr;       ///< null: none moves
+  const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
   std::vector<double> evolved;  ///< least phi where B of a phase is evolved, per phase; below, it is extended
 };

@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <algorithm>
 #include <cmath>

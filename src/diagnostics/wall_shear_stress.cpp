@@ -55,13 +55,13 @@ private:
 
 }  // namespace
 
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const Walls &walls, double time, double viscosity,
+std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time, double viscosity,
                                           const FieldBlock &velocity, const std::vector<Phase> &phases) {
   const VerbScope scope(Verb::sums);
   std::vector<WallStress> all;
   for (int d = 0; d < grid.dimension(); ++d)
     for (const bool high : {false, true}) {
-      if (!grid.is_wall(d)) continue;
+      if (!grid.is_wall(d) || sides[d][high].kind != SideKind::wall) continue;
       WallStress &stress = all.emplace_back();
       stress.direction = d;
       stress.high = high;
@@ -72,7 +72,7 @@ std::vector<WallStress> wall_shear_stress(const Grid &grid, const Walls &walls, 
       for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
       if (n[d] == 0) continue;
       const OneWall wall(grid, d, high);
-      const Real3 speed = walls.motion[d][high].at(time);
+      const Real3 speed = sides[d][high].motion.at(time);
       for (int c = 0; c < grid.dimension(); ++c) {
         if (c == d) continue;
         wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);

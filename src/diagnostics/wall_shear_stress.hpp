@@ -5,7 +5,7 @@
 #pragma once
 
 #include "field/phase.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -20,7 +20,7 @@ struct WallStress {
 };
 
 /// All walls of the box. One ghost layer of velocity (at `time`) and B must be valid.
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const Walls &walls, double time, double viscosity,
+std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time, double viscosity,
                                           const FieldBlock &velocity, const std::vector<Phase> &phases);
 
 }  // namespace eulastic

@@ -1,6 +1,6 @@
 #include "field/phase.hpp"
 
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 

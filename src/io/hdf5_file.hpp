@@ -4,7 +4,7 @@
 // attribute `checksum` that does not depend on the ranks and is verified on read. Errors are the same on all ranks.
 #pragma once
 
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <cstdint>

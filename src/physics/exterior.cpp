@@ -251,7 +251,8 @@ double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int lay
   return flops;
 }
 
-PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const {
+PetscErrorCode ExteriorLayers::extend(const Grid &grid, const BoxSides &sides, GhostExchange &exchange,
+                                      FieldBlock &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
   const int parts = row_parts(grid);
@@ -261,6 +262,7 @@ PetscErrorCode ExteriorLayers::extend(const Grid &grid, GhostExchange &exchange,
       flops[part] = extend_layer(grid.dimension(), grid.layout(), L, part, parts, tensor.data());
     });
     for (const double some : flops) scope.flops(some);
+    clear_symmetry_planes(grid, sides, tensor);  // as the mean with their mirror images
     if (linear_ && L < layers) PetscCall(exchange.update(tensor, 3));
   }
   PetscFunctionReturn(0);

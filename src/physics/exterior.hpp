@@ -38,7 +38,7 @@ public:
   PetscErrorCode build(const Grid &grid, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
   /// three points in, so that attached bodies exchange ghosts after every layer.
-  PetscErrorCode extend(const Grid &grid, GhostExchange &exchange, FieldBlock &tensor) const;
+  PetscErrorCode extend(const Grid &grid, const BoxSides &sides, GhostExchange &exchange, FieldBlock &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
 

@@ -124,9 +124,9 @@ std::array<int, 2> shear_wave_directions(InitialVelocity kind) {
   return {name[name.size() - 2] - 'x', name.back() - 'x'};
 }
 
-void set_initial_velocity(const Grid &grid, const Walls &walls, const InitialFlow &flow, FieldBlock &velocity) {
+void set_initial_velocity(const Grid &grid, const BoxSides &sides, const InitialFlow &flow, FieldBlock &velocity) {
   const Box box{grid.spec().length, {grid.is_wall(0), grid.is_wall(1), grid.is_wall(2)}, grid.dimension()};
-  const Pointwise value{box, flow, walls.motion[1][0].at(0), walls.motion[1][1].at(0),
+  const Pointwise value{box, flow, sides[1][0].motion.at(0), sides[1][1].motion.at(0),
                         flow.kind == InitialVelocity::random ? random_modes(box, flow.amplitude) : Modes{}};
   const Layout &layout = grid.layout();
   for (int c = 0; c < velocity.count(); ++c)

@@ -1,7 +1,7 @@
 #include "physics/interface.hpp"
 
 #include "base/events.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "grid/threads.hpp"
 #include "kernels/thinc.hpp"
 

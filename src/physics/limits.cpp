@@ -154,15 +154,15 @@ PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, co
   PetscFunctionReturn(0);
 }
 
-TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
+TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const BoxSides &sides,
                                 const FlowExtremes &extremes, const StepScheme &scheme) {
   double S = 0, crossing = 0, gain = 0, speed_squared = 0, frequency = std::fabs(fluid.body_force.frequency);
   for (int d = 0; d < dimension; ++d) {
     double speed = extremes.speed[d];
-    for (const auto &pair : walls.motion)
-      for (const WallMotion &wall : pair) {
-        speed = std::max(speed, std::fabs(wall.velocity[d]));
-        frequency = std::max(frequency, std::fabs(wall.frequency));
+    for (const auto &pair : sides)
+      for (const Side &side : pair) {
+        speed = std::max(speed, std::fabs(side.motion.velocity[d]));
+        frequency = std::max(frequency, std::fabs(side.motion.frequency));
       }
     S += 1 / (spacing[d] * spacing[d]);
     crossing += speed / spacing[d];

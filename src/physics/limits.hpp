@@ -2,7 +2,7 @@
 #pragma once
 
 #include "field/phase.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "physics/fluid.hpp"
 
 namespace eulastic {
@@ -50,11 +50,11 @@ struct TimeStepLimits {
   const char *broken(double dt) const;
 };
 
-TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const Walls &walls,
+TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const BoxSides &sides,
                                 const FlowExtremes &extremes, const StepScheme &scheme);
-inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const Walls &walls,
+inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
                                        const FlowExtremes &extremes, const StepScheme &scheme) {
-  return time_step_limits(grid.spacing(), grid.dimension(), fluid, walls, extremes, scheme);
+  return time_step_limits(grid.spacing(), grid.dimension(), fluid, sides, extremes, scheme);
 }
 
 }  // namespace eulastic

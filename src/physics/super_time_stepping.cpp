@@ -1,7 +1,7 @@
 #include "physics/super_time_stepping.hpp"
 
 #include "base/events.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/super_time_stepping.hpp"
 
@@ -65,6 +65,7 @@ struct Pass {
   double first, half;  // W_1 = first (M_0 + half M_1)
   kernels::RklStage stage[deepest];
   double twice_wall[deepest][3][3][2];  // of component a of what the stage reads, at a wall of direction d: 2 U
+  double image[3][2];                   // the mirror image's sign behind a side, of tangential components
 };
 
 // The first stage of component a: M_0 for good, and W_1.
@@ -95,11 +96,11 @@ EULASTIC_INLINE bool is_on_wall(const Sides &sides, int a, const Segment &row) {
   return (a == 1 && sides.wall[1][0] && row.j == 0) || (a == 2 && sides.wall[2][0] && row.k == 0);
 }
 
-// What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind walls that its
+// What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind sides that its
 // component is tangential to.
 template <int Dim>
-EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const double (&twice_wall)[3][2], int a, View w,
-                                  const Segment &at) {
+EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const double (&twice_wall)[3][2],
+                                  const double (&image)[3][2], int a, View w, const Segment &at) {
   double *row = w.row(at.j, at.k);
   if (sides.wraps_x) {
     row[-1] = row[n[0] - 1];
@@ -111,14 +112,14 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
       const int last = d == 0 ? place[0] : side ? n[d] - 1 : 0;
       if (a == d || !sides.wall[d][side] || place[d] != last) continue;
       const std::ptrdiff_t s = w.stride(d);
-      const double twice = twice_wall[d][side];
+      const double twice = twice_wall[d][side], sign = image[d][side];
       if (d == 0) {
         double *inside = side ? row + n[0] - 1 : row;
-        inside[side ? 1 : -1] = twice - inside[0];
+        inside[side ? 1 : -1] = twice + sign * inside[0];
       } else {
         double *ghost = side ? row + s : row - s;
 #pragma omp simd
-        for (int i = at.i_begin; i < at.i_end; ++i) ghost[i] = twice - row[i];
+        for (int i = at.i_begin; i < at.i_end; ++i) ghost[i] = twice + sign * row[i];
       }
     }
 }
@@ -161,7 +162,7 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
           first_stage_row(n, pass, f, a, row);
         } else {
           if (pass.starts && s == 0) std::fill(values + row.i_begin, values + row.i_end, 0.0);  // W_0
-          surround_row<Dim>(n, sides, pass.twice_wall[s][a], a, w, row);
+          surround_row<Dim>(n, sides, pass.twice_wall[s][a], pass.image, a, w, row);
           stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
         }
         if (a == 0 && sides.wall[0][0]) values[0] = 0;
@@ -195,7 +196,7 @@ int rkl_stages(double dt, double dt_explicit) {
   return stages % 2 ? stages : stages + 1;
 }
 
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const Walls &walls,
+PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
                                FieldBlock &velocity_star) {
@@ -215,6 +216,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   }
   const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
   Pass pass;
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) pass.image[d][side] = box[d][side].kind == SideKind::wall ? -1 : 1;
   pass.first = dt * (stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2));  // mu~_1 dt
   pass.half = -0.5 * dt;  // the force at the start
   int j = 2;
@@ -227,7 +230,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
       pass.stage[s] = stage_coefficients(j + s, stages, dt, kinematic_viscosity);
       for (int d = 0; d < 3; ++d)
         for (int side = 0; side < 2; ++side) {
-          const Real3 u = walls.motion[d][side].at(time), v = walls.motion[d][side].at(time_of(j + s - 1));
+          const WallMotion &wall = box[d][side].motion;
+          const Real3 u = wall.at(time), v = wall.at(time_of(j + s - 1));
           for (int a = 0; a < 3; ++a) pass.twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
         }
     }

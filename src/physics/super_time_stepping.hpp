@@ -4,7 +4,7 @@
 
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -23,7 +23,7 @@ struct SuperTimeStepping {
 /// walls. Without M_1 the jump of the elastic force at an interface, which the viscous one balances at every moment,
 /// would leave an error of order dt^1.5. M_1 vanishes where no phase is stressed. One stage is plain explicit Euler
 /// and needs no `before`.
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const Walls &walls,
+PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
                                FieldBlock &velocity_star);

@@ -1,7 +1,7 @@
 #include "pressure/acm_sweeps.hpp"
 
 #include "base/events.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <algorithm>
 #include <cmath>

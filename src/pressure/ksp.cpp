@@ -2,7 +2,7 @@
 
 #include "field/exact_sum.hpp"
 #include "field/global_vector.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "pressure/smac.hpp"
 
 #include "base/events.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <algorithm>
 

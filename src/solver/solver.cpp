@@ -58,7 +58,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
-  fill_wall_ghosts_velocity(*grid_, spec_.walls, now_.time, now_.velocity, Grid::stencil_width);
+  fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
@@ -92,7 +92,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
-  fill_wall_ghosts_velocity(*grid_, spec_.walls, now_.time, now_.velocity, Grid::stencil_width);
+  fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
@@ -122,8 +122,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
   double scale = extremes->max_speed();
-  for (const auto &pair : spec_.walls.motion)
-    for (const WallMotion &wall : pair) scale = std::max(scale, wall.speed());
+  scale = std::max(scale, wall_speed(spec_.sides));
   now_.speed_scale = scale;
   now_.crossing_rate = 0;
   for (int d = 0; d < grid_->dimension(); ++d)
@@ -132,7 +131,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 }
 
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  return time_step_limits(*grid_, spec_.fluid, spec_.walls, extremes,
+  return time_step_limits(*grid_, spec_.fluid, spec_.sides, extremes,
                           {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
 }
 
@@ -196,7 +195,7 @@ PetscErrorCode Solver::predict(double dt) {
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
-  PetscCall(super_time_step(*grid_, *exchange_, spec_.walls, fluid.kinematic_viscosity(), now_.time, dt, stages,
+  PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
                             now_.phases, now_.velocity, viscous, velocity_star_));
   stages_ += stages;
   PetscFunctionReturn(0);
@@ -308,19 +307,19 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
   PetscFunctionBeginUser;
   PetscCall(exchange_->update_wrapped(tensor, tensor_width(), rows));
   if (spec_.exterior == SolidExterior::extrapolate) {
-    PetscCall(layers_.extend(*grid_, *exchange_, tensor));
-    fill_wall_ghosts_tensor(*grid_, tensor, 1, rows);  // what the limit of shear at walls sees
+    PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
+    fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
     PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
     PetscCall(exchange_->update(tensor, Grid::stencil_width, rows));
   }
-  fill_wall_ghosts_tensor(*grid_, tensor, Grid::stencil_width, rows);
+  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, Grid::stencil_width, rows);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update_wrapped(velocity, width));
-  fill_wall_ghosts_velocity(*grid_, spec_.walls, time, velocity, width);
+  fill_wall_ghosts_velocity(*grid_, spec_.sides, time, velocity, width);
   PetscFunctionReturn(0);
 }
 
@@ -334,7 +333,7 @@ PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
 PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(tensor, width, rows));
-  fill_wall_ghosts_tensor(*grid_, tensor, width, rows);
+  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }
 

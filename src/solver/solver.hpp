@@ -19,7 +19,7 @@ namespace eulastic {
 
 struct SolverSpec : Method {
   Fluid fluid;
-  Walls walls;
+  BoxSides sides;
 };
 
 class Solver {

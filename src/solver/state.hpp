@@ -2,7 +2,7 @@
 #pragma once
 
 #include "field/phase.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <cstdint>
 

@@ -133,7 +133,7 @@ TEST(Channel, OscillatingWallConvergesAtOrderTwo) {  // Stokes 2: u = Im{U sinh(
   };
   SolverSpec spec;
   spec.fluid.viscosity = nu;
-  spec.walls.motion[1][1] = {{1, 0, 0}, omega, -pi / 2};  // U sin(omega t)
+  spec.sides[1][1].motion = {{1, 0, 0}, omega, -pi / 2};  // U sin(omega t)
   const double t = 0.6;
   const double e[3] = {channel(16, spec, t, false, exact(0), exact(t)), channel(32, spec, t, true, exact(0), exact(t)),
                        channel(64, spec, t, false, exact(0), exact(t))};

@@ -49,7 +49,7 @@ std::vector<double> layer_velocity(const Layers &layers, int cells, int steps, d
   SolverSpec spec;
   static_cast<Method &>(spec) = method;
   spec.fluid.viscosity = layers.mu;
-  spec.walls.motion[1][1] = {{1, 0, 0}, layers.omega, -pi / 2};
+  spec.sides[1][1].motion = {{1, 0, 0}, layers.omega, -pi / 2};
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   State &state = scene.solver.state();
   set(scene.grid, state.velocity[0], at_face[0], [&](double, double y, double) { return layers.u(y, 0); });

@@ -32,7 +32,7 @@ std::array<double, 2> cavity(int cells) {
   grid.cells = {cells, cells, 1};
   grid.boundary[0] = grid.boundary[1] = Boundary::wall;
   SolverSpec spec = fast_spec(0.01);
-  spec.walls.motion[1][1].velocity = {1, 0, 0};
+  spec.sides[1][1].motion.velocity = {1, 0, 0};
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(30, 100 * cells), 0);  // Courant number .3 of the lid

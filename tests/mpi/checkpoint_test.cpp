@@ -30,8 +30,8 @@ PetscErrorCode build(MPI_Comm comm, const Case &c, Scene *scene) {
   spec.pressure = c.pressure;
   spec.fluid.viscosity = 0.2;
   spec.fluid.body_force.force = {0.1, 0, 0};
-  spec.walls.motion[0][1].velocity = {0, 0.2, 0};
-  spec.walls.motion[1][1] = {{0.3, 0, 0}, 2, 0.1};
+  spec.sides[0][1].motion.velocity = {0, 0.2, 0};
+  spec.sides[1][1].motion = {{0.3, 0, 0}, 2, 0.1};
   PetscCall(scene->create(comm, grid, spec));
   const Real3 &L = grid.length;
   for (int d = 0; d < 2; ++d)

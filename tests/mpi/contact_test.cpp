@@ -2,7 +2,7 @@
 #include "bodies/contact.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_bodies.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "support/files.hpp"
 
 using namespace eulastic;

@@ -20,7 +20,7 @@ Function wild(double a) {
 
 struct Box {
   Grid grid;
-  Walls walls;
+  BoxSides walls{};
   FieldBlock velocity;
   std::vector<Phase> phases;
 
@@ -38,7 +38,7 @@ struct Box {
     for (int d = 0; d < grid.dimension(); ++d)
       for (int side = 0; side < 2; ++side)
         for (int c = 0; c < 3; ++c)
-          if (c != d) walls.motion[d][side].velocity[c] = speed[c] * (1 - 3 * side + d);
+          if (c != d) walls[d][side].motion.velocity[c] = speed[c] * (1 - 3 * side + d);
   }
 
   void add_phase(const Material &material, double seed) {
@@ -66,7 +66,7 @@ struct Box {
       EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
       EXPECT_EQ(exchange.update(phase.tensor, 2), 0);
       fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-      fill_wall_ghosts_tensor(grid, phase.tensor, 2);
+      fill_wall_ghosts_tensor(grid, walls, phase.tensor, 2);
     }
   }
 

@@ -1,6 +1,6 @@
 // Ghost exchange: every ghost inside the domain and across periodic sides, at odd sizes, in every decomposition.
 #include "field/ghost_exchange.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -174,9 +174,9 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
     spec.processors = {0, 0, 0};
     Grid whole;
     ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
-    Walls walls;
+    BoxSides walls{};
     for (int d = 0; d < 3; ++d)
-      for (int side = 0; side < 2; ++side) walls.motion[d][side] = {{.1 + d, .2 + side, .3 - d}, 1.7, .3 * side};
+      for (int side = 0; side < 2; ++side) walls[d][side].motion = {{.1 + d, .2 + side, .3 - d}, 1.7, .3 * side};
     const int dimension = grid.dimension();
     const int components = static_cast<int>(tensor_components(dimension).size());
     for (const int width : {1, 3}) {
@@ -194,7 +194,7 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
         ASSERT_EQ(exchange.update(velocity, width), 0);
         ASSERT_EQ(exchange.update(tensor, width), 0);
         fill_wall_ghosts_velocity(g, walls, .7, velocity, width);
-        fill_wall_ghosts_tensor(g, tensor, width);
+        fill_wall_ghosts_tensor(g, walls, tensor, width);
       };
       FieldBlock velocity(grid, dimension), tensor(grid, components);
       FieldBlock whole_velocity(whole, dimension), whole_tensor(whole, components);

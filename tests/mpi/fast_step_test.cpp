@@ -27,7 +27,7 @@ std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, 
   SolverSpec spec;
   static_cast<Method &>(spec) = method_preset(MethodKind::fast);
   spec.pressure = pressure;
-  spec.walls.motion[1][1].velocity = {1, 0, 0};
+  spec.sides[1][1].motion.velocity = {1, 0, 0};
   spec.fluid.body_force.force = {1, 0, 0};
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
   const double h = scene.grid.spacing()[1];
@@ -70,7 +70,7 @@ std::uint64_t thin_hash(MPI_Comm comm, const Int3 &processors) {
   grid.processors = processors;
   SolverSpec spec;
   static_cast<Method &>(spec) = method_preset(MethodKind::fast);
-  spec.walls.motion[0][1].velocity = {0, 0.08, 0.15};
+  spec.sides[0][1].motion.velocity = {0, 0.08, 0.15};
   spec.fluid.body_force.force = {0.05, 0.05, 0.05};
   spec.fluid.inertia = false;
   EXPECT_EQ(scene.create(comm, grid, spec), 0);

@@ -1,7 +1,7 @@
 // Flow measures against integrals known in closed form, and the same bits on any ranks as on one.
 #include "diagnostics/flow_measures.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ struct Flow {
   }
 
   Grid grid;
-  Walls walls;
+  BoxSides walls{};
   FieldBlock velocity;
   std::vector<Phase> phases;
 };
@@ -108,7 +108,7 @@ TEST(FlowMeasures, LinearShear) {
       const Real3 length{1, 2, 3};
       Flow flow(PETSC_COMM_WORLD, {5, 13, 7}, length, walls);
       const double speed = 0.7, mu = 0.3;
-      flow.walls.motion[d][1].velocity[c] = speed;
+      flow.walls[d][1].motion.velocity[c] = speed;
       std::array<Field, 3> v{zero, zero, zero};
       v[c] = [&](double x, double y, double z) { return speed * Real3{x, y, z}[d] / length[d]; };
       const FlowMeasures m = flow.measure(v, {1, mu, 0, 0});

@@ -1,7 +1,7 @@
 // The exact pressure solver: residual, ghosts, known modes, and the same bits on any decomposition.
 #include "pressure/smac.hpp"
 #include "field/exact_sum.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 

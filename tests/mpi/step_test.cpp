@@ -42,9 +42,9 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps, double force =
   spec.fluid.density = 1.3;
   spec.fluid.viscosity = 0.3;
   spec.fluid.body_force.force = {force, 0.01, -0.015};
-  spec.walls.motion[0][1].velocity = {0, 0.15, 0.05};
-  spec.walls.motion[1][1] = {{0.2, 0, -0.1}, 2, 0.3};
-  spec.walls.motion[2][0].velocity = {-0.1, 0.05, 0};
+  spec.sides[0][1].motion.velocity = {0, 0.15, 0.05};
+  spec.sides[1][1].motion = {{0.2, 0, -0.1}, 2, 0.3};
+  spec.sides[2][0].motion.velocity = {-0.1, 0.05, 0};
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
   const bool flat = scene.grid.dimension() == 2;
   const Real3 &L = grid.length;

@@ -107,7 +107,7 @@ void rkl_stage(benchmark::State &state) {
     constexpr double stage = 8 + 16 + 8, ends = (8 + 16) + 16 + (8 + 8 + 16);
     SuperTimeStepping work{FieldBlock(s.grid, 3), {}, FieldBlock(s.grid, 3), FieldBlock(s.grid, 3)};
     measure(3 * (stage + ends / (stages - 1)), stages - 1, [&] {
-      return super_time_step(s.grid, s.exchange, s.box.scene.solver.spec().walls, 1, 0, 100 * s.box.dt, stages, {},
+      return super_time_step(s.grid, s.exchange, s.box.scene.solver.spec().sides, 1, 0, 100 * s.box.dt, stages, {},
                              s.now.velocity, work, s.velocity);
     });
   });

@@ -101,6 +101,8 @@ def scene(dice):
     for chance, option in sometimes:
         if dice.random() < chance:
             words += option
+    if walls and dice.random() < 0.3 and f"-wall_{walls[0]}max_velocity" not in words:
+        words += [f"-boundary_{walls[0]}max", "symmetry"]
     words += ["-time_end", "1000", "-series_interval", dice.choice(("0.05", "0.5", "1000"))]
     return words + [word for name in GUARDS for word in (f"-guard_{name}", "0")], cells
 

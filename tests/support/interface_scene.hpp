@@ -4,7 +4,7 @@
 #include "bodies/volume_fraction.hpp"
 #include "field/exact_sum.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "physics/interface.hpp"
 
 #include <cmath>
@@ -115,7 +115,7 @@ public:
   PetscErrorCode update_velocity_ghosts() {
     PetscFunctionBeginUser;
     PetscCall(exchange_->update(velocity, 3));
-    fill_wall_ghosts_velocity(grid, Walls{}, 0, velocity, 3);
+    fill_wall_ghosts_velocity(grid, BoxSides{}, 0, velocity, 3);
     PetscFunctionReturn(0);
   }
 

@@ -1,7 +1,7 @@
 // A grid, and fields whose values tell their global index.
 #pragma once
 
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic::test {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "field/exact_sum.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 #include "pressure/pressure_solver.hpp"
 
 #include <gtest/gtest.h>

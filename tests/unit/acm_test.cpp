@@ -156,7 +156,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   GhostExchange exchange(grid);
-  const Walls walls;
+  const BoxSides walls{};
   Random random(3);
   const double dt = 0.02, density = 1.7;
   FieldBlock velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), none;

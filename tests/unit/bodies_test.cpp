@@ -2,7 +2,7 @@
 #include "bodies/fill_phase.hpp"
 #include "bodies/shapes.hpp"
 #include "bodies/volume_fraction.hpp"
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 

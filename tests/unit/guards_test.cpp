@@ -78,9 +78,9 @@ TEST_F(GuardsTest, EnergyMayGrowOnlyByForcing) {
   EXPECT_FALSE(check(bad));
   bad.flow.elastic_energy = 0.11;
   EXPECT_NE(check(bad).message.find("by 0.11 of the 1 at the start"), std::string::npos);
-  config.walls.motion[1][0].velocity[0] = 1;
+  config.sides[1][0].motion.velocity[0] = 1;
   EXPECT_FALSE(check(bad));
-  config.walls.motion[1][0].velocity[0] = 0;
+  config.sides[1][0].motion.velocity[0] = 0;
   config.fluid.body_force.force[2] = 1;
   EXPECT_FALSE(check(bad));
 }

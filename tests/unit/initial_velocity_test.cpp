@@ -14,7 +14,7 @@ constexpr double pi = 3.14159265358979323846;
 struct Flow {
   Grid grid;
   FieldBlock velocity;
-  Flow(const GridSpec &spec, const InitialFlow &flow, const Walls &walls = {}) {
+  Flow(const GridSpec &spec, const InitialFlow &flow, const BoxSides &walls = {}) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
     velocity = FieldBlock(grid, grid.dimension());
     set_initial_velocity(grid, walls, flow, velocity);
@@ -75,9 +75,9 @@ TEST(InitialVelocity, ShearLayer) {
 
 TEST(InitialVelocity, Channel) {
   const GridSpec channel = box({4, 5, 3}, {1, 2, 1}, {Boundary::periodic, Boundary::wall, Boundary::periodic});
-  Walls walls;
-  walls.motion[1][0].velocity = {-1, 0, 2};
-  walls.motion[1][1].velocity = {3, 0, 4};
+  BoxSides walls{};
+  walls[1][0].motion.velocity = {-1, 0, 2};
+  walls[1][1].motion.velocity = {3, 0, 4};
   const Flow couette(channel, {InitialVelocity::couette, 9, {}}, walls);
   EXPECT_NEAR(couette.u(0, 1, 1, 1), -1 + 4 * 0.3, 1e-14);
   EXPECT_NEAR(couette.u(2, 1, 1, 1), 2 + 2 * 0.3, 1e-14);

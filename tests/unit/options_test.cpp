@@ -8,6 +8,22 @@
 
 using namespace eulastic;
 
+TEST(Options, SidesAreThoseOfTheDirectionUnlessToldOtherwise) {
+  const ParseResult result = parse_line(
+      "-time_end 1 -grid_cells 8,8,8 -boundary_y wall -boundary_ymax symmetry -wall_ymin_velocity 1,0,0 -boundary_zmin wall "
+      "-boundary_zmax symmetry");
+  ASSERT_EQ(result.error, "");
+  const Config &c = result.config;
+  EXPECT_EQ(c.grid.boundary, (std::array<Boundary, 3>{Boundary::periodic, Boundary::wall, Boundary::wall}));
+  for (const int d : {1, 2}) {
+    EXPECT_EQ(c.sides[d][0].kind, SideKind::wall);
+    EXPECT_EQ(c.sides[d][1].kind, SideKind::symmetry);
+  }
+  const Config both = parse_line("-time_end 1 -grid_cells 8,8,8 -boundary_x symmetry").config;
+  EXPECT_EQ(both.grid.boundary[0], Boundary::wall);
+  for (const Side &side : both.sides[0]) EXPECT_EQ(side.kind, SideKind::symmetry);
+}
+
 TEST(Options, ValuesArrive) {
   const ParseResult result = parse_line(
       "-grid_cells 32,16,8 -grid_length 4,2.5,1e1 -boundary_x periodic -boundary_y wall -boundary_z wall "
@@ -25,9 +41,9 @@ TEST(Options, ValuesArrive) {
   EXPECT_EQ(c.grid.length, (Real3{4, 2.5, 10}));
   EXPECT_EQ(c.grid.boundary, (std::array<Boundary, 3>{Boundary::periodic, Boundary::wall, Boundary::wall}));
   EXPECT_EQ(c.grid.processors, (Int3{0, 2, 0}));
-  EXPECT_EQ(c.walls.motion[1][1].velocity, (Real3{1, 0, -2}));
-  EXPECT_EQ(c.walls.motion[1][1].frequency, 3);
-  EXPECT_EQ(c.walls.motion[2][0].phase, 0.5);
+  EXPECT_EQ(c.sides[1][1].motion.velocity, (Real3{1, 0, -2}));
+  EXPECT_EQ(c.sides[1][1].motion.frequency, 3);
+  EXPECT_EQ(c.sides[2][0].motion.phase, 0.5);
   EXPECT_EQ(c.fluid.density, 2);
   EXPECT_EQ(c.fluid.viscosity, 0.1);
   EXPECT_FALSE(c.fluid.inertia);

@@ -23,7 +23,7 @@ struct Sides {
 struct RandomFlow {
   Grid grid;
   std::unique_ptr<GhostExchange> exchange;
-  Walls walls;
+  BoxSides walls{};
   FieldBlock velocity, pressure;
 
   explicit RandomFlow(const Sides &sides) {

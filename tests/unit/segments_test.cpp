@@ -175,7 +175,8 @@ void compare_steps(bool flat, double y) {
   grid.length = {34, 19, 17};
   grid.boundary[1] = Boundary::wall;
   SolverSpec spec;
-  spec.walls.motion[1] = {WallMotion{{-1.9, 0, 0}}, WallMotion{{1.9, 0, 0}}};
+  spec.sides[1][0].motion.velocity[0] = -1.9;
+  spec.sides[1][1].motion.velocity[0] = 1.9;
   spec.fluid.body_force.force = {0.001, 0, 0.0005};
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   scene.add_phase(0.5, [=](double x, double yy, double z) {

@@ -1,4 +1,4 @@
-// The whole step: mirrored, rotated and moving scenes, solids that carry no stress.
+// The whole step: mirrored, rotated, halved and moving scenes, solids that carry no stress.
 #include "support/materials.hpp"
 #include "support/polynomials.hpp"
 
@@ -15,6 +15,7 @@ struct Setting {
   Real3 length{9, 8, 7};
   std::array<Boundary, 3> boundary{Boundary::periodic, Boundary::wall, Boundary::periodic};
   std::array<std::array<Real3, 2>, 3> wall_velocity{};
+  std::array<std::array<SideKind, 2>, 3> side{};
   Real3 force{0.4, 0.2, -0.3};
   Real3 centre{4.1, 3.3, 3.9};
   Real3 axes{2.2, 1.7, 1.9};
@@ -70,7 +71,7 @@ void run(const Setting &s, Scene &scene, int steps = 20) {
   spec.fluid.viscosity = 0.5;
   spec.fluid.body_force.force = s.force;
   for (int d = 0; d < 3; ++d)
-    for (int side = 0; side < 2; ++side) spec.walls.motion[d][side].velocity = s.wall_velocity[d][side];
+    for (int side = 0; side < 2; ++side) spec.sides[d][side] = {s.side[d][side], {s.wall_velocity[d][side]}};
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   const int dim = scene.grid.dimension();
   Phase &phase = scene.add_phase(0, [&](double x, double y, double z) {
@@ -219,6 +220,44 @@ TEST(MirroredScene, GivesTheMirroredResultWithFast) {
     }
 }
 
+// The lower half of a scene that is its own mirror image along d, which is to be periodic or between walls.
+Setting half(Setting s, int d) {
+  s.side[d] = {s.boundary[d] == Boundary::wall ? SideKind::wall : SideKind::symmetry, SideKind::symmetry};
+  s.boundary[d] = Boundary::wall;
+  s.cells[d] /= 2;
+  s.length[d] /= 2;
+  return s;
+}
+
+// Planes of symmetry are what they are called: a body that lies on one, and shear of it, as in the whole box. To round-off
+// but for what a mirror image is rounded to.
+TEST(HalfOfASymmetricScene, IsTheWholeOne) {
+  for (const MethodKind method : {MethodKind::classic, MethodKind::fast})
+    for (const bool two_d : {true, false})
+      for (int d = 0; d < (two_d ? 2 : 3); ++d) {
+        Setting setting;
+        setting.cells = {16, 16, 12};
+        setting.method = method;
+        setting.pressure = PressureKind::smac;
+        if (d == 2) setting.material = test::mooney_rivlin(0.1, 0.1, 0.2);
+        setting.wall_velocity[1] = {Real3{-1.5, 0, 0.8}, Real3{2, 0, 0.8}};
+        if (d == 1) setting.wall_velocity[1][1] = setting.wall_velocity[1][0];
+        setting.centre[d] = setting.length[d] / 2;
+        setting.force[d] = 0;
+        for (Real3 &v : setting.wall_velocity[1]) v[d] = 0;
+        if (two_d) setting = flat(setting);
+        Scene whole, part;
+        run(setting, whole);
+        run(half(setting, d), part);
+        const double e = difference(part, whole, [&](const FieldBlock &y, const Staggering &, const Int3 &x, int a, int b) {
+          return y[block_position(two_d ? 2 : 3, a, b)](x[0], x[1], x[2]);
+        });
+        std::printf("  half along %c: %g\n", "xyz"[d], e);
+        EXPECT_LT(e, 1e-11) << "xyz"[d] << (method == MethodKind::fast ? ", fast" : ", classic");
+        EXPECT_GT(mirror_difference(whole, whole, (d + 1) % 2), 1e-3) << "nothing happens";
+      }
+}
+
 // Fast sweeps the directions one after the other: rotated scenes differ by the splitting error and nothing else.
 TEST(RotatedScene, GivesTheRotatedResultWithinTheSplittingErrorWithFast) {
   Setting setting;
@@ -282,7 +321,7 @@ TEST(StresslessSolid, IsTheFluid) {
       grid.boundary[1] = Boundary::wall;
       SolverSpec spec;
       spec.fluid.viscosity = 0.1;
-      spec.walls.motion[1][0].velocity = {0.5, 0, 0.2};
+      spec.sides[1][0].motion.velocity = {0.5, 0, 0.2};
       ASSERT_EQ(scene[solid].create(PETSC_COMM_SELF, grid, spec), 0);
       Random random(1);
       for (int a = 0; a < 3; ++a)

@@ -1,5 +1,5 @@
 // Ghosts behind walls: every boundary combination, every staggering, edges and corners, moving walls.
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include "field/ghost_exchange.hpp"
 
@@ -87,9 +87,9 @@ double unfolded(const Grid &grid, Int3 p, const Staggering &staggering, double s
 }
 
 TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
-  Walls walls;
+  BoxSides walls{};
   for (int d = 0; d < 3; ++d)
-    for (int side = 0; side < 2; ++side) walls.motion[d][side] = {{.1 + d, .2 - side, .3 * d}, 1.5 + d, .4 * side};
+    for (int side = 0; side < 2; ++side) walls[d][side].motion = {{.1 + d, .2 - side, .3 * d}, 1.5 + d, .4 * side};
   const double time = .7;
   for_each_grid([&](const Grid &grid) {
     for (const int width : {1, 2, 3}) {
@@ -102,7 +102,7 @@ TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
         std::vector<int> order;
         for (int e = 0; e < grid.dimension(); ++e) order.push_back((c + e) % grid.dimension());
         const auto twice_wall = [&](int d, int side) {
-          const WallMotion &motion = walls.motion[d][side];
+          const WallMotion &motion = walls[d][side].motion;
           return c == d ? 0 : 2 * (motion.velocity[c] * std::cos(motion.frequency * time + motion.phase));
         };
         const auto inside = [&](const Int3 &p) {
@@ -146,7 +146,7 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
     FieldBlock tensor(grid, static_cast<int>(components.size()));
     prepare(
         grid, tensor, [&](int f) { return components[f].staggering(); }, 3);
-    fill_wall_ghosts_tensor(grid, tensor, 3);
+    fill_wall_ghosts_tensor(grid, BoxSides{}, tensor, 3);
     int wrong = 0;
     for (int f = 0; f < tensor.count(); ++f)
       for_each_point(grid, components[f].staggering(), 3, [&](const Int3 &p) {
@@ -157,6 +157,41 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
       });
     EXPECT_EQ(wrong, 0);
   });
+}
+
+// Behind a plane of symmetry is the mirror image: tangential velocity even, normal velocity and shear odd, 0 on it.
+TEST(SymmetryGhosts, AreTheMirrorImage) {
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
+  BoxSides sides{};
+  sides[1][1].kind = SideKind::symmetry;
+  FieldBlock velocity(grid, 2), tensor(grid, 3);
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 3; ++i) {
+      for (int c = 0; c < 2; ++c) velocity[c](i, j, 0) = 1 + j + 10 * c;
+      for (int c = 0; c < 3; ++c) tensor[c](i, j, 0) = 1 + j + 10 * c;
+    }
+  GhostExchange exchange(grid);
+  ASSERT_EQ(exchange.update(velocity, 3), 0);
+  ASSERT_EQ(exchange.update(tensor, 3), 0);
+  fill_wall_ghosts_velocity(grid, sides, 0, velocity, 3);
+  fill_wall_ghosts_tensor(grid, sides, tensor, 3);
+  const double even[3] = {4, 3, 2}, normal[3] = {-14, -13, -12}, shear[3] = {-24, -23, -22};
+  for (int m = 0; m < 3; ++m)
+    for (int i = -3; i < 6; ++i) {
+      EXPECT_EQ(velocity[0](i, 4 + m, 0), even[m]);
+      EXPECT_EQ(tensor[0](i, 4 + m, 0), even[m]);
+      EXPECT_EQ(tensor[1](i, 4 + m, 0), 10 + even[m]);
+      EXPECT_EQ(velocity[1](i, 5 + m, 0), normal[m]);
+      EXPECT_EQ(tensor[2](i, 5 + m, 0), shear[m]);
+      EXPECT_EQ(velocity[0](i, -1 - m, 0), -(1 + m));  // the wall below is one still
+      EXPECT_EQ(tensor[2](i, -1 - m, 0), 22 + m);
+    }
+  for (int i = -3; i < 6; ++i) {
+    EXPECT_EQ(velocity[1](i, 4, 0), 0);
+    EXPECT_EQ(tensor[2](i, 4, 0), 0);
+    EXPECT_EQ(tensor[2](i, 0, 0), 21);
+  }
 }
 
 TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
@@ -176,9 +211,9 @@ TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
 TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
-  Walls walls;
-  walls.motion[1][0].velocity = {-1, 9, 0};  // the normal component is ignored
-  walls.motion[1][1].velocity = {3, 9, 0};
+  BoxSides walls{};
+  walls[1][0].motion.velocity = {-1, 9, 0};  // the normal component is ignored
+  walls[1][1].motion.velocity = {3, 9, 0};
   FieldBlock velocity(grid, 2);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 3; ++i) {
@@ -208,13 +243,13 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
     Grid grid, turned;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells, 7)), 0);
     ASSERT_EQ(turned.create(PETSC_COMM_SELF, box(turned_cells, 7)), 0);
-    Walls walls, turned_walls;
+    BoxSides walls{}, turned_walls{};
     for (int d = 0; d < dimension; ++d)
       for (int side = 0; side < 2; ++side) {
         WallMotion motion{{.7 + d, 1.1 - d + side, dimension == 3 ? 1.9 + side : 0}, .3, .1 * d};
-        walls.motion[d][side] = motion;
+        walls[d][side].motion = motion;
         motion.velocity = turn(motion.velocity);
-        turned_walls.motion[(d + 1) % dimension][side] = motion;
+        turned_walls[(d + 1) % dimension][side].motion = motion;
       }
     FieldBlock velocity(grid, dimension), turned_velocity(turned, dimension);
     for (int c = 0; c < dimension; ++c)
@@ -248,7 +283,7 @@ TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
     for (const Segment &s : grid.rows())
       for (int f = 0; f < 6; ++f)
         for (int i = 0; i < s.i_end; ++i) tensor[f](i, s.j, s.k) = 1 + f;
-    fill_wall_ghosts_tensor(grid, tensor, 3, &rows);
+    fill_wall_ghosts_tensor(grid, BoxSides{}, tensor, 3, &rows);
     const auto ghost = [&](int f, Int3 at, int index) {
       at[d] = index;
       return tensor[f](at[0], at[1], at[2]);

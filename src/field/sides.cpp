@@ -1,4 +1,4 @@
-#include "field/walls.hpp"
+#include "field/sides.hpp"
 
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
@@ -59,20 +59,25 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
   });
 }
 
+// The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests is
+// left alone (FieldBlock::at_rest).
+void clear_face(const Grid &grid, View q, int d, bool high) {
+  const Layout &layout = grid.layout();
+  const Plane plane(layout, d);
+  const int local = (high ? grid.cells()[d] : 0) - layout.begin[d];
+  if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) return;
+  for (int k = plane.begin[2]; k < plane.end[2]; ++k)
+    for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
+      double *row = q.row(j, k) + local * q.stride(d);
+      for (int i = plane.begin[0]; i < plane.end[0]; ++i)
+        if (row[i] != 0 || std::signbit(row[i])) row[i] = 0;
+    }
+}
+
 }  // namespace
 
 void close_wall_faces(const Grid &grid, View q, int d) {
-  const Layout &layout = grid.layout();
-  const Plane plane(layout, d);
-  for (const int face : {0, grid.cells()[d]}) {
-    const int local = face - layout.begin[d];
-    if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
-    for (int k = plane.begin[2]; k < plane.end[2]; ++k)
-      for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
-        double *row = q.row(j, k) + local * q.stride(d);
-        std::fill(row + plane.begin[0], row + plane.end[0], 0.0);
-      }
-  }
+  for (const bool high : {false, true}) clear_face(grid, q, d, high);
 }
 
 Real3 WallMotion::at(double time) const {
@@ -81,6 +86,13 @@ Real3 WallMotion::at(double time) const {
 }
 
 double WallMotion::speed() const { return std::hypot(velocity[0], velocity[1], velocity[2]); }
+
+double wall_speed(const BoxSides &sides) {
+  double speed = 0;
+  for (const auto &pair : sides)
+    for (const Side &side : pair) speed = std::max(speed, side.motion.speed());
+  return speed;
+}
 
 const std::vector<TensorComponent> &tensor_components(int dimension) {
   static const std::vector<TensorComponent> flat{{0, 0}, {1, 1}, {0, 1}};
@@ -93,7 +105,7 @@ FieldBlock tensor_at_rest(const Grid &grid) {
   return FieldBlock::at_rest(grid, static_cast<int>(tensor_components(dimension).size()), dimension);
 }
 
-void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time, FieldBlock &velocity, int width) {
+void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = grid.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
@@ -102,8 +114,13 @@ void fill_wall_ghosts_velocity(const Grid &grid, const Walls &walls, double time
       const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
       for (const bool high : {false, true}) {
         if (!(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
-        const double wall = c == d ? 0.0 : walls.motion[d][high].at(time)[c];
-        reflect(grid, velocity[c], d, high, c == d, {-1.0, 2 * wall}, width);
+        const Side &side = sides[d][high];
+        Reflection rule{-1, 0};
+        if (c != d && side.kind == SideKind::symmetry)
+          rule.sign = 1;
+        else if (c != d)
+          rule.twice_wall = 2 * side.motion.at(time)[c];
+        reflect(grid, velocity[c], d, high, c == d, rule, width);
       }
     }
   }
@@ -116,11 +133,30 @@ void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View 
       if (grid.is_wall(d)) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
-void fill_wall_ghosts_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
+void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
+                             const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);
+  clear_symmetry_planes(grid, sides, tensor);
   const auto &components = tensor_components(grid.dimension());
-  for (int c = 0; c < tensor.count(); ++c)
-    fill_wall_ghosts_even(grid, components[c].staggering(), tensor[c], width, rows);
+  for (int c = 0; c < tensor.count(); ++c) {
+    const Staggering at = components[c].staggering();
+    for (int d = 0; d < grid.dimension(); ++d)
+      for (const bool high : {false, true}) {
+        if (!grid.is_wall(d)) continue;
+        const bool odd = at[d] && sides[d][high].kind == SideKind::symmetry;
+        reflect(grid, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
+      }
+  }
+}
+
+void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor) {
+  const auto &components = tensor_components(grid.dimension());
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true}) {
+      if (!grid.is_wall(d) || sides[d][high].kind != SideKind::symmetry) continue;
+      for (int c = 0; c < tensor.count(); ++c)
+        if (components[c].staggering()[d]) clear_face(grid, tensor[c], d, high);
+    }
 }
 
 }  // namespace eulastic

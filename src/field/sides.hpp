@@ -1,0 +1,70 @@
+// What happens at the faces of the box, and the ghosts behind them. No volume crosses a side of either kind.
+//
+// Pressure, solid fraction and everything centred reflect evenly. Normal velocity is 0 on a side and reflects oddly.
+// Wall: the tangential velocity reflects oddly about the wall's; tensor components that live on the wall itself (edges)
+// are evolved there and reflect evenly about it. Symmetry: what is behind is the mirror image, so the tangential
+// velocity reflects evenly, and tensor components on the plane are 0 and reflect oddly.
+#pragma once
+
+#include "field/field_block.hpp"
+#include "grid/occupied_rows.hpp"
+
+namespace eulastic {
+
+/// Velocity U cos(frequency t + phase) of one wall; its normal component must be 0.
+struct WallMotion {
+  Real3 velocity{};      ///< length / time
+  double frequency = 0;  ///< angular, 1 / time
+  double phase = 0;      ///< rad
+  Real3 at(double time) const;
+  double speed() const;  ///< largest |U|
+};
+
+enum class SideKind : unsigned char { wall, symmetry };
+
+struct Side {
+  SideKind kind = SideKind::wall;
+  WallMotion motion;  ///< of a wall
+};
+
+/// [direction][low, high]; without meaning in periodic directions.
+using BoxSides = std::array<std::array<Side, 2>, 3>;
+/// The largest speed of any wall.
+double wall_speed(const BoxSides &sides);
+
+/// In which directions a field sits on the low side of its cell.
+using Staggering = std::array<bool, 3>;
+inline constexpr Staggering at_centre{false, false, false};
+inline constexpr std::array<Staggering, 3> at_face{{{true, false, false}, {false, true, false}, {false, false, true}}};
+
+/// Components of the left Cauchy-Green tensor in the order of their block: xx, yy, xy in 2-D (zz stays 1) and
+/// xx, yy, zz, yz, xz, xy in 3-D.
+struct TensorComponent {
+  int a, b;
+  Staggering staggering() const {
+    Staggering s{};
+    if (a != b) s[a] = s[b] = true;
+    return s;
+  }
+};
+const std::vector<TensorComponent> &tensor_components(int dimension);
+/// I everywhere.
+FieldBlock tensor_at_rest(const Grid &grid);
+
+/// No flow through the sides of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
+/// face of a neighbour whose three cells are this rank's ghosts.
+void close_wall_faces(const Grid &grid, View component, int d);
+/// Fills `width` layers behind every side this rank touches; ghosts from the exchange must be there already.
+/// Velocity: `velocity` holds u, v (, w); faces on sides are set to 0.
+void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double time, FieldBlock &velocity, int width);
+/// Even reflection of one field of the given staggering, also behind a neighbour's side where ghosts reach beyond it;
+/// not where `rows`, if it is given, is idle before the side.
+void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
+                           const OccupiedRows *rows = nullptr);
+/// All components of a left Cauchy-Green block.
+void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
+                             const OccupiedRows *rows = nullptr);
+/// Components of a left Cauchy-Green block on planes of symmetry: 0, ghosts of the other directions included.
+void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor);
+
+}  // namespace eulastic
