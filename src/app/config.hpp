@@ -26,8 +26,8 @@ struct BoundaryControl {
     return both[d] != BoundaryChoice::periodic || (side[d][0] != SideChoice::same && side[d][1] != SideChoice::same);
   }
   SideKind kind(int d, int high) const {
-    const bool symmetric = side[d][high] == SideChoice::same ? both[d] == BoundaryChoice::symmetry
-                                                             : side[d][high] == SideChoice::symmetry;
+    const bool symmetric =
+        side[d][high] == SideChoice::same ? both[d] == BoundaryChoice::symmetry : side[d][high] == SideChoice::symmetry;
     return symmetric ? SideKind::symmetry : SideKind::wall;
   }
   bool is_wall(int d, int high) const { return bounded(d) && kind(d, high) == SideKind::wall; }

@@ -80,7 +80,8 @@ std::string check_flow(const Config &config) {
     return wrong;
   for (int d = 0; d < 3; ++d)
     if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0)
-      return std::string("-initial_velocity_mean: the ") + "xyz"[d] + " component must be 0 between sides that are not periodic";
+      return std::string("-initial_velocity_mean: the ") + "xyz"[d] +
+             " component must be 0 between sides that are not periodic";
   const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
   const bool between_walls = initial.kind == InitialVelocity::couette || initial.kind == InitialVelocity::poiseuille;
   if (between_walls && !(config.boundary.is_wall(1, 0) && config.boundary.is_wall(1, 1)))

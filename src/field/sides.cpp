@@ -59,8 +59,8 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
   });
 }
 
-// The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests is
-// left alone (FieldBlock::at_rest).
+// The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests
+// is left alone (FieldBlock::at_rest).
 void clear_face(const Grid &grid, View q, int d, bool high) {
   const Layout &layout = grid.layout();
   const Plane plane(layout, d);

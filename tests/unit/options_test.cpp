@@ -10,7 +10,8 @@ using namespace eulastic;
 
 TEST(Options, SidesAreThoseOfTheDirectionUnlessToldOtherwise) {
   const ParseResult result = parse_line(
-      "-time_end 1 -grid_cells 8,8,8 -boundary_y wall -boundary_ymax symmetry -wall_ymin_velocity 1,0,0 -boundary_zmin wall "
+      "-time_end 1 -grid_cells 8,8,8 -boundary_y wall -boundary_ymax symmetry -wall_ymin_velocity 1,0,0 -boundary_zmin "
+      "wall "
       "-boundary_zmax symmetry");
   ASSERT_EQ(result.error, "");
   const Config &c = result.config;

@@ -229,8 +229,8 @@ Setting half(Setting s, int d) {
   return s;
 }
 
-// Planes of symmetry are what they are called: a body that lies on one, and shear of it, as in the whole box. To round-off
-// but for what a mirror image is rounded to.
+// Planes of symmetry are what they are called: a body that lies on one, and shear of it, as in the whole box. To
+// round-off but for what a mirror image is rounded to.
 TEST(HalfOfASymmetricScene, IsTheWholeOne) {
   for (const MethodKind method : {MethodKind::classic, MethodKind::fast})
     for (const bool two_d : {true, false})
@@ -249,9 +249,10 @@ TEST(HalfOfASymmetricScene, IsTheWholeOne) {
         Scene whole, part;
         run(setting, whole);
         run(half(setting, d), part);
-        const double e = difference(part, whole, [&](const FieldBlock &y, const Staggering &, const Int3 &x, int a, int b) {
-          return y[block_position(two_d ? 2 : 3, a, b)](x[0], x[1], x[2]);
-        });
+        const double e =
+            difference(part, whole, [&](const FieldBlock &y, const Staggering &, const Int3 &x, int a, int b) {
+              return y[block_position(two_d ? 2 : 3, a, b)](x[0], x[1], x[2]);
+            });
         std::printf("  half along %c: %g\n", "xyz"[d], e);
         EXPECT_LT(e, 1e-11) << "xyz"[d] << (method == MethodKind::fast ? ", fast" : ", classic");
         EXPECT_GT(mirror_difference(whole, whole, (d + 1) % 2), 1e-3) << "nothing happens";
