@@ -30,12 +30,11 @@ std::map<int, std::vector<int>> colours_of(const std::vector<Phase> &phases) {
 PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vector<int> &colours,
                              std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
+  std::vector<WantedGhosts> wanted;
   for (const int p : colours)
     for (FieldBlock *block : {&(*phases)[p].label, &(*phases)[p].fraction})
-      PetscCall(exchange.begin(*block, reach, &(*phases)[p].rows));
-  for (const int p : colours)
-    for (FieldBlock *block : {&(*phases)[p].label, &(*phases)[p].fraction})
-      PetscCall(exchange.end(*block, reach, &(*phases)[p].rows));
+      wanted.push_back({block, reach, &(*phases)[p].rows});
+  PetscCall(exchange.update(wanted));
   PetscFunctionReturn(0);
 }
 

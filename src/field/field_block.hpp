@@ -26,6 +26,8 @@ public:
   /// Memory of its own: 0 for a part of another block.
   std::size_t bytes() const noexcept { return data_.get_deleter().borrowed ? 0 : size() * sizeof(double); }
 
+  /// All memory of field f, ghosts and padding included.
+  double *field(int f) noexcept { return data_.get() + f * layout_.size; }
   [[gnu::always_inline]] View operator[](int f) noexcept {
     return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
   }

@@ -2,7 +2,7 @@
 
 namespace eulastic {
 
-Sides::Sides(const Grid &grid) : wraps_x(grid.wraps_x()) {
+Sides::Sides(const Grid &grid) : wraps_x(grid.wraps_x()), cells_x(grid.owned()[0]) {
   for (int d = 0; d < 3; ++d) {
     wall[d][0] = grid.touches_low(d);
     wall[d][1] = grid.touches_high(d);

@@ -49,10 +49,17 @@ template <class Row>
 /// and none of an x that is not split, which wraps around within the row.
 struct Sides {
   bool wraps_x;
+  int cells_x;
   bool wall[3][2];
   bool alone[3];
 
   explicit Sides(const Grid &grid);
+  /// Wraps a row around by one point, where x does: for stages of the same pass that read it.
+  [[gnu::always_inline]] void wrap(double *row) const noexcept {
+    if (!wraps_x) return;
+    row[-1] = row[cells_x - 1];
+    row[cells_x] = row[0];
+  }
   int low(int d, int layers) const { return alone[d] || wall[d][0] ? 0 : layers; }
   int high(int d, int layers) const { return alone[d] || wall[d][1] ? 0 : layers; }
 };

@@ -91,14 +91,15 @@ Layout Grid::make_layout(const Int3 &position) const {
     layout.cells[d] = starts_[d][position[d] + 1] - layout.begin[d];
     layout.ghosts[d] = d < dimension() ? spec_.ghosts : 0;
   }
-  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets.
+  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets. Planes and fields are
+  // whole rows, so that a row is one thing for an exchange.
   layout.sy = round_up(layout.cells[0] + 2 * spec_.ghosts + is_wall(0), 8);
   if (layout.sy % 64 == 0) layout.sy += 8;
   layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1] + is_wall(1));
-  if (layout.sz % 512 == 0) layout.sz += 8;
+  if (layout.sz % 512 == 0) layout.sz += layout.sy;
   layout.origin = 8 + layout.sy * layout.ghosts[1] + layout.sz * layout.ghosts[2];
-  layout.size = 8 + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2] + is_wall(2));
-  if (layout.size % 512 == 0) layout.size += 8;
+  layout.size = layout.sy + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2] + is_wall(2));
+  if (layout.size % 512 == 0) layout.size += layout.sy;
   return layout;
 }
 

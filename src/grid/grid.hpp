@@ -35,7 +35,7 @@ struct Layout {
   Int3 ghosts{};  ///< layers on each side (0 in z when 2-D)
   std::ptrdiff_t sy = 0, sz = 0;
   std::ptrdiff_t origin = 0;  ///< offset of local cell (0,0,0)
-  std::ptrdiff_t size = 0;    ///< doubles per field, a multiple of 8
+  std::ptrdiff_t size = 0;    ///< doubles per field; like sz a multiple of sy
 
   std::ptrdiff_t offset(int i, int j, int k) const noexcept { return origin + i + j * sy + k * sz; }
 };
@@ -82,13 +82,6 @@ public:
 
   /// Whether x is periodic and not split: its ghosts are the other end of the same row.
   bool wraps_x() const { return spec_.boundary[0] == Boundary::periodic && processors(0) == 1; }
-  /// Fills `width` ghosts on both ends of a row of a field, where x wraps.
-  [[gnu::always_inline]] void wrap_row(double *row, int width) const noexcept {
-    for (int m = 1, n = layout_.cells[0]; m <= width; ++m) {
-      row[-m] = row[n - m];
-      row[n - 1 + m] = row[m - 1];
-    }
-  }
 
   /// Where a rank is among those along every direction, which count through x first.
   Int3 place_of(int rank) const;

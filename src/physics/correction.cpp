@@ -7,11 +7,9 @@
 namespace eulastic {
 namespace {
 
-EULASTIC_INLINE void correct_row(const Grid &grid, double factor, const double *increment, const double *below,
-                                 double *v) {
+EULASTIC_INLINE void correct_row(int n, double factor, const double *increment, const double *below, double *v) {
 #pragma omp simd
-  for (int i = 0; i < grid.owned()[0]; ++i) v[i] = kernels::fma(-factor, increment[i] - below[i], v[i]);
-  if (grid.wraps_x()) grid.wrap_row(v, Grid::stencil_width);
+  for (int i = 0; i < n; ++i) v[i] = kernels::fma(-factor, increment[i] - below[i], v[i]);
 }
 
 EULASTIC_CLONES void correct_rows(const Grid &grid, const RowPart &part, double dt_over_density, double rotation,
@@ -27,7 +25,7 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, const RowPart &part, double 
       for (int i = -1; i < n[0] + 1; ++i) p[i] += kernels::fma(-rotation, D[i], dp[i]);
       if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
       for (int a = 0; a < grid.dimension(); ++a)
-        correct_row(grid, dt_over_density / grid.spacing()[a], dp, dp - q.stride(a), velocity[a].row(j, k));
+        correct_row(n[0], dt_over_density / grid.spacing()[a], dp, dp - q.stride(a), velocity[a].row(j, k));
     }
 }
 
@@ -71,7 +69,6 @@ EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, const RowPart &pa
         const double factor = dt_over_density / h[0];
 #pragma omp simd
         for (int i = 0; i < n[0]; ++i) u[i] = kernels::fma(-factor, increment_at(i) - increment_at(i - 1), u[i]);
-        if (grid.wraps_x()) grid.wrap_row(u, Grid::stencil_width);
       }
       for (const int i : {-1, n[0]}) dp[i] = move(i);
       if (owned && !flat) {
@@ -83,12 +80,11 @@ EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, const RowPart &pa
           w[i] = kernels::fma(-factor, increment - dp[i], w[i]);
           dp[i] = increment;
         }
-        if (grid.wraps_x()) grid.wrap_row(w, Grid::stencil_width);
       } else {
 #pragma omp simd
         for (int i = 0; i < n[0]; ++i) dp[i] = move(i);
       }
-      if (owned) correct_row(grid, dt_over_density / h[1], dp, increments.row(j), velocity[1].row(j, k));
+      if (owned) correct_row(n[0], dt_over_density / h[1], dp, increments.row(j), velocity[1].row(j, k));
     }
 }
 

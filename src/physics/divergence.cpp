@@ -12,11 +12,8 @@ EULASTIC_INLINE void divergence_rows(const Grid &grid, const RowPart &part, doub
                                      FieldBlock &out) {
   const Real3 &h = grid.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
-  for (const Segment &s : part.rows(grid)) {
-    double *row = out[0].row(s.j, s.k);
-    kernels::divergence<Dim>(s, v[0], v[1], v[Dim - 1], inverse, density, row);
-    if (grid.wraps_x()) grid.wrap_row(row, 1);
-  }
+  for (const Segment &s : part.rows(grid))
+    kernels::divergence<Dim>(s, v[0], v[1], v[Dim - 1], inverse, density, out[0].row(s.j, s.k));
 }
 
 EULASTIC_CLONES void divergence_2d(const Grid &grid, const RowPart &part, double density, const FieldBlock &v,

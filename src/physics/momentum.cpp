@@ -141,7 +141,6 @@ EULASTIC_CLONES void advance_by_rate(const Grid &grid, const BlockRows &block, d
       double *out = rate[a].row(j, block.k);
 #pragma omp simd
       for (int i = 0; i < grid.owned()[0]; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
-      if (grid.wraps_x()) grid.wrap_row(out, 1);
     }
 }
 

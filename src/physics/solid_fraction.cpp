@@ -50,7 +50,6 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
       const double moved = kernels::fma(dt, rate[i], now[i]);
       next[i] = __builtin_fabs(moved) < negligible_fraction ? 0 : moved;
     }
-    if (t.grid->wraps_x()) t.grid->wrap_row(next, ghosts);
   });
 }
 

@@ -102,10 +102,7 @@ template <int Dim>
 EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const double (&twice_wall)[3][2],
                                   const double (&image)[3][2], int a, View w, const Segment &at) {
   double *row = w.row(at.j, at.k);
-  if (sides.wraps_x) {
-    row[-1] = row[n[0] - 1];
-    row[n[0]] = row[0];
-  }
+  sides.wrap(row);
   const int place[3] = {0, at.j, at.k};
   for (int d = 0; d < Dim; ++d)
     for (int side = 0; side < 2; ++side) {
@@ -125,12 +122,11 @@ EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const doubl
 }
 
 // v* of component a.
-EULASTIC_CLONES void end_row(const Grid &grid, const StageFields &f, int a, ConstView w, const Segment &row) {
+EULASTIC_CLONES void end_row(const StageFields &f, int a, ConstView w, const Segment &row) {
   const double *increment = w.row(row.j, row.k), *v = (*f.velocity)[a].row(row.j, row.k);
   double *out = (*f.velocity_star)[a].row(row.j, row.k);
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = increment[i] + v[i];
-  if (grid.wraps_x()) grid.wrap_row(out, 1);
 }
 
 // Stages alternate: the first of a pass reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other
@@ -167,7 +163,7 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
         }
         if (a == 0 && sides.wall[0][0]) values[0] = 0;
       }
-      if (pass.ends && s == pass.depth - 1) end_row(grid, f, a, out, row);
+      if (pass.ends && s == pass.depth - 1) end_row(f, a, out, row);
     }
   });
 }
@@ -209,10 +205,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(grid, *field);
   if (work.slope) {
-    PetscCall(exchange.update_rows(work.rate, depth, work.slope, depth));
+    PetscCall(exchange.update({{&work.rate, depth}, {&work.slope, depth}}));
     stressed = stressed_rows(grid, phases);
   } else {
-    PetscCall(exchange.update_rows(work.rate, depth));
+    PetscCall(exchange.update(work.rate, depth));
   }
   const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
   Pass pass;
@@ -236,9 +232,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
         }
     }
     if (!pass.starts && pass.depth > 2)
-      PetscCall(exchange.update_rows(work.now, pass.depth, work.before, pass.depth - 1));
+      PetscCall(exchange.update({{&work.now, pass.depth}, {&work.before, pass.depth - 1}}));
     else if (!pass.starts)
-      PetscCall(exchange.update_rows(work.now, pass.depth));
+      PetscCall(exchange.update(work.now, pass.depth));
     const StageFields fields{&work.rate, &work.slope,   work.slope ? &stressed : nullptr, &work.now, &work.before,
                              &velocity,  &velocity_star};
     const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());

@@ -21,7 +21,6 @@ struct TransportTerms {
   EvolveRule rule;
   bool second_of_heun;
   const ActiveSegments *stale;
-  int wraps;
 };
 
 // Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
@@ -114,28 +113,12 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, 
     advance_component<Dim, SecondOfHeun>(t, phase, B, location.a, location.b, batch, carried, rate, out);
 }
 
-// What a location leaves for later: vectors not advanced yet, and rows (their offsets) whose ends are written, to be
-// wrapped around a periodic x once they are.
-struct Left {
-  kernels::Batch batch;
-  std::vector<std::ptrdiff_t> rows;
-};
-
-template <int Dim, bool SecondOfHeun>
-EULASTIC_INLINE void advance_left(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                  const Location &location, kernels::Batch &batch, Left &left, FieldBlock &out) {
-  advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out);
-  if (batch.size < kernels::Batch::width) return;  // the end of a row, of which the rest is left
-  for (const std::ptrdiff_t row : left.rows)
-    for (int f = location.first<Dim>(); f < location.last<Dim>(); ++f) t.grid->wrap_row(out[f].origin + row, t.wraps);
-  left.rows.clear();
-}
-
-// The components of one location on rows of plane k, but for what is left. Adds the points that evolve to `evolved`.
+// The components of one location on rows of plane k, but for the vectors that are `left` for later. Adds the points
+// that evolve to `evolved`.
 template <int Dim, bool SecondOfHeun>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out, Left &left,
-                                  std::ptrdiff_t &evolved) {
+                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out,
+                                  kernels::Batch &left, std::ptrdiff_t &evolved) {
   constexpr int reach = Grid::stencil_width;
   const int a = location.a, b = location.b;
   const bool centre = location.centre();
@@ -146,17 +129,12 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
   const auto advance = [&](kernels::Batch &batch)
-                           EULASTIC_BODY { advance_left<Dim, SecondOfHeun>(t, phase, B, location, batch, left, out); };
+                           EULASTIC_BODY { advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.solid.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
-    int done = 0, from = end, to = 0;  // done: so far; from, to: what is written
-    const auto write = [&](int begin, int stop) {
-      from = std::min(from, begin);
-      to = std::max(to, stop);
-    };
+    int done = 0;  // so far
     const auto set_exterior = [&](int begin, int stop) {
-      if (begin < stop) write(begin, stop);
       for (int f = first; f < last; ++f) {
         double *next = out[f].row(j, k);
         for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
@@ -201,15 +179,13 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
         done = std::min(i + kernels::Batch::width, stop);
         if (evolves(row + i, done - i)) {
           evolved += done - i;
-          write(i, done);
-          kernels::gather(left.batch, row, i, done, advance);
+          kernels::gather(left, row, i, done, advance);
         } else {
           set_exterior(i, done);
         }
       }
     }
     leave_to(end);
-    if (t.wraps > 0 && from < to && (from < t.wraps || to > end - t.wraps)) left.rows.push_back(row);
   }
 }
 
@@ -222,7 +198,7 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &p
                                        const FieldBlock &B, FieldBlock &out) {
   constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
-  Left left[count];  // filled through all planes
+  kernels::Batch left[count];  // filled through all planes
   Evolved sum;
   const Int3 &n = t.grid->owned();  // rows at high walls belong to the last part
   const int j_end = part.j_end == n[1] ? phase.solid.rows_y() : part.j_end;
@@ -232,8 +208,7 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &p
       for (int l = 0; l < count; ++l)
         advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
                                         l == 0 ? sum.centres : sum.edges);
-  for (int l = 0; l < count; ++l)
-    advance_left<Dim, SecondOfHeun>(t, phase, B, locations[l], left[l].batch, left[l], out);
+  for (int l = 0; l < count; ++l) advance_batch<Dim, SecondOfHeun>(t, phase, B, locations[l], left[l], out);
   return sum;
 }
 
@@ -255,10 +230,8 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   const Real3 &h = grid.spacing();
-  const TransportTerms terms{&grid,       stage.dt,
-                             &velocity,   {1 / h[0], 1 / h[1], 1 / h[2]},
-                             stage.rule,  stage.second_of_heun,
-                             stage.stale, grid.wraps_x() ? stage.wraps : 0};
+  const TransportTerms terms{
+      &grid, stage.dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, stage.rule, stage.second_of_heun, stage.stale};
   const bool flat = grid.dimension() == 2;
   const int parts = row_parts(grid);
   std::vector<Evolved> found(parts);

@@ -19,8 +19,8 @@ inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
 /// WENO5 makes tails without end. Below this they are cut off: round-off of phi = 1, and rows without solid stay empty.
 inline constexpr double negligible_fraction = 1e-16;
 
-/// next = phi - dt v.grad phi at centres; idle rows are set to 0, where `next_rows` does not know that they are. Rows
-/// are wrapped around a periodic x (Grid::wrap_row). Three ghosts of both.
+/// next = phi - dt v.grad phi at centres; idle rows are set to 0, where `next_rows` does not know that they are.
+/// Three ghosts of both.
 PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
                                const OccupiedRows &next_rows, FieldBlock &next);
 
@@ -34,7 +34,6 @@ struct TensorStage {
   double dt;
   bool second_of_heun;                    ///< next = (next + B + dt rate)/2, else next = B + dt rate
   const ActiveSegments *stale = nullptr;  ///< where `next` is set to I if B does not evolve there; null: everywhere
-  int wraps = 0;  ///< ghosts around a periodic x to fill in rows that are written (Grid::wrap_row)
 };
 
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which

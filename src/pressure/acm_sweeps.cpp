@@ -147,7 +147,7 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, Course &course) {
   course.before = task.residual;
   course.residual = D;
   course.recurs = true;
-  PetscCall(exchange_->update_wrapped(residual_, Multigrid::halo));
+  PetscCall(exchange_->update(residual_, Multigrid::halo));
   fill_wall_ghosts_even(*grid_, at_centre, residual_[0], 1);
   PetscFunctionReturn(0);
 }

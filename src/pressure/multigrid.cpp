@@ -67,6 +67,7 @@ EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r,
 // Stages of smoothing that share a pass; the first of a level interpolates. Stage s reads fields[s % 2] and writes the
 // other one.
 struct Pass {
+  const Sides *sides;
   const MultigridLevel *fine;
   const MultigridLevel *coarse;  // null: all of them relax
   const double *factor;          // of every stage
@@ -101,7 +102,6 @@ EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row,
 
 template <int Dim>
 EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
-  const Grid &grid = pass.fine->grid();
   order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
     if (s == pass.depth) return (*pass.follow)(q, task.thread, row.j, j_end, row.k);
@@ -115,7 +115,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
                     out);
       else
         kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
-      if (grid.wraps_x()) grid.wrap_row(out.row(row.j, row.k), 1);  // long before it is read
+      pass.sides->wrap(out.row(row.j, row.k));  // long before it is read
     }
   });
 }
@@ -180,7 +180,7 @@ PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, Fie
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch,
                   levels_[0]->grid().wraps_x() && levels_[0]->grid().dimension() == 3 ? follow : Follow()));
-  PetscCall(levels_[0]->exchange().update_wrapped(solution, 1));
+  PetscCall(levels_[0]->exchange().update(solution, 1));
   PetscFunctionReturn(0);
 }
 
@@ -221,12 +221,13 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     const int passes = (stages - done + fine.depth - 1) / fine.depth;  // that are left, of equal depth
     depth = (stages - done + passes - 1) / passes;
     if (done == 0)
-      PetscCall(coarse.exchange().update_wrapped(coarse.solution, 1 + depth / 2));
+      PetscCall(coarse.exchange().update(coarse.solution, 1 + depth / 2));
     else
-      PetscCall(fine.exchange().update_wrapped(solution, depth));
+      PetscCall(fine.exchange().update(solution, depth));
     const bool followed = follow && done + depth == stages;
     const Pass pass{
-        &fine, done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]}, depth, &follow};
+        &sides, &fine,  done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]},
+        depth,  &follow};
     const StagePass order(fine.grid(), sides, depth + followed, 1, followed ? -1 : 0);
     order.for_tasks([&](const StagePass::Task &task) {
       (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
@@ -278,7 +279,6 @@ void Multigrid::take_part(const MultigridLevel &level, const MultigridLevel &who
   each_row(own.cells, [&](int j, int k, std::ptrdiff_t) {
     double *row = solution[0].row(j, k);
     std::copy_n(whole.solution[0].row(own.begin[1] + j, own.begin[2] + k) + own.begin[0], own.cells[0], row);
-    if (level.grid().wraps_x()) level.grid().wrap_row(row, 1);
   });
 }
 

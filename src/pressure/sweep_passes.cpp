@@ -3,7 +3,6 @@
 #include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
-#include "pressure/multigrid.hpp"
 #include "pressure/row_sums.hpp"
 
 #include <algorithm>
@@ -86,6 +85,7 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
                  two = How == Increment::set_two || How == Increment::add_two;
   const Int3 n = t.grid->owned();
   const InverseSquares h = t.grid->inverse_squares();
+  const Sides sides(*t.grid);
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
   double c[Stencils + Recurs];
@@ -126,7 +126,7 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
       if (Recurs) rest = kernels::fma(-c[Stencils], before[i] - D[i], rest);
       out[i] = rest;
     }
-    if (t.grid->wraps_x()) t.grid->wrap_row(out, Multigrid::halo);
+    sides.wrap(out);
   };
   for_rows_in_blocks(part.with_ghosts(*t.grid), row, [&](int j_begin, int j_end, int k) EULASTIC_BODY {
     if (Dim == 3 && t.after && k - 1 > part.k_begin) t.after(part.number, j_begin - 1, j_end - 1, k - 1);

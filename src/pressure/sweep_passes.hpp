@@ -39,7 +39,7 @@ private:
 enum class Increment { later, set, set_two, add, add_two };
 
 /// d = sum c_i q_i + c d - shift, in place, and increment += scale d, both in one ghost layer too; new D = D - sum c_i
-/// L_i, owned, wrapped around a periodic x. New D may be where `before` is.
+/// L_i, owned; for `after` wrapped around a periodic x by one. New D may be where `before` is.
 struct StepTask : SweepTask {
   const double *coefficient;
   double shift, scale;

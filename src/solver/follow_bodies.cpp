@@ -18,7 +18,6 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(exchange_->update(phase.tensor, tensor_width(), &phase.rows));  // wraps what did not come of transport
   PetscCall(complete_exterior(phase, phase.tensor, &phase.rows));
   PetscFunctionReturn(0);
 }

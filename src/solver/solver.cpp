@@ -218,7 +218,7 @@ PetscErrorCode Solver::project(double dt) {
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
   FieldBlock &divergence = of_velocity.fields();
   PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence));
-  PetscCall(exchange_->update_wrapped(divergence, 1));
+  PetscCall(exchange_->update(divergence, 1));
   fill_wall_ghosts_even(*grid_, at_centre, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
@@ -256,7 +256,7 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
   } else {
     PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows, next_fraction_));  // (4)
     phase.fraction.swap(next_fraction_);
-    PetscCall(exchange_->update_wrapped(phase.fraction, ghosts, rows()));
+    PetscCall(exchange_->update(phase.fraction, ghosts, rows()));
   }
   PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
   fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, rows());
@@ -276,19 +276,17 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
   PetscFunctionBeginUser;
   const EvolveRule rule = evolve_rule(phase);
   const bool identity = spec_.exterior == SolidExterior::identity;
-  const int wraps = tensor_width();
   if (spec_.staggered()) {
     const ActiveSegments *first = identity ? nullptr : &phase.strained;
     WorkSpace::Lease stage;
     PetscCall(work_->take("first stage of B", phase.tensor.count(), &stage));
     FieldBlock &next = stage.fields();
-    PetscCall(transport_tensor(*grid_, {rule, dt, false, first, wraps}, now_.velocity, phase, phase.tensor, next));
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, first}, now_.velocity, phase, phase.tensor, next));
     PetscCall(complete_exterior(phase, next, rows));
-    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before, wraps}, now_.velocity, phase, next, phase.tensor));
+    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
-    PetscCall(
-        transport_tensor(*grid_, {rule, dt, false, &stale_, wraps}, now_.velocity, phase, phase.tensor, next_tensor_));
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));
     PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
@@ -301,11 +299,10 @@ int Solver::tensor_width() const {
   return spec_.exterior == SolidExterior::extrapolate ? ExteriorLayers::layers : Grid::stencil_width;
 }
 
-// Ghosts of B, after its extension outside the body where that is wanted. Rows that hold anything are wrapped
-// already.
+// Ghosts of B, after its extension outside the body where that is wanted.
 PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update_wrapped(tensor, tensor_width(), rows));
+  PetscCall(exchange_->update(tensor, tensor_width(), rows));
   if (spec_.exterior == SolidExterior::extrapolate) {
     PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
     fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
@@ -318,7 +315,7 @@ PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor,
 
 PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update_wrapped(velocity, width));
+  PetscCall(exchange_->update(velocity, width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, time, velocity, width);
   PetscFunctionReturn(0);
 }

@@ -55,7 +55,7 @@ void for_each_point(const Layout &own, int fields, const Visit &visit) {
 
 bool is_owned(const Grid &grid, const Int3 &local) {
   for (int d = 0; d < 3; ++d)
-    if (local[d] < 0 || local[d] >= grid.points_end(d, true)) return false;
+    if (local[d] < 0 || local[d] >= grid.points_end(d, true) || grid.owned()[d] == 0) return false;
   return true;
 }
 
@@ -68,14 +68,27 @@ void prepare(const Grid &grid, FieldBlock &block) {
   });
 }
 
-// Whether rows j and j + 1 of plane k are both ghosts.
-bool are_ghosts(const Grid &grid, int j, int k) { return !is_owned(grid, {0, j, k}) && !is_owned(grid, {0, j + 1, k}); }
+// Whether row (j, k) is a ghost row that an exchange brings, and x whole: it comes with what lies behind its ends.
+bool comes_whole(const Grid &grid, int width, int j, int k) {
+  const int row[3] = {0, j, k};
+  for (int d = 1; d < 3; ++d) {
+    const Grid::Range near = grid.points_near(d, true, width);
+    if (row[d] < near.begin || row[d] >= near.end) return false;
+  }
+  return grid.processors(0) == 1 && !is_owned(grid, {0, j, k});
+}
 
-// Wrong values anywhere in the memory of the block, or anywhere but `between` rows that are ghosts.
-int count_errors(const Grid &grid, const FieldBlock &block, int width, bool between = true) {
+// Wrong values anywhere in the memory of the block.
+int count_errors(const Grid &grid, const FieldBlock &block, int width) {
   const Layout &own = grid.layout();
   std::vector<double> expected(own.size * block.count());
   for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = sentinel(n);
+  for (int f = 0; f < block.count(); ++f)
+    for (int k = -own.ghosts[2]; k <= own.cells[2] + own.ghosts[2]; ++k)
+      for (int j = -own.ghosts[1]; j <= own.cells[1] + own.ghosts[1]; ++j)
+        for (std::ptrdiff_t n = own.offset(-own.ghosts[0], j, k);
+             comes_whole(grid, width, j, k) && n < own.offset(-own.ghosts[0], j + 1, k); ++n)
+          expected[n + f * own.size] = block.data()[n + f * own.size];
   for_each_point(own, block.count(), [&](int f, const Int3 &p) {
     Int3 global{};
     for (int d = 0; d < 3; ++d) {
@@ -86,18 +99,12 @@ int count_errors(const Grid &grid, const FieldBlock &block, int width, bool betw
     }
     expected[own.offset(p[0], p[1], p[2]) + f * own.size] = truth(f, global[0], global[1], global[2]);
   });
-  const int end = grid.wraps_x() ? own.cells[0] + width : grid.points_end(0, true), begin = grid.wraps_x() ? -width : 0;
-  for (int f = 0; f < block.count() && !between; ++f)
-    for (int k = -own.ghosts[2]; k < own.cells[2] + own.ghosts[2]; ++k)
-      for (int j = -own.ghosts[1]; j + 1 < own.cells[1] + own.ghosts[1]; ++j)
-        for (std::ptrdiff_t n = own.offset(end, j, k); n < own.offset(begin, j + 1, k) && are_ghosts(grid, j, k); ++n)
-          expected[n + f * own.size] = block.data()[n + f * own.size];
   int errors = 0;
   for (std::size_t n = 0; n < expected.size(); ++n) errors += block.data()[n] != expected[n];
   return errors;
 }
 
-// Ghosts get the right value; owned points, ghosts behind walls, outer ghosts and padding keep theirs.
+// Ghosts get the right value; owned points and rows, ghost rows behind walls and outer ones keep theirs.
 TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
   for_each_grid([](const Grid &grid) {
     GhostExchange exchange(grid);
@@ -111,8 +118,8 @@ TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
   });
 }
 
-// Large pieces of planes go as they are, beside others that are copied.
-TEST(GhostExchange, FillsThoseOfLargeBoxesInPieces) {
+// Boxes of thousands of values, as in runs.
+TEST(GhostExchange, FillsThoseOfLargeBoxes) {
   for (const Int3 &cells : {Int3{56, 130, 17}, Int3{42, 57, 56}, Int3{2100, 13, 1}})
     for (const Boundary x : {Boundary::periodic, Boundary::wall})
       for (const Boundary y : {Boundary::periodic, Boundary::wall}) {
@@ -122,13 +129,30 @@ TEST(GhostExchange, FillsThoseOfLargeBoxesInPieces) {
         Grid grid;
         ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
         GhostExchange exchange(grid);
-        for (const int fields : {1, 3}) {
-          FieldBlock block(grid, fields);
-          prepare(grid, block);
-          ASSERT_EQ(exchange.update(block, 3), 0);
-          EXPECT_EQ(count_errors(grid, block, 3, false), 0) << fields << " fields, " << cells[0] << " cells in a row";
-        }
+        FieldBlock block(grid, 3);
+        prepare(grid, block);
+        ASSERT_EQ(exchange.update(block, 3), 0);
+        EXPECT_EQ(count_errors(grid, block, 3), 0) << cells[0] << " cells in a row";
       }
+}
+
+// Levels of multigrid: ranks begin anywhere, some have fewer cells than ghosts, or none.
+TEST(GhostExchange, FillsThoseOfCoarseGrids) {
+  for_each_grid([](const Grid &grid) {
+    Int3 cells = grid.cells();
+    Grid level = grid.coarse(cells, false);
+    for (int halvings = 1; halvings <= 3; ++halvings) {
+      for (int &n : cells) n = (n + 1) / 2;
+      level = level.coarse(cells, false);
+      GhostExchange exchange(level);
+      for (const int width : {1, 3}) {
+        FieldBlock block(level, 1);
+        prepare(level, block);
+        ASSERT_EQ(exchange.update(block, width), 0);
+        EXPECT_EQ(count_errors(level, block, width), 0) << halvings << " halvings, width " << width;
+      }
+    }
+  });
 }
 
 TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
@@ -137,20 +161,46 @@ TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
     FieldBlock a(grid, 3), b(grid, 3), c(grid, 1), d(grid, 3);
     for (FieldBlock *block : {&a, &b, &c, &d}) prepare(grid, *block);
     for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] *= 2;  // the twin of a must not get a's
-    ASSERT_EQ(exchange.begin(a, 3), 0);
-    ASSERT_EQ(exchange.begin(b, 3), 0);
-    ASSERT_EQ(exchange.begin(c, 1), 0);
-    ASSERT_EQ(exchange.begin(d, 1), 0);
-    ASSERT_EQ(exchange.end(d, 1), 0);
-    ASSERT_EQ(exchange.end(b, 3), 0);
-    ASSERT_EQ(exchange.end(a, 3), 0);
-    ASSERT_EQ(exchange.end(c, 1), 0);
+    for (const WantedGhosts &wanted : {WantedGhosts{&a, 3}, WantedGhosts{&b, 3}}) ASSERT_EQ(exchange.begin(wanted), 0);
+    ASSERT_EQ(exchange.update({{&c, 1}, {&d, 1}}), 0);
+    for (const WantedGhosts &wanted : {WantedGhosts{&b, 3}, WantedGhosts{&a, 3}}) ASSERT_EQ(exchange.end(wanted), 0);
     for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] /= 2;
     EXPECT_EQ(count_errors(grid, a, 3), 0);
     EXPECT_EQ(count_errors(grid, b, 3), 0);
     EXPECT_EQ(count_errors(grid, c, 1), 0);
     EXPECT_EQ(count_errors(grid, d, 1), 0);
   });
+}
+
+// A block that is at rest but around a body: away from y's sides no ghost row is touched, nor the ends of other rows.
+TEST(GhostExchange, LeavesRestAlone) {
+  GridSpec spec;
+  spec.cells = {40, 40, 1};
+  Grid grid;
+  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  GhostExchange exchange(grid);
+  FieldBlock phi(grid, 1), block(grid, 2);
+  const Layout &own = grid.layout();
+  OccupiedRows rows;
+  const auto expect_ghosts = [&](int i, int j, bool filled) {
+    const Int3 global{(i + 40) % 40, (j + 40) % 40, 0};
+    EXPECT_EQ(block[1](i, j, 0), filled ? truth(1, global[0], global[1], 0) : sentinel(own.offset(i, j, 0) + own.size))
+        << i << ' ' << j;
+  };
+  for (const bool inside : {true, false}) {
+    phi[0](20, inside ? 20 : 35, 0) = 1;
+    ASSERT_EQ(rows.find(grid, phi[0]), 0);
+    ASSERT_EQ(rows.inside(), inside);
+    ASSERT_TRUE(rows.idle(2, 0) && !rows.idle(20, 0));
+    prepare(grid, block);
+    ASSERT_EQ(exchange.update(block, 3, &rows), 0);
+    for (const int i : {-3, -1, 40, 42}) {
+      expect_ghosts(i, 2, false);
+      expect_ghosts(i, 20, true);
+      expect_ghosts(i, -1, !inside);
+    }
+    for (const int j : {-3, -1, 40, 42}) expect_ghosts(7, j, !inside);
+  }
 }
 
 // The exchange belongs to the grid, not to a block: state now and next take turns.
