@@ -124,7 +124,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   } else if (beyond(m.resolved_drift, control_.volume_drift)) {
     what = text(
         "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
-        "-grid_cells, -interface_scheme thinc, or %s (%.3g now)",
+        "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
         m.drifting_body + 1, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
     find = nullptr;
     place = m.bodies[m.drifting_body].centroid;

@@ -120,7 +120,7 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("time_integrator", method.integrator, integrator_names,
               "second order with solids at half steps, or explicit Euler");
   rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage");
-  rows.choice("interface_scheme", method.interface, {"thinc", "weno5"},
+  rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
               "solid fraction: sharp and conservative, or WENO5");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
               "B outside bodies: extended, or reset to I");

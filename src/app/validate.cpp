@@ -132,7 +132,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
 std::string check_contact(const Config &config, const SpeciesSpec &spec) {
   if (spec.contact != Contact::separate || config.separates(spec)) return {};
   return "-" + spec.name + "_contact: separate needs " +
-         (config.body_series ? "-interface_scheme thinc" : "-body_series true") + "; accepted here: merge";
+         (config.body_series ? "-interface_scheme plic" : "-body_series true") + "; accepted here: merge";
 }
 
 bool any_random(const Config &config) {

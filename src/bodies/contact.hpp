@@ -12,8 +12,8 @@ namespace eulastic {
 
 /// Two bodies are near if a cell of one lies within so many cells of one of the other in every direction
 /// (bodies/near_bodies.hpp). The next look comes before either has reached more than one cell further: until then no
-/// stencil of the interface and no layer of labels sees both, nor WENO5 the other's B.
-inline constexpr int contact_reach = 3;
+/// stencil of the interface and no layer of labels sees both, and the two layers of B next to a body are its own.
+inline constexpr int contact_reach = 4;
 inline constexpr int most_colours = 64;  ///< of a species
 
 /// A body that has got another phase; positions in the vector of phases.

@@ -10,7 +10,7 @@ namespace eulastic {
 
 int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const std::vector<BodyPlace> &places) {
   constexpr std::size_t enough = 20000;
-  constexpr int tail = 2;  // cells
+  constexpr int tail = 1;  // cells that a surface cuts
   if (spec.shape != Shape::sphere && spec.shape != Shape::ellipsoid && spec.shape != Shape::biconcave) return 1;
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   const std::size_t count = std::min(places.size(), enough);

@@ -5,8 +5,8 @@
 
 namespace eulastic {
 
-/// Colours of bodies that are near once their surfaces have got THINC's tails: seven cells or less between them
-/// (docs/method.md, section 15), by colour_bodies(). Of more than 20000 bodies the first ones count. 1 for shapes
+/// Colours of bodies that are near: six cells or less between their surfaces, which cut a cell each (docs/method.md,
+/// section 15), by colour_bodies(). Of more than 20000 bodies the first ones count. 1 for shapes
 /// without ends. Bodies that flow pushes together need a few more.
 int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const std::vector<BodyPlace> &places);
 

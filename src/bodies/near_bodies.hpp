@@ -16,7 +16,7 @@ struct NearBodies {
 
 /// The cells of bodies in one phase: those with a label and more than `threshold` of phi.
 struct BodyCells {
-  static constexpr double threshold = 1e-5;  ///< THINC moves cells with less without a tail: kernels::nearly_pure
+  static constexpr double threshold = 1e-5;  ///< cells with less are remains, not a body
   ConstView label, fraction;
   /// The label, 0 where no body is.
   double operator()(int i, int j, int k) const noexcept { return fraction(i, j, k) > threshold ? label(i, j, k) : 0; }

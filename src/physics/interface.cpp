@@ -3,9 +3,10 @@
 #include "base/events.hpp"
 #include "field/sides.hpp"
 #include "grid/threads.hpp"
-#include "kernels/thinc.hpp"
+#include "kernels/interface_flux.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace eulastic {
 namespace {
@@ -28,7 +29,7 @@ struct Sweep {
   double rate;  // dt/h
   std::ptrdiff_t stride[3];
   ConstView velocity;
-  View phi, slope, flux, solid;
+  View phi, flux, solid;
 };
 
 // The pieces of the active segments in a box.
@@ -43,34 +44,60 @@ std::vector<Segment> inside(const ActiveSegments &active, const Box &box) {
   return pieces;
 }
 
-template <int Dim>
-EULASTIC_INLINE void find_slopes(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_CLONES void uniform_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
   for (const Segment *s = begin; s < end; ++s)
-    kernels::interface_slope<Dim>(*s, t.phi, t.stride, t.slope.row(s->j, s->k));
+    kernels::uniform_flux(*s, t.phi, t.velocity, t.stride[0], t.rate, t.flux.row(s->j, s->k));
 }
 
-EULASTIC_CLONES void slopes_2d(const Sweep &t, const Segment *begin, const Segment *end) {
-  find_slopes<2>(t, begin, end);
+// Lists the mixed cells of segments and finds their fluxes. Of those beside the box only the flux into it counts.
+template <int Dim>
+EULASTIC_INLINE long mixed_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+  kernels::MixedCells mixed;
+  long planes = 0;
+  const auto work = [&] {
+    kernels::mixed_flux<Dim>(mixed, t.phi.origin, t.stride, t.velocity.origin, t.rate, t.flux.origin);
+    planes += std::exchange(mixed.count, 0);
+  };
+  const int d = t.direction, first = t.cells.begin[d], last = t.cells.end[d];
+  for (const Segment *s = begin; s < end; ++s) {
+    const double *q = t.phi.row(s->j, s->k);
+    for (int i = s->i_begin; i < s->i_end; ++i) {
+      if (!(q[i] > 0 && q[i] < 1)) continue;
+      const int place = d == 0 ? i : d == 1 ? s->j : s->k;
+      mixed.at[mixed.count] = q + i - t.phi.origin;
+      mixed.low[mixed.count] = place >= first;
+      mixed.high[mixed.count] = place < last;
+      if (++mixed.count == kernels::MixedCells::capacity) work();
+    }
+  }
+  work();
+  return planes;
 }
-EULASTIC_CLONES void slopes_3d(const Sweep &t, const Segment *begin, const Segment *end) {
-  find_slopes<3>(t, begin, end);
+
+EULASTIC_CLONES long mixed_fluxes_2d(const Sweep &t, const Segment *begin, const Segment *end) {
+  return mixed_fluxes<2>(t, begin, end);
 }
-EULASTIC_CLONES void find_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
-  for (const Segment *s = begin; s < end; ++s)
-    kernels::interface_flux(*s, t.phi, t.slope, t.velocity, t.stride[0], t.rate, t.flux.row(s->j, s->k));
+EULASTIC_CLONES long mixed_fluxes_3d(const Sweep &t, const Segment *begin, const Segment *end) {
+  return mixed_fluxes<3>(t, begin, end);
 }
 EULASTIC_CLONES void apply_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
   for (const Segment *s = begin; s < end; ++s)
     kernels::apply_flux(*s, t.flux, t.velocity, t.solid, t.stride[0], t.rate, t.phi.row(s->j, s->k));
 }
 
-void sweep_band(const Grid &grid, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
-  const auto pass = [&](auto kernel, const ActiveSegments &active, const Box &box) {
-    in_parts_of(inside(active, box), grid, [&](const Segment *begin, const Segment *end) { kernel(t, begin, end); });
+// Returns how many planes were made.
+long sweep_band(const Grid &grid, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+  const auto pass = [&](const ActiveSegments &active, const Box &box, auto kernel) {
+    in_parts_of(inside(active, box), grid, kernel);
   };
-  pass(grid.dimension() == 2 ? slopes_2d : slopes_3d, cells, t.cells.grown(t.direction, 1, 1));
-  pass(find_fluxes, faces, t.cells.grown(t.direction, 0, 1));
-  pass(apply_fluxes, cells, t.cells);
+  std::atomic<long> planes{0};
+  const auto mixed = grid.dimension() == 2 ? mixed_fluxes_2d : mixed_fluxes_3d;
+  pass(faces, t.cells.grown(t.direction, 0, 1),
+       [&](const Segment *begin, const Segment *end) { uniform_fluxes(t, begin, end); });
+  pass(cells, t.cells.grown(t.direction, 1, 1),
+       [&](const Segment *begin, const Segment *end) { planes += mixed(t, begin, end); });
+  pass(cells, t.cells, [&](const Segment *begin, const Segment *end) { apply_fluxes(t, begin, end); });
+  return planes;
 }
 
 // Directions of a step: every one is first, in the middle and last equally often, and each order is followed by the
@@ -107,7 +134,7 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
   const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
   WorkSpace::Lease work;
   PetscCall(work_->take("fluxes of the interface", work_fields, &work));
-  const View phi = fraction[0], slope = work.fields()[0], flux = work.fields()[1], solid = work.fields()[2];
+  const View phi = fraction[0], flux = work.fields()[0], solid = work.fields()[1];
   fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
   cells_.build_band(*grid_, phi, rows, dimension);
   faces_.build_faces(*grid_, cells_);
@@ -115,16 +142,17 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
     for (const Segment *s = begin; s < end; ++s)
       for (int i = s->i_begin; i < s->i_end; ++i) solid(i, s->j, s->k) = phi(i, s->j, s->k) > 0.5;
   });
+  planes_ = 0;
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, slope, flux, solid};
+    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, flux, solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
-    sweep_band(*grid_, sweep, cells_, faces_);
+    planes_ += static_cast<double>(sweep_band(*grid_, sweep, cells_, faces_));
     fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
   }
-  const double slope_flops = dimension == 2 ? kernels::interface_slope_flops_2d : kernels::interface_slope_flops_3d;
-  scope.flops(dimension * (cells_.points() * (slope_flops + kernels::apply_flux_flops) +
-                           faces_.points() * kernels::interface_flux_flops));
+  scope.flops(dimension *
+                  (cells_.points() * kernels::apply_flux_flops + faces_.points() * kernels::uniform_flux_flops) +
+              planes_ * (dimension == 2 ? kernels::mixed_flux_flops_2d : kernels::mixed_flux_flops_3d));
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,5 @@
-// Sharp, conservative transport of the solid fraction (4): THINC/SW (kernels/thinc.hpp), split by direction.
+// Sharp, conservative transport of the solid fraction (4): a plane in each cell of the interface (PLIC), split by
+// direction (kernels/interface_flux.hpp).
 //
 // The dilation of each direction is taken with the same [phi^n > 1/2] (Weymouth & Yue, JCP 229, 2010): a discretely
 // solenoidal velocity keeps the volume to round-off, and 0 <= phi <= 1 as long as sum |u_d| dt/h_d < 1/2.
@@ -14,7 +15,7 @@ public:
   /// Layers of ghosts that `advance` reads of the solid fraction; of the velocity it reads three.
   static constexpr int ghosts = 4;
 
-  static constexpr int work_fields = 3;  ///< of the work space, during `advance`
+  static constexpr int work_fields = 2;  ///< of the work space, during `advance`
 
   InterfaceTransport(const Grid &grid, WorkSpace &work) : grid_(&grid), work_(&work) {}
 
@@ -25,11 +26,14 @@ public:
                          FieldBlock &fraction);
   /// Cells of the interface band in the last `advance`, ghosts included.
   double band_cells() const { return cells_.points(); }
+  /// Planes that the last `advance` made, in all its directions.
+  double planes() const { return planes_; }
 
 private:
   const Grid *grid_;
   WorkSpace *work_;
   ActiveSegments cells_, faces_;
+  double planes_ = 0;
 };
 
 }  // namespace eulastic

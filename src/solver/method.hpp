@@ -6,7 +6,7 @@ namespace eulastic {
 enum class MethodKind { fast, classic };
 enum class TimeIntegrator { staggered, euler };
 enum class ViscousScheme { rkl, explicit_euler };
-enum class InterfaceScheme { thinc, weno5 };
+enum class InterfaceScheme { plic, weno5 };
 enum class SolidExterior { extrapolate, identity };
 enum class ElasticForce { linear, constant };
 enum class PressureKind { acm, smac, ksp };
@@ -40,7 +40,7 @@ inline Method method_preset(MethodKind kind) {
   method.kind = MethodKind::fast;
   method.integrator = TimeIntegrator::staggered;
   method.viscous = ViscousScheme::rkl;
-  method.interface = InterfaceScheme::thinc;
+  method.interface = InterfaceScheme::plic;
   method.exterior = SolidExterior::extrapolate;
   method.elastic_force = ElasticForce::linear;
   method.acm_sweeps_max = 50;

@@ -23,7 +23,7 @@ int Solver::work_fields(const Method &method, int dimension, bool bodies) {
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
   const int momentum = method.explicit_predictor() ? 0 : 2 * dimension;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
-  const int interface = bodies && method.interface == InterfaceScheme::thinc ? InterfaceTransport::work_fields : 0;
+  const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
 }
 
@@ -73,7 +73,7 @@ PetscErrorCode Solver::prepare() {
   }
   PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
   if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
-  if (spec_.interface == InterfaceScheme::thinc)
+  if (spec_.interface == InterfaceScheme::plic)
     interface_ = std::make_unique<InterfaceTransport>(*grid_, *work_);
   else
     next_fraction_ = FieldBlock::at_rest(*grid_, 1);
@@ -250,7 +250,7 @@ PetscErrorCode Solver::transport(Phase &phase, double dt) {
     return &joined;
   };
   const int ghosts = grid_->spec().ghosts;
-  if (spec_.interface == InterfaceScheme::thinc) {
+  if (spec_.interface == InterfaceScheme::plic) {
     PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
     PetscCall(exchange_->update(phase.fraction, ghosts, rows()));  // it has moved less than a cell
   } else {

@@ -1,5 +1,5 @@
 // The interface on 1-4 ranks: the bits of plain sweeps over whole rows on one rank, mirrored scenes, kept volume.
-#include "kernels/thinc.hpp"
+#include "kernels/interface_flux.hpp"
 #include "support/interface_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -66,28 +66,36 @@ void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt)
   const Grid &grid = scene.grid;
   const Int3 n = grid.owned();
   const int dimension = grid.dimension(), margin = dimension == 3 ? 1 : 0;
-  FieldBlock work(grid, 3);
-  scene.each_owned([&](int i, int j, int k) { work[2](i, j, k) = scene.fraction[0](i, j, k) > 0.5; });
+  FieldBlock work(grid, 2);
+  scene.each_owned([&](int i, int j, int k) { work[1](i, j, k) = scene.fraction[0](i, j, k) > 0.5; });
   for (const char *name = orders[dimension - 2][scene.step++ % 6]; *name; ++name) {
     const int d = *name - 'x';
     const double rate = dt / grid.spacing()[d];
-    const View phi = scene.fraction[0], slope = work[0], flux = work[1], solid = work[2];
+    const View phi = scene.fraction[0], flux = work[0], solid = work[1];
     const ConstView velocity = scene.velocity[d];
     ASSERT_EQ(exchange.update(scene.fraction, 2), 0);
     fill_wall_ghosts_even(grid, at_centre, phi, 2);
     std::ptrdiff_t stride[3];
     for (int e = 0; e < 3; ++e) stride[e] = phi.stride((d + e) % dimension);
-    for (int k = -margin; k <= n[2] - 1 + margin; ++k)
-      for (int j = -1; j <= n[1]; ++j) {
-        const Segment row{-1, n[0] + 1, j, k};
-        if (dimension == 2)
-          kernels::interface_slope<2>(row, phi, stride, slope.row(j, k));
-        else
-          kernels::interface_slope<3>(row, phi, stride, slope.row(j, k));
-      }
     for (int k = 0; k < n[2] + margin; ++k)
       for (int j = 0; j <= n[1]; ++j)
-        kernels::interface_flux({0, n[0] + 1, j, k}, phi, slope, velocity, stride[0], rate, flux.row(j, k));
+        kernels::uniform_flux({0, n[0] + 1, j, k}, phi, velocity, stride[0], rate, flux.row(j, k));
+    for (int k = -margin; k <= n[2] - 1 + margin; ++k)
+      for (int j = -1; j <= n[1]; ++j)
+        for (int i = -1; i <= n[0]; ++i) {  // lists of one cell
+          if (!(phi(i, j, k) > 0 && phi(i, j, k) < 1)) continue;
+          kernels::MixedCells cell;
+          const int place = d == 0 ? i : d == 1 ? j : k;
+          cell.at[0] = &phi(i, j, k) - phi.origin;
+          cell.low[0] = place >= 0;
+          cell.high[0] = place < n[d];
+          cell.count = 1;
+          const double *q = phi.origin, *u = velocity.origin;
+          if (dimension == 2)
+            kernels::mixed_flux<2>(cell, q, stride, u, rate, flux.origin);
+          else
+            kernels::mixed_flux<3>(cell, q, stride, u, rate, flux.origin);
+        }
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         kernels::apply_flux({0, n[0], j, k}, flux, velocity, solid, stride[0], rate, phi.row(j, k));

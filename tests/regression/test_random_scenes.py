@@ -94,7 +94,7 @@ def scene(dice):
         words += ["-species", ",".join(names)]
     sometimes = (0.3, ("-fluid_inertia", "false")), (0.25, ("-pressure_solver", "smac"))
     if names:
-        sometimes += ((0.2, ("-interface_scheme", dice.choice(("thinc", "weno5")))),
+        sometimes += ((0.2, ("-interface_scheme", dice.choice(("plic", "weno5")))),
                       (0.2, ("-solid_exterior", dice.choice(("extrapolate", "identity")))))
     sometimes += ((0.15, ("-time_integrator", dice.choice(("staggered", "euler")))),
                   (0.15, ("-viscous_scheme", dice.choice(("rkl", "explicit")))))

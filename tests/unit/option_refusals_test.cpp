@@ -69,7 +69,7 @@ TEST(OptionRefusals, MissingValues) {
 TEST(OptionRefusals, Contact) {
   expect_refusals({{"-cell_contact maybe", {"-cell_contact", "separate, merge"}},
                    {"-cell_contact separate -body_series false", {"-cell_contact", "-body_series true", "merge"}},
-                   {"-cell_contact separate -method classic", {"-cell_contact", "-interface_scheme thinc", "merge"}}});
+                   {"-cell_contact separate -method classic", {"-cell_contact", "-interface_scheme plic", "merge"}}});
   for (const char *fine : {"-cell_contact separate", "-cell_contact merge -body_series false", "-cell_contact merge"})
     EXPECT_EQ(parse_line(scene + " " + fine).error, "") << fine;
 }
