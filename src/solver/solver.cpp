@@ -284,6 +284,10 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(transport_tensor(*grid_, {rule, dt, false, first}, now_.velocity, phase, phase.tensor, next));
     PetscCall(complete_exterior(phase, next, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
+    if (!identity && !phase.material.linear) {
+      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::reach, rows));
+      PetscCall(surface_.apply(*grid_, {dt, spec_.fluid}, now_.velocity, phase, next));
+    }
     PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));

@@ -9,6 +9,7 @@
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
+#include "physics/surface_correction.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "solver/method.hpp"
 #include "solver/state.hpp"
@@ -101,6 +102,7 @@ private:
   FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
   FieldBlock slope_;  ///< of the elastic force in time
   ExteriorLayers layers_;
+  SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;
   std::vector<Phase> phases_now_;  ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
