@@ -25,7 +25,8 @@ class Setting:
 class Measure:
     """ours: number from a run, or from all runs of a setting, {key: run}, if `whole`. reference 0: ours is an error.
     tolerance: {method, or label: number, or function of the key}; a method that is not in it is reported, not judged.
-    order: {method: least observed order}, between the two finest runs."""
+    order: {method: least observed order}, between the two finest runs.
+    misses: as tolerance, {...: (bound, why)}: a tolerance that is known to be missed, and the bound that is kept instead."""
     what: str
     ours: Callable
     tolerance: dict
@@ -34,6 +35,7 @@ class Measure:
     relative: bool = False
     order: dict = dataclasses.field(default_factory=dict)
     whole: bool = False
+    misses: dict = dataclasses.field(default_factory=dict)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -7,8 +7,7 @@ NOTES = {
           "fraction 1/2 and takes the shear rate of both sides. Velocity and B_xy on the wall converge at first order.",
     "S3": "classic: in a steady state B_xy on the surface's edge can only be steady where du/dy = 0, so the first cell of "
           "fluid rests: the error there is 2 h/L_f (1 - h/(2 L_f)) = .0615 at 64 cells, which is what is measured, at first "
-          "order, .98. The stress on that edge carries phi = 1/2, so that B_xy becomes twice the exact one: 100 %, order 0: the "
-          "two rows that fail. fast does not evolve B on such an edge.",
+          "order, .98. The stress on that edge carries phi = 1/2, so that B_xy becomes twice the exact one: 100 %, order 0. fast does not evolve B on such an edge.",
     "S4": "classic: the step, .0015, is set by the inertial limit whatever the grid, and its error, .4 to .8 %, does not fall.",
     "S6": "The reference knows neither inertia nor images: the runs have density .1, rho gd R^2/mu = .005, and a period "
           "of 32 R.",
@@ -17,9 +16,9 @@ NOTES = {
           "The automatic step therefore begins small and doubles (docs/method.md, section 8).",
     "S8": "Extrapolated with (R/L)^3 and h^2 from 8 to 12 or 16 cells per radius. Without extrapolation in h the error is (h/R)^2 "
           "times the coefficient in the table, so that 1 % needs 16 to 18 cells per radius.",
-    "S9": "Beside the mode s = -1.441313 +- 7.313910 i a disc that is let go excites the continuous spectrum of the "
-          "viscous fluid: the same fit to the exact transient (tests/reference/ringing_disc.csv) gives the rate that is "
-          "the reference in the table, .6 % away. Our error is of first order or a little less.",
+    "S9": "The reference is D(t) of the exact transient (tests/reference/ringing_disc.csv): beside the mode s = -1.441313 +- "
+          "7.313910 i a disc that is let go excites the continuous spectrum of the viscous fluid, so that a fitted rate "
+          "depends on its window. Our error is of first order or a little less.",
     "R1": "Marching cubes of exact cell fractions do not converge: some tenths of a per cent of surface are left on any "
           "grid.",
     "S12": "48 cells are halved to 3: levels with odd numbers of cells are not symmetric, so mirrored scenes agree to the "

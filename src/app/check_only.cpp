@@ -25,6 +25,12 @@ public:
     va_end(list);
     text += name + ": " + value + "\n";
   }
+  void limit(const std::string &name, double dt) {
+    if (std::isfinite(dt))
+      line("dt limit, " + name, "%.6g", dt);
+    else
+      line("dt limit, " + name, "none");
+  }
 };
 
 struct FlowScale {
@@ -92,14 +98,19 @@ public:
   void flow(Report &report) const {
     const FlowScale scale = flow_scale();
     const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
-    report.line("velocity scale (estimate)", "%.6g", speed);
-    report.line("shear rate (estimate)", "%.6g", scale.shear_rate);
-    report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
+    if (speed == 0) {
+      report.line("flow", "none (no force, no moving wall, no initial velocity)%s",
+                  stretched() ? ", but for what stretched bodies or -initial_state drive" : "");
+    } else {
+      report.line("velocity scale (estimate)", "%.6g", speed);
+      report.line("shear rate (estimate)", "%.6g", scale.shear_rate);
+      report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
+    }
     for (const SpeciesSpec &spec : config_.species) {
       const double modulus = spec.material().shear_modulus;
       if (modulus != spec.shear_modulus)
         report.line("shear modulus of " + spec.name, "%.6g (at rest: 2 (c1 + c2))", modulus);
-      if (modulus > 0)
+      if (modulus > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate / modulus);
     }
@@ -116,12 +127,12 @@ public:
     const TimeStepLimits limits =
         time_step_limits(spacing_, dimension_, config_.fluid, config_.sides, extremes,
                          {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
-    report.line("dt limit, viscous", "%.6g", limits.viscous);
-    report.line("dt limit, elastic wave", "%.6g", limits.elastic);
-    report.line("dt limit, viscous and elastic", "%.6g", limits.combined);
-    report.line("dt limit, Kelvin-Voigt", "%.6g", limits.kelvin_voigt);
-    report.line("dt limit, advective", "%.6g", limits.advective);
-    if (!limits.scheme.staggered) report.line("dt limit, Euler 2 nu/U^2", "%.6g", limits.inertial);
+    report.limit("viscous", limits.viscous);
+    report.limit("elastic wave", limits.elastic);
+    report.limit("viscous and elastic", limits.combined);
+    report.limit("Kelvin-Voigt", limits.kelvin_voigt);
+    report.limit("advective", limits.advective);
+    if (!limits.scheme.staggered) report.limit("Euler 2 nu/U^2", limits.inertial);
     const char *name = "-time_step";
     double dt = limits.automatic(&name);
     if (config_.time.step > 0) {
@@ -130,6 +141,7 @@ public:
       if (const char *broken = limits.broken(dt))
         report.line("warning", "-time_step %g breaks the %s limit", dt, broken);
     }
+    if (!std::isfinite(dt)) dt = config_.time.end, name = "-time_end: nothing limits it";
     double steps = std::ceil(config_.time.end / dt);
     if (config_.time.steps_max > 0) steps = std::min(steps, double(config_.time.steps_max));
     report.line("time step (estimate)", "%.6g (%s)", dt, name);
@@ -157,6 +169,12 @@ private:
     if (seconds >= 360000) time = seconds / 86400, unit = "days";
     report.line("wall time (estimate)", "%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit, cores,
                 cores > 1 ? "s" : "", 1e-3 * ns);
+  }
+  bool stretched() const {
+    bool any = !config_.initial_state.empty();
+    for (const SpeciesSpec &spec : config_.species)
+      for (int d = 0; d < dimension_; ++d) any = any || spec.initial_stretch[d] != 1;
+    return any;
   }
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
   /// Between walls, those that planes of symmetry mirror included; 0 where there is none.

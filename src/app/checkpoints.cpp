@@ -86,6 +86,8 @@ PetscErrorCode Checkpoints::write(RunPosition position, Stop *stop) {
   PetscFunctionReturn(0);
 }
 
+std::string Checkpoints::newest() const { return last_step_ < 0 ? "" : checkpoint_name(static_cast<long>(last_step_)); }
+
 PetscErrorCode Checkpoints::remove_old() {
   PetscFunctionBeginUser;
   if (solver_->grid().rank() > 0) PetscFunctionReturn(0);

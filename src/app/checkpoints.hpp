@@ -22,6 +22,8 @@ public:
   PetscErrorCode after_step(const RunPosition &position, std::string *exit_reason, Stop *stop);
   /// Collective. The last one of a run that writes any.
   PetscErrorCode before_end(const RunPosition &position, Stop *stop);
+  /// The newest one in the directory, its name without it; empty = none. Known to all ranks.
+  std::string newest() const;
 
 private:
   PetscErrorCode write(RunPosition position, Stop *stop);

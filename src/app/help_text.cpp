@@ -5,6 +5,9 @@
 
 #include <petscsys.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace eulastic {
 namespace {
 
@@ -32,6 +35,11 @@ std::string remarks(const Option &option) {
   return option.doc + (option.only_with.empty() ? "" : "; only with " + option.only_with);
 }
 
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
 // A cell of a table.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
@@ -52,12 +60,25 @@ std::string version_text() {
          std::to_string(PETSC_VERSION_MINOR) + "." + std::to_string(PETSC_VERSION_SUBMINOR) + "\n";
 }
 
-std::string help_text() {
-  std::string text = version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
-                     "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n" + introduction;
+std::string usage_text() {
+  return version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
+         "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n"
+         "  eulastic options/channel_rbc.opts -output_dir output/mine    runs a case, here one that comes with it\n"
+         "  eulastic CASE -check_only                                    validates it, prints derived numbers\n"
+         "  eulastic -help WORD                                          options with this word; -help alone: all\n"
+         "  mpiexec -n 4 eulastic CASE                                   on four ranks\n\n"
+         "README.md begins with a first case of one's own.\n";
+}
+
+std::string help_text(const std::string &word) {
+  std::string text;
+  if (word.empty())
+    text = version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
+           "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n" + introduction;
   Config config = example();
   std::string group;
   for (const Option &option : option_table(config)) {
+    if (lower_case(option.name + " " + option.doc).find(lower_case(word)) == std::string::npos) continue;
     if (option.group != group) text += "\n" + (group = option.group) + "\n";
     std::string head = "  -" + option.name;
     const std::string value = default_text(option);
@@ -65,7 +86,7 @@ std::string help_text() {
     text += head + "\n      " + remarks(option) + (option.unit.empty() ? "" : " [" + option.unit + "]") + "\n";
     text += "      " + option.accepted + "\n";
   }
-  return text + "\nPETSc's own options pass through: " + petsc_names() + "\n";
+  return text + (word.empty() ? "\nPETSc's own options pass through: " + petsc_names() + "\n" : "");
 }
 
 std::string help_markdown() {

@@ -5,7 +5,10 @@
 
 namespace eulastic {
 
-std::string help_text();
+/// All options, or those whose name or text has `word`, in any case; nothing if there are none.
+std::string help_text(const std::string &word = {});
+/// A few lines: how to start it, and where to read on.
+std::string usage_text();
 /// docs/options.md, whole.
 std::string help_markdown();
 /// Name and version of the program and of PETSc; one line.

@@ -7,6 +7,7 @@
 #include "base/events.hpp"
 #include "io/hdf5_file.hpp"
 
+#include <unistd.h>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -53,7 +54,7 @@ int act(ParseResult &parsed) {
     return exit_usage;
   }
   if (!parsed.message.empty() || parsed.config.check_only || parsed.config.print_options) {
-    return print_answer(parsed, ranks) ? exit_failed : exit_fine;
+    return print_answer(parsed, ranks) ? exit_failed : parsed.alone ? exit_usage : exit_fine;
   }
   std::string kept, refusal;
   (void)PetscPushErrorHandler(keep_message, &kept);
@@ -86,9 +87,24 @@ bool finalize() {
   return true;
 }
 
+// Ranks and threads that wait give up their core, which others may need, unless the environment has it otherwise.
+// OpenMP's run time looks at its environment before main: the program begins once more.
+void wait_passively(char **argv) {
+  setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  setenv("OMP_WAIT_POLICY", "passive", 1);
+  char self[4096];
+  const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+  if (length <= 0) return;
+  self[length] = 0;
+  (void)execv(self, argv);  // comes back only if it cannot
+}
+
 int program(int argc, char **argv) {
+  wait_passively(argv);
   const char *environment = std::getenv("PETSC_OPTIONS");
   ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
+  parsed.program = argv[0];
   unsetenv("PETSC_OPTIONS");
   // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
   // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.

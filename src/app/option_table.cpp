@@ -237,8 +237,10 @@ void add_running(Rows &rows, Config &config) {
   rows.boolean("print_options", config.print_options, "validate, print every option as resolved and stop");
   rows.add("options_file", "", "options of another file; those of this file win").accepted =
       "only in an options file; a path, from the directory of this file";
-  rows.add("help", "", "print this and stop; -help markdown prints docs/options.md").accepted =
-      "only on the command line";
+  rows.add("help", "",
+           "print all options and stop; -help WORD those with this word in name or text; -help markdown prints "
+           "docs/options.md; -h a few lines")
+      .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
   rows.allow_change(first);
 }

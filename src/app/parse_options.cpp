@@ -1,6 +1,7 @@
 #include "app/parse_options.hpp"
 
 #include "app/help_text.hpp"
+#include "app/not_supported.hpp"
 #include "app/option_source.hpp"
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
@@ -72,7 +73,10 @@ public:
       const std::string wrong = option.read(entry.value.empty() ? "true"
                                             : option.is_input   ? find_input(entry)
                                                                 : entry.value);
-      if (!wrong.empty()) return refuse(wrong);
+      if (!wrong.empty()) {
+        const std::string why = option.accepted.rfind("one of ", 0) == 0 ? not_supported(entry.value) : "";
+        return refuse(wrong + (why.empty() ? "" : "; " + why));
+      }
       where_[name] = entry.where;
     }
     return clash_;
@@ -160,17 +164,34 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
 
 }  // namespace
 
+namespace {
+
+// What -help, -h, --help and -version ask for.
+void answer(const std::vector<std::string> &arguments, ParseResult *result) {
+  for (std::size_t a = 0; a < arguments.size(); ++a) {
+    if (arguments[a] == "-h" || arguments[a] == "--help") result->message = usage_text();
+    if (arguments[a] == "-version") result->message = version_text();
+    if (arguments[a] == "-help") {
+      std::string word = a + 1 < arguments.size() ? arguments[a + 1] : "";
+      if (word[0] == '-') word.erase(0, word.find_first_not_of('-'));
+      result->message = word == "markdown" ? help_markdown() : help_text(word);
+      if (result->message.empty()) result->error = "-help: no option has \"" + word + "\" in its name or text";
+    }
+    if (!result->message.empty() || !result->error.empty()) return;
+  }
+}
+
+}  // namespace
+
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options) {
   ParseResult result;
   result.petsc_options = petsc_options;
   result.petsc_arguments = {"-skip_petscrc"};
-  for (std::size_t a = 0; a < arguments.size(); ++a) {
-    if (arguments[a] == "-help")
-      result.message = a + 1 < arguments.size() && arguments[a + 1] == "markdown" ? help_markdown() : help_text();
-    if (arguments[a] == "-version") result.message = version_text();
-    if (!result.message.empty()) return result;
-  }
-  result.error = parse_into(arguments, &result);
+  result.alone = arguments.empty() && petsc_options.empty();
+  if (result.alone) result.message = usage_text();
+  answer(arguments, &result);
+  if (!result.message.empty()) return result;
+  if (result.error.empty()) result.error = parse_into(arguments, &result);
   if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
   constexpr std::size_t longest = 1000;                         // what was typed may be longer than anybody reads
   if (const std::size_t length = result.error.size(); length > longest)

@@ -2,6 +2,7 @@
 
 #include "app/attachment_warning.hpp"
 #include "app/checkpoints.hpp"
+#include "app/last_word.hpp"
 #include "app/memory.hpp"
 #include "app/overlap_warning.hpp"
 #include "app/petsc_options.hpp"
@@ -16,6 +17,7 @@
 #include "io/text_file.hpp"
 
 #include <sched.h>
+#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -29,8 +31,12 @@ struct Run {
   Checkpoints checkpoints;
   Guards guards;
   RunPosition position;
+  double begin;         ///< MPI_Wtime
+  double total_before;  ///< wall seconds before a restart
   std::string exit_reason;
-  Stop stop;  ///< by a guard
+  Stop stop;              ///< by a guard
+  std::string noted;      ///< newest checkpoint that summary.json knows of
+  bool accepted = false;  ///< summary.json is that of this run
 };
 
 bool finished(const State &state, const TimeControl &time, std::string *reason) {
@@ -96,6 +102,26 @@ PetscErrorCode open_outputs(Run *run) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode write_summary(const std::string &reason, Run *run) {
+  PetscFunctionBeginUser;
+  Summary summary;
+  summary.exit_reason = reason;
+  summary.checkpoint = run->noted = run->checkpoints.newest();
+  summary.wall_seconds = run->position.wall_seconds;
+  summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+  PetscCall(run->outputs.write_summary(summary));
+  PetscFunctionReturn(0);
+}
+
+// A run may be killed at any moment: until it ends, summary.json tells of its first step or its last checkpoint.
+PetscErrorCode note(Run *run) {
+  PetscFunctionBeginUser;
+  if (run->accepted && run->checkpoints.newest() == run->noted) PetscFunctionReturn(0);
+  PetscCall(write_summary("unfinished", run));
+  run->accepted = true;
+  PetscFunctionReturn(0);
+}
+
 // The run has passed its first step: what is in its directory may give way to it. Whether a run goes on must not depend
 // on what its directory held, so guards look when they would have looked anyway.
 PetscErrorCode accept(Run *run) {
@@ -112,11 +138,11 @@ PetscErrorCode accept(Run *run) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *control, Progress *progress, Run *run) {
+PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progress *progress, Run *run) {
   PetscFunctionBeginUser;
   Solver &solver = run->solver;
   const State &state = solver.state();
-  const double total = run->position.wall_seconds_total, loop_begin = MPI_Wtime();
+  const double loop_begin = MPI_Wtime();
   while (!run->stop && run->exit_reason.empty() && !finished(state, config.time, &run->exit_reason)) {
     double step_begin = MPI_Wtime(), dt = 0;
     std::string warning;
@@ -141,13 +167,14 @@ PetscErrorCode time_loop(const Config &config, double begin, TimeStepControl *co
     }
     print_warning(solver.grid().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin;
-    run->position.wall_seconds_total = total + MPI_Wtime() - begin;
+    run->position.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
     PetscCall(accept(run));
     if (run->stop) break;
     PetscCall(run->outputs.write_due(false));
     PetscCall(check_measured(run));
     if (run->stop) break;
     if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason, &run->stop));
+    if (run->exit_reason.empty() && !run->stop) PetscCall(note(run));
     progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   }
   if (!run->stop) PetscCall(accept(run));  // there was no step to take
@@ -178,6 +205,8 @@ PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
     PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
                                   refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
+  PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
+  (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);
   run->guards.resume(run->position.energy);
@@ -199,13 +228,14 @@ PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode write_summary(double begin, double total_before, Run *run) {
+// The last line of a run that was accepted.
+PetscErrorCode say_last_word(const Run &run) {
   PetscFunctionBeginUser;
-  Summary summary;
-  summary.exit_reason = run->exit_reason;
-  summary.wall_seconds = run->position.wall_seconds;
-  summary.wall_seconds_total = total_before + MPI_Wtime() - begin;
-  PetscCall(run->outputs.write_summary(summary));
+  const State &state = run.solver.state();
+  const MPI_Comm comm = run.solver.grid().comm();
+  const std::string line = last_word(
+      run.parsed, {run.exit_reason, state.time, state.step, run.solver.grid().ranks(), run.checkpoints.newest()});
+  PetscCall(PetscPrintf(comm, "%s\n", line.c_str()));
   PetscFunctionReturn(0);
 }
 
@@ -224,32 +254,35 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   Grid grid;
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
-  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, {}, {}};
+  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
   PetscCall(begin_run(grid, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();
-  const double total_before = run.position.wall_seconds_total;
+  run.total_before = run.position.wall_seconds_total;
   TimeStepControl control(config.time);
   if (!config.checkpoint.restart.empty()) control.resume(run.position.dt);
   Progress progress(stdout, Progress::style_of(stdout, grid.rank()),
                     {state.time, config.time.end, static_cast<long>(state.step),
                      config.time.steps_max > 0 ? config.time.steps_max : -1, grid.cell_count()});
-  PetscCall(catch_together([&] { return time_loop(config, begin, &control, &progress, &run); }, refusal));
+  PetscCall(catch_together([&] { return time_loop(config, &control, &progress, &run); }, refusal));
   if (!refusal->empty()) {
     // A full disk may have room for the few bytes that say so.
     std::string ignored;
     run.exit_reason = "output_failed";
     *code = exit_failed;
     if (run.directory.pending()) PetscFunctionReturn(0);
-    PetscCall(catch_together([&] { return write_summary(begin, total_before, &run); }, &ignored));
+    PetscCall(catch_together([&] { return write_summary(run.exit_reason, &run); }, &ignored));
+    PetscCall(say_last_word(run));
     PetscFunctionReturn(0);
   }
   *code = exit_failed;
   *refusal = run.stop.message;
-  if (run.directory.pending())
+  if (run.directory.pending()) {
     *refusal += "; the earlier run in -output_dir " + config.output.directory + " is untouched";
-  else
-    PetscCall(write_summary(begin, total_before, &run));
+  } else {
+    PetscCall(write_summary(run.exit_reason, &run));
+    PetscCall(say_last_word(run));
+  }
   *code = run.stop ? exit_wrong_numbers : exit_fine;
   PetscFunctionReturn(0);
 }

@@ -4,13 +4,25 @@
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
+#include <string_view>
 
 namespace eulastic {
 namespace {
 
 volatile std::sig_atomic_t caught = 0;
+bool speaks = false;
 
-void remember(int) { caught = 1; }
+// The step under way may be long, and a launcher may kill before it ends: a word at once.
+void remember(int signal) {
+  static constexpr std::string_view term = "eulastic: SIGTERM: ends after this step, with a checkpoint\n",
+                                    interrupt = "eulastic: SIGINT: ends after this step, with a checkpoint\n",
+                                    user = "eulastic: SIGUSR1: ends after this step, with a checkpoint\n";
+  if (speaks && !caught) {
+    const std::string_view line = signal == SIGTERM ? term : signal == SIGINT ? interrupt : user;
+    (void)!::write(STDERR_FILENO, line.data(), line.size());
+  }
+  caught = 1;
+}
 
 void handle(int signal, int flags) {
   struct sigaction action {};
@@ -41,6 +53,9 @@ void catch_faults() {
 }
 
 void catch_signals() {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  speaks = rank == 0;
   handle(SIGUSR1, 0);
   handle(SIGTERM, 0);
   handle(SIGINT, static_cast<int>(SA_RESETHAND));

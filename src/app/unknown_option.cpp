@@ -1,5 +1,6 @@
 #include "app/unknown_option.hpp"
 
+#include "app/not_supported.hpp"
 #include "app/option_values.hpp"
 #include "app/petsc_options.hpp"
 
@@ -67,6 +68,7 @@ std::string unknown_option(const std::string &name, const std::vector<Option> &t
   for (const Option &option : table)
     if (const std::size_t d = distance(plain, option.name); d < least) least = d, nearest = &option;
   if (nearest && least <= 2) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;
+  if (const std::string why = not_supported(plain); !why.empty()) return start + ": " + why;
   if (const std::string species = missing_species(name); !species.empty())
     return start + ": -species names no " + species + end;
   for (const std::string &petsc : petsc_option_names())

@@ -43,12 +43,17 @@ double Progress::fraction(double time, long step) const {
   return std::clamp(done, 0.0, 1.0);
 }
 
+double Progress::left(long step, const Mark &now) const {
+  constexpr long few = 16;  // the staggered integrator starts with six steps that double
+  if (step - goal_.steps_begin < few || now.wall - earlier_.wall < 1 || now.done <= earlier_.done) return -1;
+  return (now.wall - earlier_.wall) * (1 - now.done) / (now.done - earlier_.done);
+}
+
 std::string Progress::line(double time, long step, double dt, double wall) const {
-  const double done = fraction(time, step);
   const double rate = wall > 0 ? goal_.cells * double(step - goal_.steps_begin) / wall * 1e-6 : 0;
   char text[160];
-  std::snprintf(text, sizeof text, "%5.1f %%  time %.6g of %.6g  step %ld  dt %.3g  %.3g Mcell/s  %s left", 100 * done,
-                time, goal_.time_end, step, dt, rate, duration(done > 0 ? wall * (1 - done) / done : INFINITY).c_str());
+  std::snprintf(text, sizeof text, "%5.1f %%  time %.6g of %.6g  step %ld  dt %.3g  %.3g Mcell/s",
+                100 * fraction(time, step), time, goal_.time_end, step, dt, rate);
   return text;
 }
 
@@ -61,17 +66,25 @@ void Progress::print(const std::string &text, double wall) {
 
 void Progress::update(double time, long step, double dt, double wall) {
   if (style_ == Style::silent) return;
-  const double since = wall - last_wall_;
-  const int mark = static_cast<int>(20 * fraction(time, step) + 1e-9);
-  const bool due = style_ == Style::terminal ? since >= 0.2 : (mark > last_mark_ && since >= 10) || since >= 600;
+  const Mark now{fraction(time, step), wall};
+  if (const long steps = step - goal_.steps_begin; steps >= next_) {
+    earlier_ = latest_;
+    latest_ = now;
+    next_ = 2 * steps;
+  }
+  const double since = wall - last_wall_, seconds = left(step, now);
+  const int mark = static_cast<int>(20 * now.done + 1e-9);
+  const bool news = mark > last_mark_ || (seconds >= 0 && !estimated_);
+  const bool due = style_ == Style::terminal ? since >= 0.2 : (news && since >= 10) || since >= 600;
   if (!due) return;
-  print(line(time, step, dt, wall), wall);
+  print(line(time, step, dt, wall) + (seconds < 0 ? "" : "  " + duration(seconds) + " left"), wall);
   last_mark_ = mark;
+  estimated_ = estimated_ || seconds >= 0;
 }
 
 void Progress::finish(double time, long step, double dt, double wall) {
   if (style_ == Style::silent) return;
-  print(line(time, step, dt, wall), wall);
+  print(line(time, step, dt, wall) + "  in " + duration(wall), wall);
   if (style_ == Style::terminal) std::fputc('\n', out_);
   std::fflush(out_);
 }

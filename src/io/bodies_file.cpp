@@ -106,6 +106,15 @@ bool cut_rows(hid_t file, const char *name, hsize_t rows, std::uint64_t *sum) {
          write_text_attribute(dataset.get(), "checksum", checksum_text(*sum)) && dataset.close();
 }
 
+// Empty, or what was wrong: then nothing is left of the copy.
+std::string copy_file(const std::string &path, const std::string &target) {
+  std::error_code error, ignored;
+  std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
+  if (!error) return {};
+  std::filesystem::remove(target, ignored);
+  return path + ": cannot be copied (disk full? " + error.message() + ")";
+}
+
 }  // namespace
 
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
@@ -153,8 +162,7 @@ std::string BodiesFile::cut(std::size_t rows) {
   }
   (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string target = temporary_name(path_);
-  std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) return path_ + ": cannot be copied (disk full? " + error.message() + ")";
+  if (std::string problem = copy_file(path_, target); !problem.empty()) return problem;
   Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
   bool fine = bool(file);
   for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
@@ -187,8 +195,7 @@ std::string BodiesFile::write_waiting() {
   (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string target = temporary_name(path_);
   std::error_code error;
-  if (written_ > 0) std::filesystem::copy_file(path_, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) return path_ + ": cannot be copied (disk full? " + error.message() + ")";
+  if (std::string problem = written_ > 0 ? copy_file(path_, target) : ""; !problem.empty()) return problem;
   const Hdf5Property access = unlocked_access();
   Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                     : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));

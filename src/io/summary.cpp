@@ -25,6 +25,7 @@ std::string summary_text(const Summary &s) {
       .add("method", s.method)
       .add("pressure_solver", s.pressure_solver)
       .add("exit_reason", s.exit_reason)
+      .add("checkpoint", s.checkpoint)
       .add("cells", s.cells)
       .add("ranks", s.ranks)
       .add("threads", s.threads)

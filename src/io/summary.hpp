@@ -11,7 +11,8 @@ namespace eulastic {
 /// See docs/outputs.md for every key. Rates are derived on writing.
 struct Summary {
   std::string method, pressure_solver;
-  std::string exit_reason;  ///< time_end, steps, signal, wall_limit, nonfinite, guard
+  std::string exit_reason;  ///< time_end, steps, signal, wall_limit, nonfinite, guard, or unfinished
+  std::string checkpoint;   ///< file, in the same directory, that the run can go on from; empty = none
   long cells = 0, ranks = 1, threads = 1, steps = 0;
   double time = 0, dt_mean = 0;
   double wall_seconds = 0;  ///< time loop without output

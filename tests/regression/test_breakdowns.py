@@ -7,6 +7,7 @@ import contextlib
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import unittest
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from restart_case import BINARY, FLAT, OFTEN, ENDLESS, Restart  # noqa: E402
+from restart_case import BINARY, ENDLESS, FLAT, MPIEXEC, OFTEN, Restart  # noqa: E402
 
 
 class Ends(Restart):
@@ -30,8 +31,12 @@ class Ends(Restart):
         self.run_case("whole", *FLAT, *ENDLESS[:2], "-time_steps_max", steps)
         self.assert_same("whole", "run")
 
-    def start_endless(self, ranks=0, options=()):
-        return self.start(*FLAT[:-2], *ENDLESS[:2], *options, "-series_interval", ".11", ranks=ranks)
+    def start_endless(self, ranks=0, options=(), **more):
+        return self.start(*FLAT[:-2], *ENDLESS[:2], *options, "-series_interval", ".11", ranks=ranks, **more)
+
+    def ranks(self, process):
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        return [int(pid) for pid in children if os.readlink(f"/proc/{pid}/exe") == os.path.realpath(BINARY)]
 
     def test_user_signal_to_mpiexec(self):
         process = self.start_endless(ranks=2)
@@ -40,9 +45,7 @@ class Ends(Restart):
 
     def test_term_to_one_rank(self):
         process = self.start_endless(ranks=2)
-        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-        rank = [int(pid) for pid in children if os.readlink(f"/proc/{pid}/exe") == os.path.realpath(BINARY)][-1]
-        os.kill(rank, signal.SIGTERM)
+        os.kill(self.ranks(process)[-1], signal.SIGTERM)
         self.check_stopped(process)
 
     def test_term_to_mpiexec(self):
@@ -59,7 +62,47 @@ class Ends(Restart):
     def test_interrupt_without_mpiexec(self):
         process = self.start_endless()
         process.send_signal(signal.SIGINT)
+        self.assertEqual(process.stderr.read(), "eulastic: SIGINT: ends after this step, with a checkpoint\n")
         self.check_stopped(process)
+
+    def test_a_word_after_a_signal(self):
+        """Under mpiexec, which sends SIGTERM to the ranks whatever it gets; the command it names goes on."""
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGUSR1:
+            with self.subTest(number):
+                shutil.rmtree(self.room / "run", ignore_errors=True)
+                with open(self.room / "log", "w") as log:
+                    process = self.start_endless(ranks=2, stdout=log)
+                    process.send_signal(number)
+                    process.wait(60)
+                summary, last = self.summary("run"), (self.room / "log").read_text().splitlines()[-1]
+                self.assertEqual(summary["exit_reason"], "signal")
+                self.assertEqual(summary["checkpoint"], self.checkpoints()[-1].name)
+                self.assertIn(f"stopped by a signal at t = {summary['time']:.9g}, step {summary['steps']}; results: run; ", last)
+                self.assertIn(": ends after this step, with a checkpoint\n", process.stderr.read())
+                command = last.split(summary["checkpoint"] + ": ")[1].replace("mpiexec", MPIEXEC + " --oversubscribe")
+                again = subprocess.run(f"{command} -time_steps_max {summary['steps'] + 3}", shell=True, cwd=self.room,
+                                       env=self.environment, capture_output=True, text=True, timeout=120)
+                self.assertEqual((again.returncode, again.stderr), (0, ""))
+                self.assertEqual(self.summary("run")["steps"], summary["steps"] + 3)
+
+    def test_killed_at_any_moment(self):
+        """SIGKILL leaves no time for a word: what is there already says that the run is unfinished, and what it has."""
+        process = self.start_endless(ranks=2)
+        self.wait_until(lambda: (self.room / "run/summary.json").exists())
+        self.assertEqual((self.summary("run")["exit_reason"], self.summary("run")["checkpoint"]), ("unfinished", ""))
+        process.kill()
+        process.wait()
+        shutil.rmtree(self.room / "run")
+        process = self.start_endless(ranks=2, options=["-checkpoint_interval", "1e-3"])
+        self.wait_until(lambda: len(self.checkpoints()) == 2 and self.summary("run")["checkpoint"])
+        for pid in self.ranks(process):
+            os.kill(pid, signal.SIGKILL)
+        process.wait(60)
+        summary = self.summary("run")
+        self.assertEqual(summary["exit_reason"], "unfinished")
+        with h5py.File(self.room / "run" / summary["checkpoint"]) as file:
+            self.assertEqual((file["step"][0], file["time"][0]), (summary["steps"], summary["time"]))
+        self.run_case("run", *FLAT, *ENDLESS[:2], "-time_steps_max", summary["steps"] + 200, "-restart", "run")
 
     def test_wall_limit(self):
         process = self.start_endless(options=["-stop_after_minutes", ".01", "-checkpoint_wall_minutes", ".002"])
@@ -90,7 +133,8 @@ class BrokenPlaces(Restart):
         finally:
             subprocess.run(["umount", self.room / "disk"], check=True)
 
-    def check_full(self, returncode, errors):
+    def check_full(self, returncode, errors, directory):
+        self.assertEqual([path.name for path in (self.room / directory).glob("*.tmp")], [])
         self.assertEqual(returncode, 1, errors)
         lines = [line for line in errors.splitlines() if line.startswith("eulastic: error:")]
         self.assertEqual(len(lines), 1, errors)
@@ -106,14 +150,14 @@ class BrokenPlaces(Restart):
         with self.tmpfs("size=700k"):
             result = self.call(*FLAT, "-time_steps_max", 400, *OFTEN, "-snapshot_interval", ".02", "-output_dir",
                                "disk/run", ranks=2)
-            self.check_full(result.returncode, result.stderr)
+            self.check_full(result.returncode, result.stderr, "disk/run")
             self.check_goes_on("disk/run")
 
     def test_files_that_may_not_grow(self):
         process = self.start(*FLAT, *ENDLESS[:2], *OFTEN)
         self.wait_until(self.checkpoints)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (10000, 10000))
-        self.check_full(process.wait(60), process.stderr.read())
+        self.check_full(process.wait(60), process.stderr.read(), "run")
         self.assertEqual(self.summary("run")["exit_reason"], "output_failed")
         self.check_goes_on("run", *ENDLESS[:2])
 

@@ -3,6 +3,7 @@
 
 Needs EULASTIC=path of the binary; EULASTIC_MPIEXEC for the runs on several ranks.
 """
+import json
 import math
 import os
 import pathlib
@@ -69,7 +70,7 @@ class CommandLine(unittest.TestCase):
                 ("-da_processors_y 3", ["rank"])]:
             with self.subTest(added):
                 self.refused(*SCENE, *added.split(), says=says)
-        self.refused(says=["-time_end", "must be given"])
+        self.refused("-series_interval", "1", says=["-time_end", "must be given"])
         self.refused("-time_end", "1", "-species", "wall", says=["-species", "wall"])
         self.refused("-time_end", "1", "-species", "a,a", says=["-species", "twice"])
         self.refused(*SCENE, environment={"PETSC_OPTIONS": "-nonsense 1"}, says=["-nonsense", "PETSC_OPTIONS"])
@@ -156,6 +157,20 @@ class CommandLine(unittest.TestCase):
                              "processor(s); with Open MPI, mpiexec --map-by slot:PE=2 gives a rank as many as it has "
                              "threads\n")
 
+    def test_who_waits_gives_up_the_core(self):
+        """As the run times of OpenMP and MPI themselves say; what the environment says before stays."""
+        plain = {"OMP_DISPLAY_ENV": "true", "OMPI_MCA_mpi_show_mca_params": "enviro"}
+        for given, threads, ranks in ({}, "PASSIVE", "true"), (
+                {"OMP_WAIT_POLICY": "active", "OMPI_MCA_mpi_yield_when_idle": "0"}, "ACTIVE", "false"):
+            bare = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "OMPI_MCA_mpi_yield_when_idle"} - set(given)
+            variables = ["env", *(word for name in bare for word in ("-u", name)), *(f"{k}={v}" for k, v in (plain | given).items())]
+            done = subprocess.run([*variables, MPIEXEC, "--oversubscribe", "-n", "2", BINARY, "-version"], capture_output=True,
+                                  text=True, timeout=120, env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1",
+                                                                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+            said = done.stdout + done.stderr
+            self.assertEqual(re.findall(r"OMP_WAIT_POLICY = '(\w+)'", said)[-1], threads)
+            self.assertIn(f"mpi_yield_when_idle={ranks}", said)
+
     def test_errors_on_several_ranks_are_printed_once(self):
         result = self.run_program(*SCENE, "-nonsense", ranks=3)
         self.assertEqual(result.returncode, 2)
@@ -163,7 +178,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(list(self.room.iterdir()), [])
 
     def test_help_and_version(self):
-        for arguments in (["-help"], ["-version"], ["-nonsense", "-help"], ["-help", "markdown"]):
+        for arguments in (["-help"], ["-version"], ["-nonsense", "-help"], ["-help", "markdown"], ["-h"], ["--help"]):
             with self.subTest(arguments):
                 result = self.run_program(*arguments)
                 self.assertEqual((result.returncode, result.stderr), (0, ""))
@@ -173,6 +188,54 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.run_program("-version").stdout.count("\n"), 1)
         self.assertEqual(self.run_program("-help", ranks=2).stdout, self.run_program("-help").stdout)
         self.assertEqual(list(self.room.iterdir()), [])
+
+    def test_usage_and_help_of_a_word(self):
+        alone = self.run_program()
+        self.assertEqual((alone.returncode, alone.stderr), (2, ""))
+        self.assertLess(alone.stdout.count("\n"), 15)
+        self.assertIn("-check_only", alone.stdout)
+        self.assertEqual(self.run_program("--help").stdout, alone.stdout)
+        self.assertEqual(self.run_program("-h").stdout, alone.stdout)
+        found = re.findall(r"^  -(\w+)", self.run_program("-help", "stiffens").stdout, re.MULTILINE)
+        self.assertEqual(found, ["NAME_c3"])
+        self.refused("-help", "nonsense", says=["-help", "nonsense"])
+
+    def test_what_there_is_not(self):
+        self.refused(*SCENE, "-cell_density", "2", says=["-cell_density", "not supported", "README.md"])
+        self.assertIn("\n## What it does not do\n", (ROOT / "README.md").read_text())
+
+    def test_the_launchers_banner_is_not_there(self):
+        """With the settings of scripts/environment, as scripts/run has them."""
+        quiet = subprocess.run(["bash", "-c", f'source "{ROOT}/scripts/environment"; env | grep ^OMPI_'], capture_output=True,
+                               text=True, check=True).stdout
+        environment = dict(line.split("=", 1) for line in quiet.splitlines())
+        for words, status in ((["-nonsense"], 2), (["-guard_cfl", "1e-9", "-initial_velocity_mean", "1,0,0"], 3)):
+            done = self.run_program(*SCENE, *words, ranks=2, environment=environment)
+            self.assertEqual(done.returncode, status)
+            self.assertRegex(done.stderr, r"\Aeulastic: error: [^\n]+\n\Z")
+
+    def test_a_word_at_every_end(self):
+        """The command that the last line names goes on with the run, from the directory where it was started."""
+        case = [*SCENE[:SCENE.index("-time_end")], *SCENE[SCENE.index("-species"):], "-time_step", "1e-3"]
+        for ranks, name in (0, "run"), (2, "a run of two"):
+            done = self.run_program(*case, "-time_end", "3e-3", "-output_dir", name, ranks=ranks)
+            first, last = done.stdout.splitlines()[0], done.stdout.splitlines()[-1]
+            self.assertRegex(first, rf"^eulastic \S+: 8 x 8 x 8 cells on {ranks or 1} ranks?; results go to {name}$")
+            self.assertRegex(last, rf"^eulastic: came to its end at t = 0.003, step 3; results: {name}; longer: ")
+            self.assertEqual("mpiexec -n 2" in last, ranks == 2)
+            command = last.split("; longer: ")[1].replace("LATER", "5e-3").replace("mpiexec", MPIEXEC + " --oversubscribe")
+            longer = subprocess.run(command, shell=True, cwd=self.room, capture_output=True, text=True, timeout=120,
+                                    env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+            self.assertEqual((longer.returncode, longer.stderr), (0, ""))
+            self.assertIn("came to its end at t = 0.005, step 5;", longer.stdout.splitlines()[-1])
+            stopped = self.run_program(*case, "-time_end", "1e-2", "-output_overwrite", "-output_dir", name, "-guard_divergence",
+                                       "1e-30", "-body_force", "1,0,0", "-checkpoint_interval", "1e-9", ranks=ranks)
+            self.assertEqual(stopped.returncode, 3)
+            self.assertRegex(stopped.stdout.splitlines()[-1], rf"^eulastic: stopped by a guard at t = .*; results: {name}; goes "
+                             r"on from checkpoint_\d+\.h5, with what the error names: .*eulastic.* -restart ")
+            self.assertIn(json.loads((self.room / name / "summary.json").read_text())["checkpoint"], stopped.stdout)
+        steps = self.run_program(*case, "-time_end", "1", "-time_steps_max", "4", "-checkpoint_keep", "0", "-output_dir", "s")
+        self.assertRegex(steps.stdout.splitlines()[-1], "came to its -time_steps_max at .*; no checkpoint to go on from$")
 
     def test_one_progress_line_in_a_terminal_lines_in_a_log(self):
         case = [*SCENE, "-output_overwrite", "-time_steps_max", "2"]
@@ -198,7 +261,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(result.returncode, 2)  # -grid_cells twice
         case = self.room / "case.opts"
         case.write_text("".join(f"{n} {v}\n" for n, v in zip(SCENE[::2], SCENE[1::2])))
-        result = self.run_program(case.name, "-check_only", "-grid_cells", "2048,2048,2048")
+        result = self.run_program(case.name, "-check_only", "-grid_cells", "2048,2048,2048", "-body_force", "1,0,0")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         for line in ("cells: 2048 x 2048 x 2048 = 8589934592", "dt limit, viscous", "Reynolds number",
                      "capillary number of cell", "memory:", "hematocrit: 0.0654498"):

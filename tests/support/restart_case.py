@@ -51,10 +51,10 @@ class Restart(unittest.TestCase):
         return subprocess.run(self.command(arguments, ranks), cwd=self.room, env=self.environment, timeout=120,
                               capture_output=True, text=True, **more)
 
-    def start(self, *arguments, ranks=0):
+    def start(self, *arguments, ranks=0, stdout=subprocess.DEVNULL):
         """A run in the background, in its time loop."""
         process = subprocess.Popen(self.command([*arguments, "-output_dir", "run"], ranks), cwd=self.room,
-                                   env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                                   env=self.environment, stdout=stdout, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)

@@ -3,6 +3,9 @@
 #include "io/checksum.hpp"
 #include "support/files.hpp"
 
+#include <sys/resource.h>
+#include <csignal>
+
 namespace eulastic {
 namespace {
 
@@ -103,6 +106,29 @@ TEST(BodiesFile, SaysWhatIsWrong) {
   ASSERT_EQ(empty.add(0, {}), 0);
   ASSERT_EQ(empty.flush(), 0);
   EXPECT_FALSE(fs::exists(base / "empty.h5"));
+}
+
+// A copy that cannot grow is not left behind, and the file stays what it was.
+TEST(BodiesFile, NothingUnfinishedStays) {
+  const TemporaryDirectory base;
+  const std::string path = base / "bodies.h5";
+  BodiesFile file(PETSC_COMM_SELF, path);
+  for (int n = 0; n < 8; ++n) ASSERT_EQ(file.add(n, bodies_at(n)), 0);
+  ASSERT_EQ(file.flush(), 0);
+  const hsize_t before = BodyTable(path).rows();
+  struct rlimit old {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  struct rlimit low = old;
+  low.rlim_cur = fs::file_size(path) / 2;
+  (void)std::signal(SIGXFSZ, SIG_IGN);
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+  ASSERT_EQ(file.add(8, bodies_at(8)), 0) << "it waits";
+  EXPECT_NE(file.flush(), 0);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
+  (void)PetscPopErrorHandler();
+  EXPECT_FALSE(fs::exists(path + ".tmp"));
+  EXPECT_EQ(BodyTable(path).rows(), before);
 }
 
 }  // namespace

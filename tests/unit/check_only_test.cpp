@@ -23,7 +23,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
   has("capillary number of a: 0.5 (viscosity x shear rate / shear modulus)");
   has("hematocrit: 0.19635");   // 2 pi/4 / 8
   const double ghosts = 2 * 3;  // of the paper's method
-  char memory[64];  // 15 fields: u, v now and predicted, p, D; phi, label, 3 of B; phi and B being computed
+  char memory[64];              // 15 fields: u, v now and predicted, p, D; phi, label, 3 of B; phi and B being computed
   std::snprintf(memory, sizeof memory, "%.4g GB per rank; this", 8e-9 * 15 * (16 + ghosts) * (4 + ghosts));
   EXPECT_NE(report.find(memory), std::string::npos) << report;
   has("dt limit, viscous: 0.03125");                // 1/(2 nu S)
@@ -59,4 +59,19 @@ TEST(CheckOnly, NumbersOfAChannel) {
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 1\n", "(length 4)\n",
                            "hematocrit: 0.166667 (of the box less slabs, tubes, vessels)\n"})
     EXPECT_NE(inside.find(line), std::string::npos) << line << inside;
+}
+
+TEST(CheckOnly, NoFlowIsSaid) {
+  const std::string rest = "-time_end 2 -grid_cells 16,16,1",
+                    body = " -species a -a_shape sphere -a_radius .2 -a_shear_modulus 1";
+  const std::string report = check_report(parse_line(rest).config, 1);
+  EXPECT_NE(report.find("\nflow: none (no force, no moving wall, no initial velocity)\n"), std::string::npos) << report;
+  EXPECT_EQ(report.find("inf"), std::string::npos) << report;
+  EXPECT_EQ(report.find("Reynolds"), std::string::npos) << report;
+  EXPECT_NE(report.find("\ntime step (estimate): 2 (-time_end: nothing limits it)\nsteps (estimate): 1\n"),
+            std::string::npos)
+      << report;
+  const std::string let_go = check_report(parse_line(rest + body + " -a_initial_stretch 2,.5,1").config, 1);
+  EXPECT_NE(let_go.find("but for what stretched bodies"), std::string::npos) << let_go;
+  EXPECT_EQ(check_report(parse_line(rest + body).config, 1).find("but for"), std::string::npos);
 }

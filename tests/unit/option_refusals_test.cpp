@@ -43,6 +43,25 @@ TEST(OptionRefusals, UnknownNames) {
        {"-NAME_radius 1", {"unknown option -NAME_radius"}}});
 }
 
+// What we cannot do is answered by that, and not by the nearest spelling; what is near in spelling, by that.
+TEST(OptionRefusals, WhatThereIsNot) {
+  const std::string read = "; see README.md, \"What it does not do\"";
+  expect_refusals(
+      {{"-cell_density 2", {"unknown option -cell_density: \"density\" is not supported: bodies have", read}},
+       {"-viscosity_ratio 5", {"\"viscosity\" is not supported", "-fluid_viscosity", read}},
+       {"-gravity 0,-9.81,0", {"\"gravity\" is not supported", "-body_force", read}},
+       {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
+       {"-inflow 1", {"\"inflow\" is not supported", read}},
+       {"-cell_rigid true", {"\"rigid\" is not supported", "elastic", read}},
+       {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "no membrane", read}},
+       {"-surface_tension 1", {"\"tension\" is not supported", read}},
+       {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not supported", "one of periodic, wall"}},
+       {"-cell_law rigid", {"-cell_law", "\"rigid\" is not supported", "mooney_rivlin"}},
+       {"-density 1", {"nearest known: -fluid_density"}},
+       {"-fluid_viscosty 1", {"nearest known: -fluid_viscosity"}},
+       {"-wall_top_velocity 1,0,0", {"nearest known: -wall_"}}});
+}
+
 TEST(OptionRefusals, PetscIsSilentAfterAnError) {
   EXPECT_EQ(parse_line("-log_view -nonsense").petsc_arguments, (Words{"-skip_petscrc"}));
   EXPECT_EQ(parse_line("-log_view -help").petsc_arguments, (Words{"-skip_petscrc"}));
@@ -129,7 +148,7 @@ TEST(OptionRefusals, Ranges) {
                    {"-time_step 1e-16", {"-time_step", "1e-16", "1.1102230246251565e-16"}},
                    {"-grid_cells 65536,65536,8", {"-grid_cells", "64-bit"}}},
                   "-time_end 1");
-  expect_refusals({{"-time_end 0", {"-time_end", "out of range"}}, {"", {"-time_end", "must be given"}}}, "");
+  expect_refusals({{"-time_end 0", {"-time_end", "out of range"}}, {"-threads 1", {"-time_end", "must be given"}}}, "");
 }
 
 TEST(OptionRefusals, StrayWords) {

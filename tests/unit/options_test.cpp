@@ -264,9 +264,25 @@ TEST(Options, TableIsComplete) {
   }
 }
 
+TEST(Options, HelpOfAWord) {
+  const std::string help = parse_line("-help Viscosity").message;
+  EXPECT_NE(help.find("  -fluid_viscosity (1)\n"), std::string::npos) << help;
+  EXPECT_NE(parse_line("-help energy").message.find("  -guard_energy_growth"), std::string::npos);
+  EXPECT_NE(parse_line("-help centres").message.find("  -profile_x"), std::string::npos) << "a word of its text";
+  EXPECT_EQ(help.find("  -grid_cells"), std::string::npos) << help;
+  EXPECT_NE(parse_line("-help mirror").error.find("no option has \"mirror\""), std::string::npos);
+  EXPECT_NE(parse_line("-help -time_end").message.find("  -time_end (required)"), std::string::npos);
+}
+
 TEST(Options, HelpAndVersionWinOverErrors) {
   EXPECT_EQ(parse_line("-nonsense -help").message, help_text());
   EXPECT_EQ(parse_line("-help markdown").message, help_markdown());
   EXPECT_EQ(parse_line("-version").message, version_text());
+  EXPECT_EQ(parse_line("-nonsense -h").message, usage_text());
+  EXPECT_EQ(parse_line("--help").message, usage_text());
+  EXPECT_FALSE(parse_line("--help").alone);
+  EXPECT_TRUE(parse_line("").alone);
+  EXPECT_EQ(parse_line("").message, usage_text());
+  EXPECT_EQ(parse_line("", "-fluid_density 1").message, "");  // a run whose options are in the environment
   EXPECT_EQ(parse_line("-version").message.rfind("eulastic ", 0), 0u);
 }

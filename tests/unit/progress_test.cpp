@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -37,7 +38,7 @@ TEST(Progress, OneLineInATerminal) {
   const auto refreshed = std::count(text.begin(), text.end(), '\r');
   EXPECT_GE(refreshed, 20);
   EXPECT_LE(refreshed, 27) << "five times a second, for five seconds";
-  EXPECT_NE(text.find("100.0 %  time 10 of 10  step 100  dt 0.1  40 Mcell/s  0:00 left"), std::string::npos) << text;
+  EXPECT_NE(text.find("100.0 %  time 10 of 10  step 100  dt 0.1  40 Mcell/s  in 0:05"), std::string::npos) << text;
 }
 
 TEST(Progress, AFewLinesInALog) {
@@ -45,7 +46,7 @@ TEST(Progress, AFewLinesInALog) {
       endless(Progress::Style::log, {0, 1e9, 0, -1, 1}), silent(Progress::Style::silent, {0, 10, 0, -1, 1});
   for (int n = 1; n <= 1000; ++n) {
     fast.progress.update(0.01 * n, n, 0.01, 0.05 * n);    // 50 s: a line every 10 s
-    slow.progress.update(0.01 * n, n, 0.01, 1.0 * n);     // 1000 s: a line every 5 %
+    slow.progress.update(0.01 * n, n, 0.01, 1.0 * n);     // 1000 s: the first estimate, a line every 5 %
     endless.progress.update(0.01 * n, n, 0.01, 6.0 * n);  // 6000 s and 0 %: every ten minutes
     silent.progress.update(0.01 * n, n, 0.01, 6.0 * n);
   }
@@ -55,9 +56,31 @@ TEST(Progress, AFewLinesInALog) {
     return std::count(text.begin(), text.end(), '\n');
   };
   EXPECT_EQ(lines(fast), 1 + 4);
-  EXPECT_EQ(lines(slow), 1 + 20);
-  EXPECT_EQ(lines(endless), 1 + 9);
+  EXPECT_EQ(lines(slow), 1 + 1 + 20);
+  EXPECT_EQ(lines(endless), 1 + 1 + 9);
   EXPECT_EQ(lines(silent), 0);
+}
+
+// Six steps that double, then equal ones of a second: what is left is told when it is right, and not before.
+TEST(Progress, WhatIsLeftIsToldWhenItMeansSomething) {
+  ProgressOutput out(Progress::Style::log, {0, 1000, 0, -1, 1});
+  double time = 0;
+  for (int n = 1; n <= 1000; ++n) {
+    const double dt = n < 7 ? std::ldexp(1, n - 7) : 1;
+    out.progress.update(time += dt, n, dt, n);
+    if (n == 15) EXPECT_EQ(out.text().find("left"), std::string::npos) << out.text();
+    if (n == 16) EXPECT_NE(out.text().find("16:29 left"), std::string::npos) << out.text();  // 989 s; 24:00 by the mean
+  }
+}
+
+// A rate that falls to a tenth: half of the run later the estimate knows.
+TEST(Progress, WhatIsLeftFollowsTheLatterHalf) {
+  ProgressOutput out(Progress::Style::terminal, {0, 1000, 0, -1, 1});
+  double wall = 0;
+  for (int n = 1; n <= 400; ++n) out.progress.update(n, n, 1, wall += n <= 100 ? 1 : 10);
+  const std::string text = out.text();
+  EXPECT_NE(text.rfind("1:40:00 left"), std::string::npos) << text.substr(text.rfind('\r'));
+  EXPECT_GT(text.rfind("1:40:00 left"), text.rfind('\r'));
 }
 
 TEST(Progress, TheFirstGoalCounts) {

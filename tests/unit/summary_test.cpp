@@ -118,6 +118,7 @@ TEST(Summary, HasEveryKey) {
                                           "method",
                                           "pressure_solver",
                                           "exit_reason",
+                                          "checkpoint",
                                           "cells",
                                           "ranks",
                                           "threads",

@@ -1,0 +1,60 @@
+#include "app/not_supported.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace eulastic {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const std::vector<std::pair<Words, std::string>> &missing() {
+  static const std::vector<std::pair<Words, std::string>> table{
+      {{"density", "viscosity"},
+       "bodies have the density and viscosity of the fluid: -fluid_density and -fluid_viscosity are those of both"},
+      {{"buoyancy", "gravity", "sedimentation"},
+       "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both"},
+      {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "symmetry", "symmetric", "slip", "farfield"},
+       "a side of the box is periodic, or a wall without slip that may move in its plane; -body_force drives a flow "
+       "through"},
+      {{"rigid", "prescribed", "torque"},
+       "bodies are elastic and go with the flow; a stiff -NAME_shear_modulus comes near a rigid one, and "
+       "-NAME_attached holds what touches a wall"},
+      {{"membrane", "bending", "tension", "shell", "capsule"},
+       "bodies are elastic all through: no membrane, no bending stiffness, no surface tension"},
+      {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
+       "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
+      {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",
+        "ogden", "hookean", "stvk"},
+       "bodies are isotropic and elastic, neo_hookean or mooney_rivlin, beside the viscosity of the fluid"},
+      {{"newtonian", "carreau", "rheology", "turbulence", "turbulent", "les", "rans", "smagorinsky"},
+       "the fluid is Newtonian and every eddy is resolved"},
+      {{"temperature", "heat", "thermal", "concentration", "diffusion", "scalar", "solute", "salt", "charge"},
+       "velocity, pressure and bodies are all that is computed"},
+      {{"adhesion", "friction", "repulsion", "lubrication", "aggregation"},
+       "bodies that touch are kept apart by what the grid resolves of the fluid between them; no other law of contact"},
+      {{"refinement", "refine", "amr", "adaptive", "stretching", "grading", "unstructured"},
+       "one uniform grid; -grid_cells and -grid_length"},
+      {{"gpu", "cuda", "hip"}, "processors only; ranks of MPI and -threads"},
+  };
+  return table;
+}
+
+}  // namespace
+
+std::string not_supported(const std::string &name) {
+  std::string plain = name;
+  std::transform(plain.begin(), plain.end(), plain.begin(),
+                 [](unsigned char c) { return std::isalnum(c) ? std::tolower(c) : ' '; });
+  std::istringstream stream(plain);
+  for (std::string word; stream >> word;)
+    for (const auto &[words, why] : missing())
+      if (std::find(words.begin(), words.end(), word) != words.end())
+        return "\"" + word + "\" is not supported: " + why + "; see README.md, \"What it does not do\"";
+  return {};
+}
+
+}  // namespace eulastic
