@@ -4,7 +4,7 @@
 // K: B <- S B S^T, S = 1 - s t n^T, t = Bn - (n.Bn) n, s = (1 - e^(-(1 - phi) k n.Bn dt))/(n.Bn).
 #pragma once
 
-#include "kernels/exp_log.hpp"
+#include "kernels/exp.hpp"
 #include "kernels/stencils.hpp"
 
 #include <array>
