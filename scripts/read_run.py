@@ -70,6 +70,12 @@ class Snapshot:
         return int(solid.argmax()) if solid.any() else self.run.cells[2] // 2
 
 
+def is_finished(directory):
+    """Whether a run came to its end: until then summary.json is of its last checkpoint, and says so."""
+    path = pathlib.Path(directory) / "summary.json"
+    return path.exists() and json.loads(path.read_text())["exit_reason"] in ("time_end", "steps")
+
+
 class Run:
     """A finished or unfinished run; what has not been written yet is empty or None.
 

@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -64,10 +65,10 @@ class NothingIsLost(unittest.TestCase):
             path.write_bytes(path.read_bytes()[:-1000])
 
     @classmethod
-    def start(cls, *words, ranks=1):
+    def start(cls, *words, ranks=1, **more):
         launcher = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
         return subprocess.run([*launcher, os.environ["EULASTIC"], *map(str, words)], cwd=cls.room, capture_output=True,
-                              text=True, timeout=120,
+                              text=True, timeout=120, **more,
                               env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
 
     def refuse(self, cases):
@@ -100,6 +101,27 @@ class NothingIsLost(unittest.TestCase):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn("in use", done.stderr)
                 self.assertEqual(listing(copy), before)
+
+    def test_a_disk_that_is_full_or_a_kill_before_the_first_step(self):
+        before = listing(self.room / "run")
+        large = ["-grid_cells", "1024,1024,1"]  # the snapshot of the start, in .new, has 32 MB
+        words = [*SCENE[2:], *large, "-time_end", ".1", "-output_dir", self.room / "run", "-output_overwrite"]
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2**24, 2**24))  # noqa: E731
+        done = self.start(*words, preexec_fn=limit)  # one rank: Open MPI has files of its own
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.stderr.count("eulastic: error:"), 1, done.stderr)
+        self.assertEqual(listing(self.room / "run"), before)
+        # One whose first step never ends: killed when its files are there, and then one that is refused.
+        process = subprocess.Popen([os.environ["EULASTIC"], *map(str, words)], stdout=subprocess.DEVNULL)
+        while not list((self.room / "run").glob(".new/*.csv")):
+            self.assertIsNone(process.poll())
+        process.kill()
+        process.wait()
+        self.assertEqual({name: value for name, value in listing(self.room / "run").items() if not name.startswith(".new/")},
+                         before)
+        self.assertEqual(self.start(*SCENE, "-time_end", ".1", "-output_dir", self.room / "run", "-output_overwrite",
+                                    "-guard_divergence", "1e-30").returncode, 3)
+        self.assertEqual(listing(self.room / "run"), before)
 
     def test_what_is_replaced_is_replaced_whole(self):
         copy = self.room / "copy"

@@ -20,7 +20,7 @@ SCRIPTS = ROOT / "scripts"
 sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
-from read_run import Run, Units, parse_options  # noqa: E402
+from read_run import Run, Units, is_finished, parse_options  # noqa: E402
 
 
 def listing(folder):
@@ -151,6 +151,14 @@ class Reader(WithFolder):
         self.assertEqual((run.summary, run.series, run.bodies), ({}, None, None))
         with self.assertRaises(FileNotFoundError):
             Run(self.folder)
+
+    def test_only_a_run_at_its_end_is_finished(self):
+        path = self.folder / "run/summary.json"
+        for reason in "time_end", "steps", "unfinished", "signal", "guard":
+            path.write_text(f'{{"exit_reason": "{reason}"}}')
+            self.assertEqual(is_finished(self.folder / "run"), reason in ("time_end", "steps"), reason)
+        path.unlink()
+        self.assertFalse(is_finished(self.folder / "run"))
 
     def test_as_a_program(self):
         done = start(SCRIPTS / "read_run.py", self.folder / "run")
