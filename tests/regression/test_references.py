@@ -49,7 +49,8 @@ class References(unittest.TestCase):
         self.assertAlmostEqual(float(w(s - tiny, t)), float(w(s + tiny, t)), delta=1e-7)
 
         def one_sided(direction):
-            return float(-3 * w(s + direction * tiny, t) + 4 * w(s + direction * d, t) - w(s + 2 * direction * d, t)) / (2 * direction * d)
+            at = [float(w(s + direction * x, t)) for x in (tiny, d, 2 * d)]
+            return (-3 * at[0] + 4 * at[1] - at[2]) / (2 * direction * d)
         self.assertAlmostEqual(mu * one_sided(-1) + modulus * float(gamma(s, t)), mu * one_sided(1), delta=1e-5)
 
     def test_the_duct_ends_as_poiseuille_and_begins_as_the_force(self):
