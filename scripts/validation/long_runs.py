@@ -163,7 +163,7 @@ def passive(angle, courant, full, quick):
     return Case("L3", f"A passive ellipse carried 22 radii, {what}", "stretched_disc", passive_options(angle, courant),
                 at(*full), at(*quick),
                 (Measure(f"{what}: change of D e^(2 i theta), of D", lost, reach(.06, .007, .001), WHY),),
-                passive_line, ("t", f"D over its start, {what}"))
+                passive_line, ("t", f"D over its start, {angle}°, {courant}"))
 
 
 def circle_options(n, _):

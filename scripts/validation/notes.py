@@ -20,6 +20,12 @@ NOTES = {
     "S9": "The reference is D(t) of the exact transient (tests/reference/ringing_disc.csv): beside the mode s = -1.441313 +- "
           "7.313910 i a disc that is let go excites the continuous spectrum of the viscous fluid, so that a fitted rate "
           "depends on its window. Our error is of first order or a little less.",
+    "R1": "Marching cubes of exact cell fractions do not converge: some tenths of a per cent of surface are left on any "
+          "grid.",
+    "S12": "48 cells are halved to 3: levels with odd numbers of cells are not symmetric, so mirrored scenes agree to the "
+           "tolerance of the sweeps instead of round-off; 64 cells give round-off. Recovery with classic: .006, .0036 of the "
+           "walls' speed are left at 64^2, 128^2, first order or less, four times what is asked for; B in the smeared "
+           "surface does not return to I.",
     "S11": "The exact solution has a wall at rest. 20 cells are 8 per radius.",
     "L1": "In L1, L2, L3 and the long S6 \"at\" is cells per radius. Both walls and period 8 R. The reference is "
           "Richardson's extrapolation from 8, 16 and 32 cells per radius by two treatments of the surface, known to .5 %; the transient of S6 with images of a "
@@ -28,10 +34,4 @@ NOTES = {
     "L3": "Exact: nothing deforms in a uniform flow. D as a vector, D e^(2 i theta): at 45 degrees D alone would count a gain.",
     "L4": "Exact (scripts/validation/exact.py): shear along layers is linear at any amplitude, whatever the grid. The surfaces "
           "cut the cells, hx != hy, in all ways.",
-    "R1": "Marching cubes of exact cell fractions do not converge: some tenths of a per cent of surface are left on any "
-          "grid.",
-    "S12": "48 cells are halved to 3: levels with odd numbers of cells are not symmetric, so mirrored scenes agree to the "
-           "tolerance of the sweeps instead of round-off; 64 cells give round-off. Recovery with classic: .006, .0036 of the "
-           "walls' speed are left at 64^2, 128^2, first order or less, four times what is asked for; B in the smeared "
-           "surface does not return to I.",
 }

@@ -78,7 +78,7 @@ def turned(what, mean, full, quick):
                 every(full, **FAST), every(quick, **FAST) if quick else (),
                 (Measure(f"{what}: rms error of u after half a period, of the largest at the start", layers_error(mean),
                          {}, "the order is judged", order={"fast": 1.6}),),
-                layers_line(mean), ("x", f"u on y = 1/2, {what}"), start=layer_start(mean))
+                layers_line(mean), ("x", f"u, {what.split()[0]}"), start=layer_start(mean))
 
 
 # S11: 8 cells per radius at n = 20
@@ -105,7 +105,7 @@ def tube(modulus):
                 every((20, 40), **FAST), every((20,), **FAST) if modulus > 1 else (),
                 (Measure(f"G = {modulus}: flow rate, of Poiseuille's", flow_rate, {"fast": lambda n: .03 * (20 / n)**2},
                          "asked for: 3 % at 8 cells per radius, second order", 1, True),),
-                tube_line, ("y - 1/2", f"u, G = {modulus}"))
+                tube_line, ("y", f"u, G = {modulus}"))
 
 
 CASES = (
