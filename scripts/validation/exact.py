@@ -20,6 +20,15 @@ def channel_startup(y, t, g, height, nu):
     return g * y * (height - y) / (2 * nu) - decay.sum(axis=0)
 
 
+def duct_startup(t, g, side, nu):
+    """u in the middle of a square duct under a force from t = 0: double Fourier series."""
+    m = numpy.arange(1, 200, 2)
+    m, n = numpy.meshgrid(m, m)
+    decay = nu * pi**2 * (m * m + n * n) / side**2
+    sign = numpy.where((m + n) % 4 == 2, 1, -1)
+    return numpy.array([(16 * g / (pi**2 * m * n * decay) * sign * -numpy.expm1(-decay * x)).sum() for x in numpy.atleast_1d(t)])
+
+
 def womersley(y, t, force, omega, height, nu):
     """u between plates under force cos(omega t), periodic state (Womersley 1955, plane)."""
     k = cmath.sqrt(1j * omega / nu)
@@ -56,6 +65,44 @@ class Layers:
     def shear_amplitude(self, y):
         """|B_xy| in the solid."""
         return abs(self.a * self.ks * numpy.cosh(self.ks * y) / (1j * self.omega))
+
+
+class TurnedLayers:
+    """Layers of solid and fluid, each of thickness `half`, in turn and without end: the slowest mode that is odd about their
+    middles, w = Re(f(eta) e^{s t}) along them, eta the distance from a solid layer's middle, and gamma = Re(f' e^{s t}/s)
+    the shear of the solid. As S1, linear at any amplitude. `strain` is |f'/s| at the surface."""
+
+    def __init__(self, half, mu, modulus, strain, guess):
+        def parts(s):
+            ms = mu + modulus / s
+            ks, kf = cmath.sqrt(s / ms), cmath.sqrt(s / mu)
+            # a sinh(ks h/2) + b sinh(kf h/2) = 0, ms a ks cosh(ks h/2) = mu b kf cosh(kf h/2)
+            return ks, kf, (ms * ks * cmath.cosh(ks * half / 2) * cmath.sinh(kf * half / 2)
+                            + mu * kf * cmath.cosh(kf * half / 2) * cmath.sinh(ks * half / 2))
+        s = guess
+        for _ in range(50):  # Newton
+            step = parts(s)[2] / ((parts(s + 1e-6)[2] - parts(s - 1e-6)[2]) / 2e-6)
+            s -= step
+        self.half, self.s, (self.ks, self.kf, self.left) = half, s, parts(s)
+        self.a = strain * s / (self.ks * cmath.cosh(self.ks * half / 2))
+        self.b = -self.a * cmath.sinh(self.ks * half / 2) / cmath.sinh(self.kf * half / 2)
+
+    def wrapped(self, eta):
+        """Distance from the nearest solid middle, and from the nearest fluid one, both with their signs."""
+        period = 2 * self.half
+        solid = eta - period * numpy.round(eta / period)
+        return solid, eta - self.half - period * numpy.round((eta - self.half) / period)
+
+    def velocity(self, eta, t):
+        solid, fluid = self.wrapped(eta)
+        f = numpy.where(numpy.abs(solid) < self.half / 2, self.a * numpy.sinh(self.ks * solid),
+                        self.b * numpy.sinh(self.kf * fluid))
+        return (f * numpy.exp(self.s * t)).real
+
+    def shear(self, eta, t):
+        """gamma; beyond the surface that of the surface."""
+        solid = numpy.clip(self.wrapped(eta)[0], -self.half / 2, self.half / 2)
+        return (self.a * self.ks * numpy.cosh(self.ks * solid) / self.s * numpy.exp(self.s * t)).real
 
 
 def resting_layers(y, force, mu, half=0.5, height=1.0):
@@ -123,6 +170,60 @@ def relaxing_disc(stretch, box, times):
         t = until
         found.append(math.exp(s))
     return found
+
+
+def images_of_disc(height, length):
+    """Velocity gradient in the middle of a channel, periodic after `length`, that walls and images add where a body of
+    unit area has the deviatoric stress tau, viscosity 1: (L_xy, L_yx) of tau_xy and L_xx = -L_yy of tau_xx. Streamfunction
+    of a force dipole in Stokes flow, for each k the free one, -|y| e^{-k|y|}/2 or i y e^{-k|y|}/2, and what the walls add."""
+    k, b = 2 * pi / length * numpy.arange(1, math.ceil(20 * length / height) + 1), height / 2
+    c, s, e = numpy.cosh(k * b), numpy.sinh(k * b), numpy.exp(-k * b)
+
+    def added(f, g):
+        """alpha, beta: alpha f + beta g takes b e^{-kb}/2 and its slope away at y = b; f, g: (value, slope) there."""
+        value, slope = b * e / 2, (1 - k * b) * e / 2
+        determinant = f[0] * g[1] - f[1] * g[0]
+        return (value * g[1] - slope * g[0]) / determinant, (slope * f[0] - value * f[1]) / determinant
+    alpha, beta = added((c, k * s), (b * s, s + b * k * c))  # cosh ky, y sinh ky
+    xy, yx = (alpha * k * k + 2 * beta * k).sum(), (alpha * k * k).sum()
+    alpha, beta = added((s, k * c), (b * c, c + b * k * s))  # sinh ky, y cosh ky
+    xx = (k * (alpha * k + beta)).sum()
+    # k = 0, and sums less integrals of the free part: sum of n is -1/12.
+    return (2 / length * xy + 1 / (length * height) - pi / (3 * length**2), 2 / length * yx,
+            2 / length * xx + pi / (6 * length**2))
+
+
+def sheared_disc(capillary, times, height=math.inf, length=math.inf):
+    """Taylor deformation and B (xx, xy, yy) at times (shear rate x t) of a disc of radius 1, viscosity and shear rate 1,
+    modulus 1/Ca, put at rest into Stokes shear: it stays an ellipse with uniform B (Eshelby), B' = L B + B L^T, L the flow's
+    and -G/(2 mu) (B - tr/2)/(1 + tr/2), its own. Walls at that height and images at that length add to L what they do to a
+    point: the square of 7.74/height^2 is neglected."""
+    xy, yx, xx = images_of_disc(height, length) if height < math.inf else (0, 0, 0)
+
+    def rate(b):
+        a, c = (b[0] - b[2]) / 2, b[1]  # deviator
+        own, area = 1 / (2 * capillary * (1 + (b[0] + b[2]) / 2)), pi / capillary
+        lxx, lxy, lyx = (area * xx - own) * a, 1 + (area * xy - own) * c, (area * yx - own) * c
+        return numpy.array([2 * (lxx * b[0] + lxy * b[1]), lxy * b[2] + lyx * b[0], 2 * (lyx * b[1] - lxx * b[2])])
+    b, t, found = numpy.array([1.0, 0.0, 1.0]), 0.0, []
+    for until in times:
+        steps = max(1, math.ceil((until - t) / min(0.02, capillary / 5)))
+        dt = (until - t) / steps
+        for _ in range(steps):  # Runge-Kutta 4
+            k1 = rate(b)
+            k2 = rate(b + dt / 2 * k1)
+            k3 = rate(b + dt / 2 * k2)
+            b = b + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(b + dt * k3))
+        t = until
+        found.append((stretch_deformation(*b), *b))
+    return numpy.array(found)
+
+
+def stretch_deformation(xx, xy, yy):
+    """Taylor deformation of the ellipse that a circle with this B is: (r - 1)/(r + 1), r^2 the ratio of its principal values."""
+    middle, radius = (xx + yy) / 2, numpy.hypot((xx - yy) / 2, xy)
+    r = numpy.sqrt((middle + radius) / (middle - radius))
+    return (r - 1) / (r + 1)
 
 
 def sheared_circle(strain):

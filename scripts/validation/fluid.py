@@ -35,6 +35,17 @@ def startup_line(run):
     return (run.probes.time, run.probes.velocity_x), (run.probes.time, want)
 
 
+def duct_error(run):
+    """Largest at any row, of the final velocity; the middle of an even number of cells is a corner of four: interpolated."""
+    want = exact.duct_startup(run.probes.time, 1, 1, 1)
+    return float(numpy.abs(run.probes.velocity_x - want).max() / exact.duct_startup(9, 1, 1, 1)[0])
+
+
+def duct_line(run):
+    t = run.probes.time
+    return (t, run.probes.velocity_x), (t, exact.duct_startup(t, 1, 1, 1))
+
+
 # F4
 def oscillation_error(solution):
     """rms over y and the last period, relative to the largest velocity."""
@@ -195,6 +206,13 @@ CASES = (
          every((32, 64), methods=("fast",), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)),
          (Measure("automatic time step: the same error", startup_error, {"fast": .00125}, "asked for: 1 % of the final velocity"),),
          startup_line, ("t", "u in the middle, automatic step")),
+    Case("F3", "Start-up of a square duct, automatic time step", "poiseuille_startup",
+         lambda n, _: {"grid_cells": f"4,{n},{n}", "grid_length": f"{4 / n},1,1", "boundary_z": "wall", "time_step": 0,
+                       "probe_points": f"{2 / n},0.5,0.5"},
+         every((16, 32), methods=("fast",), solvers=("acm",)), every((16,), methods=("fast",), solvers=("acm",)),
+         (Measure("square duct, automatic time step: largest error in the middle, of the final velocity", duct_error,
+                  {"fast": lambda n: 0.005 + 1 / n**2}, "asked for: .5 %; with small steps .96 h^2 of the grid are left"),),
+         duct_line, ("t", "u in the middle of a duct")),
     Case("F4", "Oscillating channel flow (Womersley)", "womersley", lambda n, _: {**column(n), "time_step": 0.8 / n},
          every((32, 64), methods=("fast",)) + every((32, 64), methods=("classic",), time_step=0),
          every((32, 64), methods=("fast",), solvers=("acm",)),

@@ -25,4 +25,13 @@ NOTES = {
            "tolerance of the sweeps instead of round-off; 64 cells give round-off. Recovery with classic: .006, .0036 of the "
            "walls' speed are left at 64^2, 128^2, first order or less, four times what is asked for; B in the smeared "
            "surface does not return to I.",
+    "S11": "The exact solution has a wall at rest. 20 cells are 8 per radius.",
+    "L1": "In L1, L2, L3 and the long S6 \"at\" is cells per radius. Both walls and period 8 R. The reference is "
+          "Richardson's extrapolation from 8, 16 and 32 cells per radius by two treatments of the surface, known to .5 %; the transient of S6 with images of a "
+          "point (scripts/validation/exact.py) gives .3995: it neglects (7.74/64)^2, 1.5 %. A steady D needs no reference.",
+    "L2": "Exact: Galilean invariance. Both runs are of the same grid and step by themselves.",
+    "L3": "Exact: nothing deforms in a uniform flow. D as a vector, D e^(2 i theta): at 45 degrees D alone would count a gain.",
+    "L4": "Exact (scripts/validation/exact.py): shear along layers is linear at any amplitude. Along the cells, surfaces on faces, "
+          "the fast method is of second order, which checks the reference too. At 45 degrees the surfaces "
+          "cut the cells, hx != hy, in all ways.",
 }

@@ -6,7 +6,9 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 
+import h5py
 from read_run import Run
 
 from .case import ROOT
@@ -27,12 +29,29 @@ class Runner:
     def command(self, case, setting, key, folder, more):
         options = {"method": setting.method, "pressure_solver": setting.solver, **case.options(key, folder),
                    **setting.options, **more}
+        if case.start:
+            options["initial_state"] = self.written(case.start(key))
         words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
         file = ROOT / "options" / f"{case.file}.opts"
         text = json.dumps([self.version, file.read_text(), words])
         tail = re.sub(r"\W+", "_", f"{case.name}_{setting.method}_{setting.solver}_{key}".lower())
         directory = self.work / f"{tail}_{hashlib.sha256(text.encode()).hexdigest()[:12]}"
         return [str(self.program), str(file), *words], directory
+
+    def written(self, datasets):
+        """File of these datasets, named by what they hold."""
+        digest = hashlib.sha256()
+        for name, values in sorted(datasets.items()):
+            digest.update(name.encode() + values.tobytes())
+        path = self.work / f"start_{digest.hexdigest()[:12]}.h5"
+        if not path.exists():
+            self.work.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=self.work, suffix=".tmp", delete=False) as room:
+                with h5py.File(room, "w") as file:
+                    for name, values in datasets.items():
+                        file[name] = values
+            os.replace(room.name, path)
+        return path
 
     def is_done(self, directory):
         summary = directory / "summary.json"

@@ -68,7 +68,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     if (!config.body_series) state.phases.back().label = FieldBlock();
   }
   for (Phase &phase : more) state.phases.push_back(std::move(phase));
-  if (file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
+  if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
   PetscFunctionReturn(0);
 }
 

@@ -77,6 +77,18 @@ class InitialState(WithRoom):
             self.assertAlmostEqual(distance - 1.2 * round(distance / 1.2), 0, delta=1e-6)
             self.assertTrue(0 <= again.bodies.centroid[0, 0, 0] < 1.25)
 
+    def test_without_body_series_a_solid_fraction_is_read_too(self):
+        phi = numpy.zeros(Z)
+        phi[:, 5:12, 4:20] = 1
+        state = self.file(solid_fraction=phi)
+        runs = [self.run_case(*GRID, *SOLID, *state, "-body_force", "1,0,0", "-time_end", ".05", "-body_series", series,
+                              "-cell_contact", "merge", "-snapshot_interval", ".05", "-snapshot_precision", "double")
+                for series in ("true", "false")]
+        with_series, without = (run.snapshots[-1] for run in runs)
+        for name in ("velocity_x", "solid_fraction"):
+            numpy.testing.assert_array_equal(without[name], with_series[name])
+        self.assertEqual(runs[1].summary["bodies"], [])
+
     def test_only_a_velocity_leaves_bodies_as_placed(self):
         u = numpy.broadcast_to(((numpy.arange(20) + 0.5) / 20)[:, None], Z).copy()
         run = self.run_case(*GRID, *SOLID, "-cell_shape", "sphere", "-cell_radius", ".2", *self.file(velocity_x=u),
