@@ -147,6 +147,20 @@ TEST(InterfaceTranslation, KeepsACircleACircle) {
   }
 }
 
+// Flat interfaces with the slope 1/2 (two slabs in a periodic box) are moved without an error.
+TEST(InterfaceTranslation, IsExactForFlatInterfaces) {
+  InterfaceScene scene;
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, unit_box(32, 2, Boundary::periodic)), 0);
+  scene.set_velocity(Real3{2, -1, 0});
+  const Position slabs = [](const Real3 &x) {
+    const double y = x[1] - x[0] / 2 + 0.013;
+    return (std::abs(y - std::round(2 * y) / 2) - 0.125) * 2 / std::sqrt(5.0);
+  };
+  const Errors e = carry(scene, slabs, 1, 400);
+  print("flat", 32, e);
+  EXPECT_LT(e.shape, 1e-12);
+}
+
 // 10^4 steps: the volume is kept to round-off, without a drift.
 TEST(InterfaceTranslation, KeepsTheVolumeInTenThousandSteps) {
   InterfaceScene scene;
