@@ -10,13 +10,13 @@ namespace eulastic {
 
 int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const std::vector<BodyPlace> &places) {
   constexpr std::size_t enough = 20000;
-  constexpr int tail = 1;  // cells that a surface cuts
+  constexpr int corners = 3;  // cells: those that surfaces cut, and what lies within the reach along a diagonal
   if (spec.shape != Shape::sphere && spec.shape != Shape::ellipsoid && spec.shape != Shape::biconcave) return 1;
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   const std::size_t count = std::min(places.size(), enough);
   double spacing = 0;
   for (int d = 0; d < dimension; ++d) spacing = std::max(spacing, grid.length[d] / grid.cells[d]);
-  const ConvexBody shape(spec, dimension, spacing * (contact_reach + 2 * tail) / 2);
+  const ConvexBody shape(spec, dimension, spacing * (contact_reach + corners) / 2);
   Crowd crowd(grid, 2 * shape.outer_radius(), count);
   for (std::size_t b = 0; b < count; ++b) crowd.add({&shape, places[b].centre, rotation(places[b].orientation)});
   std::vector<int> bodies;

@@ -5,9 +5,9 @@
 
 namespace eulastic {
 
-/// Colours of bodies that are near: six cells or less between their surfaces, which cut a cell each (docs/method.md,
-/// section 15), by colour_bodies(). Of more than 20000 bodies the first ones count. 1 for shapes
-/// without ends. Bodies that flow pushes together need a few more.
+/// Colours of bodies that are near, taken as seven cells or less between their surfaces (docs/method.md, section 15),
+/// by colour_bodies(). Of more than 20000 bodies the first ones count. 1 for shapes without ends. Bodies that flow
+/// pushes together need a few more.
 int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const std::vector<BodyPlace> &places);
 
 }  // namespace eulastic
