@@ -103,8 +103,14 @@ PetscErrorCode GhostExchange::end(const WantedGhosts &wanted) {
 
 PetscErrorCode GhostExchange::update(const std::vector<WantedGhosts> &wanted) {
   PetscFunctionBeginUser;
-  for (const WantedGhosts &one : wanted) PetscCall(begin(one));
-  for (const WantedGhosts &one : wanted) PetscCall(end(one));
+  constexpr int most = 12;  // fields: each of them that is under way has buffers of its own, for good
+  for (auto first = wanted.begin(), last = first; first != wanted.end();) {
+    for (int fields = 0; last != wanted.end() && (fields == 0 || fields + last->block->count() <= most); ++last) {
+      fields += last->block->count();
+      PetscCall(begin(*last));
+    }
+    for (; first != last; ++first) PetscCall(end(*first));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -28,7 +28,7 @@ public:
   /// Afterwards every ghost within `width` that is not behind a wall is right. In ghost rows those behind walls of x
   /// and further out in x may have changed; all others are not touched.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
-  /// The same of several blocks, whose messages are under way together.
+  /// The same of several blocks, whose messages are under way together, those of a dozen fields at a time.
   PetscErrorCode update(const std::vector<WantedGhosts> &wanted);
   /// Its halves: owned values must not change in between. Other blocks may be begun meanwhile.
   PetscErrorCode begin(const WantedGhosts &wanted);

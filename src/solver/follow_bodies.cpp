@@ -18,7 +18,8 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(complete_exterior(phase, phase.tensor, &phase.rows));
+  PetscCall(extend_exterior(phase, phase.tensor, &phase.rows));
+  PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
 

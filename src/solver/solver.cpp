@@ -16,6 +16,19 @@
 #include <utility>
 
 namespace eulastic {
+namespace {
+
+// Rows of a phase, and of what its fields are swapped with, which may be those of another phase: ghosts need an
+// exchange, and those behind walls values, if they did in either.
+struct MovedRows {
+  OccupiedRows swapped_in, joined;
+  void join(const OccupiedRows &rows) {
+    joined = rows;
+    if (!swapped_in.inside()) joined.join(swapped_in);
+  }
+};
+
+}  // namespace
 
 int Solver::work_fields(const Method &method, int dimension, bool bodies) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
@@ -231,46 +244,45 @@ PetscErrorCode Solver::project(double dt) {
   PetscFunctionReturn(0);
 }
 
+// All phases together, so that their ghosts come together.
 PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionBeginUser;
-  for (Phase &phase : phases) PetscCall(transport(phase, dt));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::transport(Phase &phase, double dt) {
-  PetscFunctionBeginUser;
-  const OccupiedRows next_rows = std::exchange(next_rows_, phase.rows);
-  // Ghosts need an exchange, and those behind walls values, if they did in what is swapped in: that may be of another
-  // phase.
-  OccupiedRows joined;
-  const auto rows = [&] {
-    if (next_rows.inside()) return &phase.rows;
-    joined = phase.rows;
-    joined.join(next_rows);
-    return &joined;
-  };
   const int ghosts = grid_->spec().ghosts;
-  if (spec_.interface == InterfaceScheme::plic) {
-    PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
-    PetscCall(exchange_->update(phase.fraction, ghosts, rows()));  // it has moved less than a cell
-  } else {
-    PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, next_rows, next_fraction_));  // (4)
-    phase.fraction.swap(next_fraction_);
-    PetscCall(exchange_->update(phase.fraction, ghosts, rows()));
+  std::vector<MovedRows> rows(phases.size());
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    rows[p].swapped_in = std::exchange(next_rows_, phase.rows);
+    if (spec_.interface == InterfaceScheme::plic) {
+      PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
+    } else {
+      PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, rows[p].swapped_in, next_fraction_));  // (4)
+      phase.fraction.swap(next_fraction_);
+    }
+    rows[p].join(phase.rows);  // it has moved less than a cell
   }
-  PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
-  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, rows());
-  const ActiveSegments before = std::move(phase.strained);
-  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(transport_left_cauchy_green(phase, before, dt, rows()));  // (5)
+  std::vector<WantedGhosts> fractions, tensors;
+  for (std::size_t p = 0; p < phases.size(); ++p) fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+  PetscCall(exchange_->update(fractions));
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
+    rows[p].join(phase.rows);
+    fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
+    const ActiveSegments before = std::move(phase.strained);
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+    PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
+    tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});
+  }
+  PetscCall(exchange_->update(tensors));
+  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);
   PetscFunctionReturn(0);
 }
 
 // Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
 // `before` is where the B of the phase differed from I; what lies outside it stays I untouched. Where B is
 // extended the first stage is read no further than that of now: the rest of it may be anything. Else I is read around
-// it.
+// it. Leaves the ghosts to the caller.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                    const OccupiedRows *rows) {
   PetscFunctionBeginUser;
@@ -282,38 +294,30 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(work_->take("first stage of B", phase.tensor.count(), &stage));
     FieldBlock &next = stage.fields();
     PetscCall(transport_tensor(*grid_, {rule, dt, false, first}, now_.velocity, phase, phase.tensor, next));
-    PetscCall(complete_exterior(phase, next, rows));
+    PetscCall(extend_exterior(phase, next, rows));
+    PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
     if (!identity && !phase.material.linear) {
       PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::reach, rows));
       PetscCall(surface_.apply(*grid_, {dt, spec_.fluid}, now_.velocity, phase, next));
     }
-    PetscCall(complete_exterior(phase, phase.tensor, rows));
   } else {
     PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));
-    PetscCall(complete_exterior(phase, next_tensor_, rows));
     phase.tensor.swap(next_tensor_);
     stale_ = before;
   }
+  PetscCall(extend_exterior(phase, phase.tensor, rows));
   PetscFunctionReturn(0);
 }
 
-// Ghosts of B that are read before it is extended, or at all.
-int Solver::tensor_width() const {
-  return spec_.exterior == SolidExterior::extrapolate ? ExteriorLayers::layers : Grid::stencil_width;
-}
-
-// Ghosts of B, after its extension outside the body where that is wanted.
-PetscErrorCode Solver::complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
+// B outside the body, where it is extended there. Its ghosts are stale afterwards.
+PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, tensor_width(), rows));
-  if (spec_.exterior == SolidExterior::extrapolate) {
-    PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
-    fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
-    PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
-    PetscCall(exchange_->update(tensor, Grid::stencil_width, rows));
-  }
-  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, Grid::stencil_width, rows);
+  if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
+  PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
+  PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
+  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
+  PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
   PetscFunctionReturn(0);
 }
 

@@ -76,11 +76,9 @@ private:
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
-  PetscErrorCode transport(Phase &phase, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                              const OccupiedRows *rows);
-  int tensor_width() const;
-  PetscErrorCode complete_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
+  PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
