@@ -285,7 +285,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(complete_exterior(phase, next, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
     if (!identity && !phase.material.linear) {
-      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::reach, rows));
+      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::ghosts, rows));
       PetscCall(surface_.apply(*grid_, {dt, spec_.fluid}, now_.velocity, phase, next));
     }
     PetscCall(complete_exterior(phase, phase.tensor, rows));
