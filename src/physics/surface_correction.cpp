@@ -90,10 +90,11 @@ EULASTIC_INLINE kernels::Tensor<Dim> at_point(const Staggering &at, const std::p
   return t;
 }
 
-// The mean of `fields` over the full points that are nearest, in steps from face to face; false if none is within
-// reach.
+// What full points say of `fields` further out: the mean over the nearest ones, in steps from face to face; false if
+// none is within reach. Each is extended along its steps by a line, of the smaller one of the two slopes behind it,
+// none if they differ in sign or lie beyond the ghosts.
 template <int Dim, int Fields>
-bool nearest_full(const unsigned char *mask, const double *const *fields, const std::ptrdiff_t *stride, double *mean) {
+bool extend_full(const unsigned char *mask, const double *const *fields, const std::ptrdiff_t *stride, double *mean) {
   struct Sum {
     double value[Fields] = {};
     int count = 0;
@@ -102,28 +103,43 @@ bool nearest_full(const unsigned char *mask, const double *const *fields, const 
       count += other.count;
     }
   };
-  const auto point = [&](std::ptrdiff_t o) {
+  const auto slope = [](const double *q, std::ptrdiff_t in) {
+    const double near = q[0] - q[in], far = q[in] - q[2 * in];
+    return near * far > 0 ? (std::fabs(near) < std::fabs(far) ? near : far) : 0.0;
+  };
+  // `away` steps of these strides from here.
+  const auto point = [&](const Int3 &away, const std::array<std::ptrdiff_t, 3> &step) {
     Sum one;
+    const std::ptrdiff_t o = away[0] * step[0] + away[1] * step[1] + away[2] * step[2];
     if (mask[o] != full) return one;
     one.count = 1;
     for (int f = 0; f < Fields; ++f) one.value[f] = fields[f][o];
+    for (int d = 0; d < Dim; ++d) {
+      if (away[d] == 0 || away[d] + 2 > SurfaceCorrection::ghosts) continue;
+      if (mask[o + step[d]] != full || mask[o + 2 * step[d]] != full) continue;
+      for (int f = 0; f < Fields; ++f) one.value[f] += away[d] * slope(fields[f] + o, step[d]);
+    }
     return one;
   };
   // Both sides of a direction first: a mirrored scene gives the mirrored bits.
-  const auto both = [&](std::ptrdiff_t step, std::ptrdiff_t o, const auto &inner) {
-    Sum sum = inner(o + step);
-    if (step != 0) sum.add(inner(o - step));
-    return sum;
+  const auto sides = [&](const Int3 &away) {
+    Sum all;
+    for (int z = 0; z <= (away[2] > 0); ++z) {
+      Sum plane;
+      for (int y = 0; y <= (away[1] > 0); ++y) {
+        Sum row;
+        for (int x = 0; x <= (away[0] > 0); ++x)
+          row.add(point(away, {x ? -stride[0] : stride[0], y ? -stride[1] : stride[1], z ? -stride[2] : stride[2]}));
+        plane.add(row);
+      }
+      all.add(plane);
+    }
+    return all;
   };
   for (int steps = 1; steps <= SurfaceCorrection::reach; ++steps) {
     Sum sum;
     for (int z = 0; z <= (Dim == 3 ? steps : 0); ++z)
-      for (int y = 0; y <= steps - z; ++y) {
-        const int x = steps - z - y;
-        sum.add(both(Dim == 3 ? z * stride[2] : 0, 0, [&](std::ptrdiff_t oz) {
-          return both(y * stride[1], oz, [&](std::ptrdiff_t oy) { return both(x * stride[0], oy, point); });
-        }));
-      }
+      for (int y = 0; y <= steps - z; ++y) sum.add(sides({steps - z - y, y, z}));
     if (sum.count == 0) continue;
     for (int f = 0; f < Fields; ++f) mean[f] = sum.value[f] / sum.count;
     return true;
@@ -142,7 +158,7 @@ void SurfaceCorrection::find_points(const Grid &grid, const Phase &phase, Locati
   mask.assign(layout.size, outside);
   location->points.clear();
   Grid::Range box[3];
-  for (int d = 0; d < 3; ++d) box[d] = grid.points_near(d, at[d], reach);
+  for (int d = 0; d < 3; ++d) box[d] = grid.points_near(d, at[d], ghosts);
   const int row_end = grid.points_end(0, at[0]);
   for (int k = box[2].begin; k < box[2].end; ++k)
     for (int j = box[1].begin; j < box[1].end; ++j) {
@@ -206,8 +222,8 @@ void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const
     double mean[Dim];
     const double *full_fields[Dim];
     for (int f = 0; f < count; ++f) full_fields[f] = B[first + f] + p;
-    if (fading > 0 && (centre ? nearest_full<Dim, Dim>(mask[first] + p, full_fields, stride, mean)
-                              : nearest_full<Dim, 1>(mask[first] + p, full_fields, stride, mean))) {
+    if (fading > 0 && (centre ? extend_full<Dim, Dim>(mask[first] + p, full_fields, stride, mean)
+                              : extend_full<Dim, 1>(mask[first] + p, full_fields, stride, mean))) {
       const auto rate = at_point<Dim>(
           at, stride,
           [&](int a, int b, std::ptrdiff_t o) EULASTIC_BODY {
@@ -250,8 +266,7 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
         edges.at = c.staggering();
       }
   }
-  in_parallel(team, static_cast<int>(locations_.size()),
-              [&](int l) { find_points(grid, phase, &locations_[l]); });
+  in_parallel(team, static_cast<int>(locations_.size()), [&](int l) { find_points(grid, phase, &locations_[l]); });
   in_parallel(team, team, [&](int part) {
     for (const Location &location : locations_)
       with_law(phase.material, [&](const auto &law) {

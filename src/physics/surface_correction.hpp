@@ -17,20 +17,20 @@ struct SurfaceStep {
 
 class SurfaceCorrection {
 public:
-  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve. Three
+  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve. Four
   /// ghosts of B, five of phi, two of the velocity; `work` is a block like B, of any values.
   PetscErrorCode apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
                        FieldBlock &work);
 
-  /// How far from full points a point remembers them, in steps from face to face.
-  static constexpr int reach = 3;
+  /// How far full points are heard, in steps from face to face, and the layers that are read.
+  static constexpr int reach = 3, ghosts = 4;
 
 private:
   struct Location {
     int a = 0, b = 0;  ///< of the component on these edges; the same: centres
     Staggering at{};
-    std::vector<unsigned char> mask;     ///< of every point: full, surface or outside
-    std::vector<PetscInt> points;        ///< of the surface, owned: offsets from the field's first double
+    std::vector<unsigned char> mask;  ///< of every point: full, surface or outside
+    std::vector<PetscInt> points;     ///< of the surface, owned: offsets from the field's first double
   };
   void find_points(const Grid &grid, const Phase &phase, Location *location) const;
   template <int Dim, class Law>

@@ -298,7 +298,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
     if (!identity && !phase.material.linear) {
-      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::reach, rows));
+      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::ghosts, rows));
       PetscCall(surface_.apply(*grid_, {dt, spec_.fluid}, now_.velocity, phase, next));
     }
   } else {
