@@ -16,6 +16,7 @@ struct EnergyNumbers {
   const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
   std::vector<double> evolved;  ///< least phi where B of a phase is evolved, per phase; below, it is extended
+  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (physics/viscosity.hpp), where bodies have their own
 };
 
 /// Energy per time; 2-D: per unit depth.
