@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "diagnostics/edge_stress.hpp"
-#include "diagnostics/viscous_dissipation.hpp"
 #include "field/exact_sum.hpp"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ struct FlowNumbers {
   double density = 1, viscosity = 1;            ///< rho and mu (dynamic)
   double dt = 0;                                ///< time step
   double force = 0;                             ///< |f|, per mass
-  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (physics/viscosity.hpp), where bodies have their own
+  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
 };
 
 struct FlowMeasures {

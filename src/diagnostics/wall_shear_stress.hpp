@@ -4,7 +4,7 @@
 // cells.
 #pragma once
 
-#include "diagnostics/viscous_dissipation.hpp"
+#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 

@@ -1,6 +1,7 @@
 // The viscosity where a species has another one than the fluid; docs/method.md, "Viscosity contrast".
 #pragma once
 
+#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "physics/fluid.hpp"
 
@@ -23,10 +24,6 @@ struct ViscosityContrast {
   void add(const Material &material, double stiffness);
   bool exists() const { return least < most; }
 };
-
-/// Kinematic viscosities in a block: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy).
-inline constexpr int viscosity_fields(int dimension) { return dimension == 2 ? 2 : 4; }
-inline constexpr int viscosity_of_edge(int dimension, int a, int b) { return dimension == 2 ? 1 : 4 - a - b; }
 
 /// Harmonic means, weighted by the solid fractions at centres and of four centres on edges. Centres with one layer of
 /// ghosts, edges of owned cells on both sides; one ghost of phi.

@@ -1,7 +1,9 @@
-// Layers of viscosity 1 and lambda: steady shear between walls, and the slowest mode of layers across the grid.
-#include "support/scene.hpp"
-
-#include <gtest/gtest.h>
+// Layers of viscosity 1 and lambda, along the grid and across it: steady shear, and the slowest mode.
+#include "physics/correction.hpp"
+#include "physics/divergence.hpp"
+#include "physics/viscous_stress.hpp"
+#include "pressure/smac.hpp"
+#include "support/polynomials.hpp"
 
 using namespace eulastic;
 using namespace eulastic::test;
@@ -91,20 +93,103 @@ double part_below(double edge, double s) {
   return std::min(1.0, std::max(0.0, area));
 }
 
+// Layers normal to (1, 2), periodic in this box: .25 ... .75 of every period 2 of x + 2 y are full.
+GridSpec box_across(int cells) {
+  GridSpec grid;
+  grid.cells = {cells, cells / 2, 1};
+  grid.length = {2, 1, 1};
+  return grid;
+}
+double layers_across(double x, double y, double h) {
+  double sum = 0;
+  for (int n = -1; n <= 3; ++n)
+    sum += part_below((2 * n + 1.5) / h, (x + 2 * y) / h) - part_below((2 * n + 0.5) / h, (x + 2 * y) / h);
+  return sum;
+}
+
+struct ShearErrors {
+  double largest, rms;
+};
+
+// What linear shear of rate 1 leaves unbalanced is let go until nothing moves any more: errors of u over its change
+// across both layers.
+ShearErrors shear_errors_across(double lambda, int cells) {
+  Grid grid;
+  EXPECT_EQ(grid.create(PETSC_COMM_SELF, box_across(cells)), 0);
+  GhostExchange exchange(grid);
+  std::unique_ptr<PressureSolver> solver;
+  EXPECT_EQ(SmacSolver::create(grid, exchange, &solver), 0);
+  std::vector<Phase> phases(1);
+  phases[0].empty(grid, false);
+  phases[0].material.viscosity = lambda;
+  const double h = grid.spacing()[0], root = std::sqrt(5.);
+  fill_everywhere(grid, phases[0].fraction[0], at_centre, [&](const Point &x) {
+    return layers_across(x[0] - 2 * std::floor(x[0] / 2), x[1] - std::floor(x[1]), h);
+  });
+  EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
+  FieldBlock viscosity(grid, viscosity_fields(2)), linear(grid, 2), v(grid, 2), star(grid, 2), pressure(grid, 1);
+  FieldBlock divergence(grid, 1), increment(grid, 1);
+  EXPECT_EQ(compute_viscosity(grid, {}, phases, viscosity), 0);
+  fill_everywhere(grid, linear[0], at_face[0], [=](const Point &x) { return 0.4 * (x[0] + 2 * x[1]); });
+  fill_everywhere(grid, linear[1], at_face[1], [=](const Point &x) { return -0.2 * (x[0] + 2 * x[1]); });
+  SuperTimeStepping work{FieldBlock(grid, 2), {}, FieldBlock(grid, 2), FieldBlock(grid, 2)};
+  const double dt = 0.1, viscous = 1 / (4 * std::max(lambda, 1.0) / (h * h));
+  for (int n = 0; n < 60; ++n) {
+    const ConstView p = pressure[0];
+    for (int a = 0; a < 2; ++a)
+      for_points(grid, work.rate[a], at_face[a], [&, at = 0](double &rate, double, double, double) mutable {
+        const int i = at % cells, j = at / cells;
+        rate = (p(i - (a == 0), j - (a == 1), 0) - p(i, j, 0)) / h;
+        ++at;
+      });
+    EXPECT_EQ(add_viscous_force(grid, viscosity, 1, linear, work.rate), 0);
+    EXPECT_EQ(add_viscous_force(grid, viscosity, 1, v, work.rate), 0);
+    EXPECT_EQ(super_time_step(grid, exchange, {}, viscosity, 0, dt, rkl_stages(dt, viscous), v, work, star), 0);
+    EXPECT_EQ(exchange.update(star, 1), 0);
+    EXPECT_EQ(compute_divergence(grid, 1, star, divergence), 0);
+    EXPECT_EQ(exchange.update(divergence, 1), 0);
+    EXPECT_EQ(solver->solve(dt, divergence, pressure, increment), 0);
+    EXPECT_EQ(correct_velocity(grid, 1, dt, 0, increment, divergence, star, pressure), 0);
+    EXPECT_EQ(rotate_pressure(grid, viscosity, 0.5, divergence, pressure), 0);
+    v.swap(star);
+    EXPECT_EQ(exchange.update(v, 1), 0);
+  }
+  // In the layers the rate of shear is T/mu, T = 2/(1 + 1/lambda); departures from 1 add up to 0 in their middles.
+  const double stress = 2 / (1 + 1 / lambda), length = 1 / root;
+  const auto departure = [&](double s) {
+    s -= 2 * length * std::round(s / (2 * length));
+    if (std::fabs(s) <= length / 2) return (stress - 1) * s;
+    return (stress - 1) * (s > 0 ? length - s : -length - s);
+  };
+  const auto exact = [&](double x, double y) { return 2 / root * departure((x + 2 * y) / root); };
+  const double change = 2 / root * 2 * length;
+  return {largest_error(grid, v[0], at_face[0], [&](const Point &x) { return exact(x[0], x[1]); }) / change,
+          rms_error(grid, v[0], at_face[0], [&](double x, double y, double) { return exact(x, y); }) / change};
+}
+
+TEST(ViscousLayers, SteadyShearAcrossTheGrid) {
+  for (const double lambda : {0.2, 5.0}) {
+    ShearErrors e[3];
+    for (int n = 0; n < 3; ++n) e[n] = shear_errors_across(lambda, 32 << n);
+    std::printf("  lambda %g, shear along (1,2), 32, 64, 128: largest %.3e %.3e %.3e, rms %.3e %.3e %.3e\n", lambda,
+                e[0].largest, e[1].largest, e[2].largest, e[0].rms, e[1].rms, e[2].rms);
+    EXPECT_LT(e[1].rms, 0.002);
+    EXPECT_LT(e[2].largest, 0.005);
+    EXPECT_GT(order(e[0].rms, e[2].rms) / 2, 1.4);
+  }
+}
+
 struct ModeErrors {
   double rate, profile;
 };
 
-// Layers normal to (1, 2) in a periodic box, flow along (2, -1).
+// Flow along (2, -1).
 ModeErrors mode_errors(double lambda, int cells) {
   Scene scene;
-  GridSpec grid;
-  grid.cells = {cells, cells / 2, 1};
-  grid.length = {2, 1, 1};
   SolverSpec spec;
   static_cast<Method &>(spec) = fast_smac();
   spec.fluid.inertia = false;
-  EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
+  EXPECT_EQ(scene.create(PETSC_COMM_SELF, box_across(cells), spec), 0);
   const double root = std::sqrt(5.), period = 2 / root, h = 2. / cells, amplitude = 1e-6;
   const Mode mode(lambda, period);
   const Function exact = [&](double x, double y, double) { return amplitude * mode((x + 2 * y) / root); };
@@ -112,12 +197,7 @@ ModeErrors mode_errors(double lambda, int cells) {
       [&](double x, double y, double z) { return 2 / root * exact(x, y, z); });
   set(scene.grid, scene.solver.state().velocity[1], at_face[1],
       [&](double x, double y, double z) { return -1 / root * exact(x, y, z); });
-  add_layer(scene, lambda, [&](double x, double y, double) {  // .25 ... .75 of every period 2 of x + 2 y
-    double sum = 0;
-    for (int n = -1; n <= 3; ++n)
-      sum += part_below((2 * n + 1.5) / h, (x + 2 * y) / h) - part_below((2 * n + 0.5) / h, (x + 2 * y) / h);
-    return sum;
-  });
+  add_layer(scene, lambda, [&](double x, double y, double) { return layers_across(x, y, h); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   const auto energy = [&] {
     double sum = 0;
