@@ -1,6 +1,7 @@
 #include "app/attachment_warning.hpp"
 
 #include "physics/exterior.hpp"
+#include "physics/viscosity.hpp"
 
 #include <cstdio>
 
@@ -20,7 +21,8 @@ std::vector<std::string> attachment_warnings(const Config &config) {
         text, sizeof text,
         "%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
         "viscosity %g, so that its surface is first order, as of a free body; a spacing of at most %.3g would do",
-        spec.name.c_str(), config.fluid.kinematic_viscosity(), damping_spacing(config.fluid, material));
+        spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
+        damping_spacing(config.fluid, material));
     warnings.emplace_back(text);
   }
   return warnings;

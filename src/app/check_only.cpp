@@ -110,6 +110,9 @@ public:
       const double modulus = spec.material().shear_modulus;
       if (modulus != spec.shear_modulus)
         report.line("shear modulus of " + spec.name, "%.6g (at rest: 2 (c1 + c2))", modulus);
+      if (spec.viscosity)
+        report.line("viscosity of " + spec.name, "%.6g, %.6g times the fluid's", *spec.viscosity,
+                    *spec.viscosity / config_.fluid.viscosity);
       if (modulus > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate / modulus);
@@ -119,13 +122,16 @@ public:
   void time_step(Report &report, int ranks) const {
     FlowExtremes extremes;
     extremes.speed = flow_scale().speed;
+    ViscosityContrast contrast(config_.fluid);
     for (const SpeciesSpec &spec : config_.species) {
       const Real3 &l = spec.initial_stretch;
       const double trace = l[0] * l[0] + l[1] * l[1] + l[2] * l[2];
-      extremes.stiffness = std::max(extremes.stiffness, largest_stiffness(spec.material(), trace, dimension_));
+      const double stiffness = largest_stiffness(spec.material(), trace, dimension_);
+      contrast.add(spec.material(), stiffness);
+      extremes.stiffness = std::max(extremes.stiffness, stiffness);
     }
     const TimeStepLimits limits =
-        time_step_limits(spacing_, dimension_, config_.fluid, config_.sides, extremes,
+        time_step_limits(spacing_, dimension_, config_.fluid, contrast, config_.sides, extremes,
                          {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
     report.limit("viscous", limits.viscous);
     report.limit("elastic wave", limits.elastic);

@@ -42,6 +42,9 @@ double fields(const Config &config) {
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
   if (method.interface == InterfaceScheme::weno5) sum += 1;
+  ViscosityContrast contrast(config.fluid);
+  for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
+  if (contrast.exists()) sum += viscosity_fields(dimension);
   sum += phases * phase_fields(config);
   return sum;
 }

@@ -56,7 +56,7 @@ void add_flow(Rows &rows, Config &config) {
   Fluid &fluid = config.fluid;
   rows.real("fluid_density", fluid.density, positive, "mass/volume", "density, of the bodies too");
   rows.real("fluid_viscosity", fluid.viscosity, not_negative, "mass/length/time",
-            "dynamic viscosity, of the bodies too");
+            "dynamic viscosity, of bodies too unless they have -NAME_viscosity");
   rows.boolean("fluid_inertia", fluid.inertia, "false drops v.grad v");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
             "force per mass, F cos(frequency t + phase)");

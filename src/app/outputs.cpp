@@ -109,8 +109,10 @@ PetscErrorCode Outputs::measure() {
   PetscCall(solver_->phases_now(&phases));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
   PetscCall(measure_flow(*grid_, state.velocity, *phases,
-                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2])}, &m.flow));
+                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity}, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
@@ -151,8 +153,11 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   energy->kinetic = measured_.flow.kinetic_energy;
   energy->elastic = measured_.flow.elastic_energy;
   energy->dissipation = measured_.flow.viscous_dissipation;
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.sides, state.time,      solver_->evolved_fraction()};
+                              &config_.sides, state.time,      solver_->evolved_fraction(),
+                              viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
   PetscFunctionReturn(0);
 }
@@ -228,11 +233,15 @@ PetscErrorCode Outputs::write_due(bool last) {
   }
   if (snapshot) {
     PetscCall(solver_->phases_now(&phases));
+    const FieldBlock *viscosity = nullptr;
+    PetscCall(solver_->viscosity_now(&viscosity));
     const SnapshotSelection wanted = selection(config_);
     std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
     std::vector<WallStress> walls;
     if (wants(config_.output, "wall_shear_stress"))
-      walls = wall_shear_stress(*grid_, config_.sides, state.time, config_.fluid.viscosity, state.velocity, *phases);
+      walls = wall_shear_stress(*grid_, config_.sides, state.time,
+                                {*grid_, config_.fluid.viscosity, config_.fluid.density, viscosity}, state.velocity,
+                                *phases);
     for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
     PetscCall(snapshots_->write(state.time, static_cast<long>(state.step), fields));
   }

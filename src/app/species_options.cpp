@@ -63,6 +63,19 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   for_law(3, Law::mooney_rivlin);
 }
 
+void add_viscosity(Rows &rows, SpeciesSpec &spec) {
+  Option &row = rows.add("viscosity", "mass/length/time", "dynamic viscosity of the bodies");
+  row.accepted = several(1, "number", positive);
+  row.default_note = "that of the fluid";
+  row.read = [&spec](const std::string &value) {
+    double viscosity = 0;
+    std::string wrong = read_reals(value, positive, &viscosity, 1);
+    if (wrong.empty()) spec.viscosity = viscosity;
+    return wrong;
+  };
+  row.text = [&spec] { return spec.viscosity ? to_text(*spec.viscosity) : std::string(); };
+}
+
 void add_contact(Rows &rows, SpeciesSpec &spec) {
   Option &row = rows.add("contact", "",
                          "bodies of this species that touch stay separate, each in memory of its own "
@@ -158,6 +171,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.prefix = spec.name + "_";
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
+  add_viscosity(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
             "the shape is "

@@ -105,6 +105,8 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
       return "-" + spec.name + "_interval: the slab is outside the box; accepted: a part of 0," +
              to_text(config.grid.length[spec.axis]);
   }
+  if (spec.viscosity && config.fluid.viscosity == 0)
+    return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   const bool random = spec.placement == Placement::random;

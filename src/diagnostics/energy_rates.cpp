@@ -87,7 +87,8 @@ void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &veloci
 // Speed times traction of every tangential face beside a moving wall.
 class WallPower {
 public:
-  WallPower(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases, double viscosity)
+  WallPower(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+            const EdgeViscosity &viscosity)
       : grid_(grid), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
 
   void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
@@ -115,14 +116,14 @@ private:
     double elastic = 0;
     for (const Phase &phase : phases_)
       if (phase.material.elastic()) elastic += edge_stress(grid_.dimension(), phase, c, d, edge[0], edge[1], edge[2]);
-    const double viscous = viscosity_ * (*ghost - *inside) / grid_.spacing()[d];
+    const double viscous = viscosity_.at(c, d, edge) * (*ghost - *inside) / grid_.spacing()[d];
     return (viscous + (high ? elastic : -elastic)) / grid_.spacing()[d];
   }
 
   const Grid &grid_;
   const FieldBlock &velocity_;
   const std::vector<Phase> &phases_;
-  double viscosity_;
+  EdgeViscosity viscosity_;
 };
 
 void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase, double evolved,
@@ -159,7 +160,7 @@ PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity
         for (const Segment &row : part.rows(grid)) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
     for (std::size_t p = 0; p < phases.size(); ++p)
       add_elastic(grid, part, velocity, phases[p], numbers.evolved[p], &all);
-    const WallPower walls(grid, velocity, phases, numbers.viscosity);
+    const WallPower walls(grid, velocity, phases, {grid, numbers.viscosity, numbers.density, numbers.local_viscosity});
     for (int d = 0; part.first && numbers.sides && d < grid.dimension(); ++d)
       for (const bool high : {false, true})
         if (high ? grid.touches_high(d) : grid.touches_low(d))

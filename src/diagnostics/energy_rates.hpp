@@ -4,6 +4,7 @@
 // the walls do is what viscosity and solids on them take (docs/method.md). Exact sums: the same bits on any ranks.
 #pragma once
 
+#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 
@@ -16,6 +17,7 @@ struct EnergyNumbers {
   const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
   std::vector<double> evolved;  ///< least phi where B of a phase is evolved, per phase; below, it is extended
+  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
 };
 
 /// Energy per time; 2-D: per unit depth.

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "diagnostics/energy_rates.hpp"
+#include "diagnostics/viscous_dissipation.hpp"
 #include "field/exact_sum.hpp"
 
 #include <algorithm>
@@ -116,7 +117,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
     std::vector<double> &most = found[part.number];
     RowMeasures measure(grid, velocity);
-    std::vector<double> energy(n);
+    std::vector<double> energy(n), dissipated(n);
     for (const Segment &row : part.rows(grid)) {
       for (int c = 0; c < dimension; ++c) {
         const double *q = velocity[c].row(row.j, row.k);
@@ -128,7 +129,10 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
       const double *divergence = measure.divergence(row);
       most[max_divergence] = largest(divergence, n, most[max_divergence]);
       sums.add_row(divergence_squared, measure.squared(divergence), n, first);
-      sums.add_row(gradient_squared, measure.squared_gradient(row), n, first);
+      if (numbers.local_viscosity)
+        viscous_dissipation(grid, *numbers.local_viscosity, velocity, row, dissipated.data());
+      sums.add_row(gradient_squared, numbers.local_viscosity ? dissipated.data() : measure.squared_gradient(row), n,
+                   first);
       for (std::size_t p = 0; p < phases.size(); ++p) {
         const double *phi = phases[p].fraction[0].row(row.j, row.k);
         strain_energy(grid, phases[p], row, energy.data());
@@ -156,7 +160,8 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   const double scale = speed > 0 ? smallest / speed : 0;
   m.divergence_rms = std::sqrt(sum[divergence_squared] / cells) * scale;
   m.divergence_max = maximum[max_divergence] * scale + 0 * sum[divergence_squared];
-  m.viscous_dissipation = numbers.viscosity * sum[gradient_squared] * volume;
+  m.viscous_dissipation =
+      (numbers.local_viscosity ? numbers.density : numbers.viscosity) * sum[gradient_squared] * volume;
   m.elastic_energy = 0;
   m.phase_volume.clear();
   for (std::size_t p = 0; p < phases.size(); ++p) {

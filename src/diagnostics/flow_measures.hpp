@@ -9,9 +9,10 @@
 namespace eulastic {
 
 struct FlowNumbers {
-  double density = 1, viscosity = 1;  ///< rho and mu (dynamic)
-  double dt = 0;                      ///< time step
-  double force = 0;                   ///< |f|, per mass
+  double density = 1, viscosity = 1;            ///< rho and mu (dynamic)
+  double dt = 0;                                ///< time step
+  double force = 0;                             ///< |f|, per mass
+  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
 };
 
 struct FlowMeasures {
@@ -21,7 +22,7 @@ struct FlowMeasures {
   double speed_max = 0;       ///< max |v| at cell centres
   double divergence_rms = 0;  ///< of div v h / U: h the smallest spacing, U = max(speed_max, |f| dt); 0/0 = 0
   double divergence_max = 0;
-  double viscous_dissipation = 0;    ///< integral of mu grad v : grad v, energy / time
+  double viscous_dissipation = 0;    ///< integral of mu grad v : grad v, or tau : grad v; energy / time
   double elastic_energy = 0;         ///< strain energy: sum over phases of the integral of phi W
   std::vector<double> phase_volume;  ///< integral of phi, per phase
 };

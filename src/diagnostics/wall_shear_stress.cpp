@@ -31,9 +31,14 @@ public:
         }
   }
 
-  void add_viscous(int c, double viscosity, double wall, ConstView q, WallStress *stress) const {
-    const double factor = 2 * viscosity / grid_.spacing()[d_];  // the stress that the momentum equation sees
-    add(c, stress, [=](const Int3 &cell) { return factor * (q(cell[0], cell[1], cell[2]) - wall); });
+  // The stress that the momentum equation sees.
+  void add_viscous(int c, const EdgeViscosity &viscosity, double wall, ConstView q, WallStress *stress) const {
+    add(c, stress, [&](const Int3 &cell) {
+      Int3 edge = cell;
+      edge[d_] += high_ ? 1 : 0;
+      const double factor = 2 * viscosity.at(c, d_, edge) / grid_.spacing()[d_];
+      return factor * (q(cell[0], cell[1], cell[2]) - wall);
+    });
   }
 
   void add_elastic(int c, const Phase &phase, WallStress *stress) const {
@@ -55,8 +60,9 @@ private:
 
 }  // namespace
 
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time, double viscosity,
-                                          const FieldBlock &velocity, const std::vector<Phase> &phases) {
+std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time,
+                                          const EdgeViscosity &viscosity, const FieldBlock &velocity,
+                                          const std::vector<Phase> &phases) {
   const VerbScope scope(Verb::sums);
   std::vector<WallStress> all;
   for (int d = 0; d < grid.dimension(); ++d)

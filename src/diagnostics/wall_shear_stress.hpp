@@ -4,6 +4,7 @@
 // cells.
 #pragma once
 
+#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 
@@ -20,7 +21,8 @@ struct WallStress {
 };
 
 /// All walls of the box. One ghost layer of velocity (at `time`) and B must be valid.
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time, double viscosity,
-                                          const FieldBlock &velocity, const std::vector<Phase> &phases);
+std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time,
+                                          const EdgeViscosity &viscosity, const FieldBlock &velocity,
+                                          const std::vector<Phase> &phases);
 
 }  // namespace eulastic

@@ -13,6 +13,7 @@ struct Material {
   bool linear = false;       ///< B is extended linearly: attached, and the grid sees its waves damped
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
+  double viscosity = 0;           ///< dynamic; 0: the fluid's
 
   /// false: a marked part of the fluid.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }

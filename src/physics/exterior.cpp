@@ -4,6 +4,7 @@
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
+#include "physics/viscosity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,15 +121,19 @@ double extend_fields(const Entries &entries, Piece piece, int dimension, const s
   return Fields * static_cast<double>(flops);
 }
 
+double kinematic_viscosity(const Fluid &fluid, const Material &material) {
+  return viscosity_of(material, fluid) / fluid.density;
+}
+
 }  // namespace
 
 double damping_spacing(const Fluid &fluid, const Material &material) {
-  return fluid.kinematic_viscosity() / std::sqrt(material.shear_modulus / fluid.density);
+  return kinematic_viscosity(fluid, material) / std::sqrt(material.shear_modulus / fluid.density);
 }
 
 bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material) {
   const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
-  return std::sqrt(material.shear_modulus / fluid.density) * shortest <= fluid.kinematic_viscosity();
+  return std::sqrt(material.shear_modulus / fluid.density) * shortest <= kinematic_viscosity(fluid, material);
 }
 
 PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {

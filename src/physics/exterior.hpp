@@ -23,7 +23,7 @@ inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
   return material.linear ? evolve_where_full : evolve_above_half;
 }
 
-/// Whether the fluid's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
+/// Whether the body's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
 /// attached body amplifies those that it does not.
 bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material);
 /// The largest spacing at which it does; infinite without elasticity.

@@ -20,7 +20,7 @@ struct BodyForce {
 
 struct Fluid {
   double density = 1;    ///< rho
-  double viscosity = 1;  ///< mu, dynamic; shared by fluid and solid
+  double viscosity = 1;  ///< mu, dynamic; of bodies too, unless they have their own
   bool inertia = true;   ///< false drops v.grad v
   BodyForce body_force;
   double kinematic_viscosity() const { return viscosity / density; }

@@ -3,7 +3,7 @@
 
 #include "field/phase.hpp"
 #include "field/sides.hpp"
-#include "physics/fluid.hpp"
+#include "physics/viscosity.hpp"
 
 namespace eulastic {
 
@@ -37,7 +37,7 @@ struct StepScheme {
 /// Upper bounds on dt; infinite where the term is absent.
 struct TimeStepLimits {
   StepScheme scheme;
-  double viscous;       ///< 1/(2 nu S), S = sum 1/h^2; what a plain explicit step bears
+  double viscous;       ///< 1/(2 nu S), S = sum 1/h^2, nu the largest; what a plain explicit step bears
   double elastic;       ///< 1/(c sqrt(S))
   double combined;      ///< dt^2 c^2 S + 2 nu dt S = 1
   double kelvin_voigt;  ///< 2 mu/stiffness
@@ -50,11 +50,13 @@ struct TimeStepLimits {
   const char *broken(double dt) const;
 };
 
-TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid, const BoxSides &sides,
-                                const FlowExtremes &extremes, const StepScheme &scheme);
-inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
-                                       const FlowExtremes &extremes, const StepScheme &scheme) {
-  return time_step_limits(grid.spacing(), grid.dimension(), fluid, sides, extremes, scheme);
+/// `contrast`: of the bodies that `extremes` are of.
+TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid,
+                                const ViscosityContrast &contrast, const BoxSides &sides, const FlowExtremes &extremes,
+                                const StepScheme &scheme);
+inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const ViscosityContrast &contrast,
+                                       const BoxSides &sides, const FlowExtremes &extremes, const StepScheme &scheme) {
+  return time_step_limits(grid.spacing(), grid.dimension(), fluid, contrast, sides, extremes, scheme);
 }
 
 }  // namespace eulastic

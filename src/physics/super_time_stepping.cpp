@@ -3,31 +3,13 @@
 #include "base/events.hpp"
 #include "field/sides.hpp"
 #include "grid/blocks.hpp"
-#include "kernels/super_time_stepping.hpp"
+#include "physics/rkl_coefficients.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
 namespace {
-
-// b_j of RKL2; b_0 = b_1 = b_2 = 1/3.
-double weight(int j) { return j < 2 ? 1. / 3 : (double(j) * j + j - 2) / (2. * j * (j + 1)); }
-
-// Fraction of dt that stage j has reached.
-double stage_time(int j, int stages) {
-  const double s = stages;
-  return j == 1 ? stage_time(2, stages) / 3 : (double(j) * j + j - 2) / (s * s + s - 2);
-}
-
-kernels::RklStage stage_coefficients(int j, int stages, double dt, double viscosity) {
-  const double w = 4. / (double(stages) * stages + stages - 2);
-  const double mu = (2. * j - 1) / j * weight(j) / weight(j - 1);
-  const double nu = -(j - 1.) / j * weight(j) / weight(j - 2);
-  const double mu_tilde = mu * w, gamma_tilde = -(1 - weight(j - 1)) * mu_tilde;
-  return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt,
-          mu_tilde * dt * stage_time(j - 1, stages) * dt};
-}
 
 // Whether any phase stresses an owned row.
 std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phases) {
@@ -210,11 +192,11 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   } else {
     PetscCall(exchange.update(work.rate, depth));
   }
-  const auto time_of = [&](int j) { return time + stage_time(j, stages) * dt; };
+  const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) pass.image[d][side] = box[d][side].kind == SideKind::wall ? -1 : 1;
-  pass.first = dt * (stages == 1 ? 1 : weight(1) * 4. / (double(stages) * stages + stages - 2));  // mu~_1 dt
+  pass.first = rkl_first_step(stages, dt);
   pass.half = -0.5 * dt;  // the force at the start
   int j = 2;
   do {
@@ -223,7 +205,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     pass.starts = j == 2;
     pass.ends = pass.depth == left;
     for (int s = 0; s < pass.depth; ++s) {
-      pass.stage[s] = stage_coefficients(j + s, stages, dt, kinematic_viscosity);
+      pass.stage[s] = rkl_stage_coefficients(j + s, stages, dt, kinematic_viscosity);
       for (int d = 0; d < 3; ++d)
         for (int side = 0; side < 2; ++side) {
           const WallMotion &wall = box[d][side].motion;

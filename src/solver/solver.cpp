@@ -6,6 +6,7 @@
 #include "physics/momentum.hpp"
 #include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
+#include "physics/viscous_stress.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
@@ -85,6 +86,7 @@ PetscErrorCode Solver::prepare() {
     flow_ = std::move(flow);
   }
   PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
+  if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::plic)
     interface_ = std::make_unique<InterfaceTransport>(*grid_, *work_);
@@ -143,15 +145,10 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionReturn(0);
 }
 
-TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  return time_step_limits(*grid_, spec_.fluid, spec_.sides, extremes,
-                          {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
-}
-
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
-                    pressure_solver_->bytes();
+                    viscosity_.bytes() + pressure_solver_->bytes();
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
   return sum;
@@ -185,7 +182,11 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
 
 PetscErrorCode Solver::predict(double dt) {
   PetscFunctionBeginUser;
-  const Fluid &fluid = spec_.fluid;
+  Fluid fluid = spec_.fluid;
+  if (viscosity_) {
+    PetscCall(compute_viscosity(*grid_, fluid, now_.phases, viscosity_));
+    fluid.viscosity = 0;  // the stress of the varying one is added
+  }
   MomentumStep step{now_.time, dt, speed_scale(dt), {}};
   if (spec_.staggered()) {
     step.force_time += 0.5 * dt;
@@ -193,6 +194,7 @@ PetscErrorCode Solver::predict(double dt) {
   }
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+    if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
     ++stages_;
     PetscFunctionReturn(0);
   }
@@ -204,12 +206,17 @@ PetscErrorCode Solver::predict(double dt) {
   PetscCall(work_->take("viscous stage before", dim, &before));
   PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, rate.fields(),
                           slope));
+  if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
-  PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                            now_.phases, now_.velocity, viscous, velocity_star_));
+  if (viscosity_)
+    PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, viscosity_, now_.time, dt, stages, now_.velocity,
+                              viscous, velocity_star_));
+  else
+    PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
+                              now_.phases, now_.velocity, viscous, velocity_star_));
   stages_ += stages;
   PetscFunctionReturn(0);
 }
@@ -223,7 +230,7 @@ double Solver::speed_scale(double dt) const {
 PetscErrorCode Solver::project(double dt) {
   PetscFunctionBeginUser;
   const double density = spec_.fluid.density;
-  const double rotation = spec_.staggered() ? 0.5 * spec_.fluid.kinematic_viscosity() : 0;
+  const Rotation rotate = rotation();
   const Real3 &h = grid_->spacing();
   const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
   WorkSpace::Lease of_velocity, increment;
@@ -236,10 +243,12 @@ PetscErrorCode Solver::project(double dt) {
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
-    PetscCall(correct_velocity(*grid_, density, dt, rotation, *formula, divergence, velocity_star_, now_.pressure));
-  else
     PetscCall(
-        correct_velocity(*grid_, density, dt, rotation, increment.fields(), divergence, velocity_star_, now_.pressure));
+        correct_velocity(*grid_, density, dt, rotate.uniform, *formula, divergence, velocity_star_, now_.pressure));
+  else
+    PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
+                               now_.pressure));
+  if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }

@@ -45,6 +45,9 @@ public:
   /// Measures the flow: time step limits, WENO5's velocity scale.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;
+  /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
+  /// the fluid's.
+  PetscErrorCode viscosity_now(const FieldBlock **viscosity);
   /// Sets B to I where the grid does not resolve it. A part of the method: for what measure() found, before the step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
@@ -71,6 +74,13 @@ private:
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows);
   double speed_scale(double dt) const;
+  /// Viscosities, and with the largest tr B of every phase what they mean for the time step.
+  ViscosityContrast contrast(const std::vector<double> &trace) const;
+  /// Of the rotational update of p: the factor of D*, and that of the place's viscosity times D*.
+  struct Rotation {
+    double uniform = 0, local = 0;
+  };
+  Rotation rotation() const;
   EvolveRule evolve_rule(const Phase &phase) const;
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
@@ -97,8 +107,9 @@ private:
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I
   std::unique_ptr<WorkSpace> work_;
-  FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
-  FieldBlock slope_;  ///< of the elastic force in time
+  FieldBlock flow_;       ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
+  FieldBlock slope_;      ///< of the elastic force in time
+  FieldBlock viscosity_;  ///< of the step, where bodies have their own; else empty
   ExteriorLayers layers_;
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;

@@ -48,6 +48,9 @@ class SameBits(Restart):
     def test_attached_fast_acm(self):
         self.check(ATTACHED, "-acm_coarse false -acm_sweeps_max 4".split(), before=0, after=0)
 
+    def test_flat_viscosities(self):
+        self.check(FLAT, "-cell_viscosity 1.5 -bead_viscosity .03".split(), before=2, after=3)
+
     def test_fluid_alone(self):
         case = FLAT[:FLAT.index("-species")] + FLAT[-4:]
         self.run_case("whole", *case, "-time_steps_max", 20)

@@ -44,6 +44,11 @@ TEST(CheckOnly, NumbersOfAChannel) {
   EXPECT_EQ(check_report(parse_line(two + "-cell_contact merge").config, 1).find("phases (estimate)"),
             std::string::npos);
   EXPECT_EQ(report.find("phases (estimate)"), std::string::npos);
+  // nu_max = 4, 4/3 of it in 3-D, S = 12; 2 4 mu (1 - 1/4)/G in the surface of what is four times as viscous.
+  const std::string viscous = check_report(parse_line(two + "-cell_viscosity 4 -fluid_viscosity 1").config, 1);
+  for (const char *line :
+       {"viscosity of cell: 4, 4 times the fluid's\n", "dt limit, viscous: 0.0078125\n", "dt limit, Kelvin-Voigt: 6\n"})
+    EXPECT_NE(viscous.find(line), std::string::npos) << line << viscous;
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
   EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");

@@ -73,4 +73,7 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
                merged = parse_line(line + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(apart, {1, 1, 1}),
                    bytes_per_rank(merged, {1, 1, 1}) + bytes_per_phase(apart, {1, 1, 1}));
+  // Viscosities of the place: at centres and on edges.
+  const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;
+  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(apart, {1, 1, 1}) + 8 * 4 * std::pow(42, 3));
 }

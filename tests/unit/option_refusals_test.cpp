@@ -227,7 +227,11 @@ TEST(OptionRefusals, InconsistentScenes) {
                   periodic + material);
   expect_refusals(
       {{"-species a -a_shape sphere -a_radius .1", {"-a_shear_modulus", "must be given"}},
-       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus -1", {"-a_shear_modulus", "out of range"}}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus -1", {"-a_shear_modulus", "out of range"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 0", {"-a_viscosity", "> 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity -2", {"-a_viscosity", "> 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 2 -fluid_viscosity 0",
+        {"-a_viscosity", "-fluid_viscosity > 0"}}},
       periodic);
   expect_refusals({{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
                    {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},

@@ -1,0 +1,62 @@
+#include "diagnostics/viscous_dissipation.hpp"
+
+namespace eulastic {
+namespace {
+
+double square(double x) { return x * x; }
+
+// nu (d_b v_a + d_a v_b)^2 on the low edge normal to a and b of the cell that everything points to.
+double on_edge(const FieldBlock &viscosity, const FieldBlock &velocity, const Real3 &h, int slot, int a, int b,
+               const Int3 &edge) {
+  const ConstView u = velocity[a], v = velocity[b];
+  const double *p = &u(edge[0], edge[1], edge[2]), *q = &v(edge[0], edge[1], edge[2]);
+  const double rate = (*p - p[-u.stride(b)]) / h[b] + (*q - q[-v.stride(a)]) / h[a];
+  return viscosity[slot](edge[0], edge[1], edge[2]) * square(rate);
+}
+
+// Of the deviator times twice D.
+double at_centre_of(const ConstView &viscosity, const FieldBlock &velocity, const Real3 &h, int dimension,
+                    const Int3 &cell) {
+  double rate[3] = {}, sum = 0;
+  for (int a = 0; a < dimension; ++a) {
+    const ConstView u = velocity[a];
+    const double *p = &u(cell[0], cell[1], cell[2]);
+    rate[a] = (p[u.stride(a)] - *p) / h[a];
+  }
+  for (int a = 0; a < dimension; ++a)
+    for (int b = a + 1; b < dimension; ++b) sum += square(rate[a] - rate[b]);
+  return (dimension == 2 ? 1 : 2. / 3) * viscosity(cell[0], cell[1], cell[2]) * sum;
+}
+
+}  // namespace
+
+void viscous_dissipation(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Segment &row,
+                         double *out) {
+  const int dim = grid.dimension();
+  const Real3 &h = grid.spacing();
+  // Share of the edges with that index along d: on a side half, beyond the owned cells none but there.
+  const auto share = [&](int d, int index) {
+    if (index == 0) return grid.touches_low(d) ? 0.5 : 1.0;
+    if (index == grid.owned()[d]) return grid.touches_high(d) ? 0.5 : 0.0;
+    return 1.0;
+  };
+  for (int i = 0; i < grid.owned()[0]; ++i) {
+    const Int3 cell{i, row.j, row.k};
+    double sum = at_centre_of(viscosity[0], velocity, h, dim, cell);
+    for (int a = 0; a < dim; ++a)
+      for (int b = a + 1; b < dim; ++b)
+        for (int upper_a = 0; upper_a < 2; ++upper_a)
+          for (int upper_b = 0; upper_b < 2; ++upper_b) {
+            if ((upper_a && cell[a] + 1 < grid.owned()[a]) || (upper_b && cell[b] + 1 < grid.owned()[b])) continue;
+            Int3 edge = cell;
+            edge[a] += upper_a;
+            edge[b] += upper_b;
+            const double along_a = share(a, edge[a]), along_b = share(b, edge[b]);
+            if (along_a == 0 || along_b == 0 || (along_a < 1 && along_b < 1)) continue;
+            sum += along_a * along_b * on_edge(viscosity, velocity, h, viscosity_of_edge(dim, a, b), a, b, edge);
+          }
+    out[i] = sum;
+  }
+}
+
+}  // namespace eulastic

@@ -1,0 +1,26 @@
+// Where a field of viscosity has its values, and the viscosity that edges see.
+#pragma once
+
+#include "field/field_block.hpp"
+
+namespace eulastic {
+
+/// Kinematic viscosities in a block: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy).
+inline constexpr int viscosity_fields(int dimension) { return dimension == 2 ? 2 : 4; }
+inline constexpr int viscosity_of_edge(int dimension, int a, int b) { return dimension == 2 ? 1 : 4 - a - b; }
+
+/// Dynamic viscosity on edges: one for all, or where bodies have their own that of the place.
+struct EdgeViscosity {
+  const Grid &grid;
+  double uniform;  ///< dynamic
+  double density;
+  const FieldBlock *local;  ///< kinematic, of compute_viscosity(); null: uniform
+
+  /// On the low edge of a cell normal to the directions a and b.
+  double at(int a, int b, const Int3 &cell) const {
+    if (!local) return uniform;
+    return density * (*local)[viscosity_of_edge(grid.dimension(), a, b)](cell[0], cell[1], cell[2]);
+  }
+};
+
+}  // namespace eulastic

@@ -1,0 +1,31 @@
+// The numbers of RKL2 (docs/method.md, section 5).
+#pragma once
+
+#include "kernels/super_time_stepping.hpp"
+
+namespace eulastic {
+
+/// b_j of RKL2; b_0 = b_1 = b_2 = 1/3.
+inline double rkl_weight(int j) { return j < 2 ? 1. / 3 : (double(j) * j + j - 2) / (2. * j * (j + 1)); }
+
+/// Fraction of dt that stage j has reached.
+inline double rkl_stage_time(int j, int stages) {
+  const double s = stages;
+  return j == 1 ? rkl_stage_time(2, stages) / 3 : (double(j) * j + j - 2) / (s * s + s - 2);
+}
+
+/// mu~_1 dt, with which the first stage takes M_0.
+inline double rkl_first_step(int stages, double dt) {
+  return dt * (stages == 1 ? 1 : rkl_weight(1) * 4. / (double(stages) * stages + stages - 2));
+}
+
+inline kernels::RklStage rkl_stage_coefficients(int j, int stages, double dt, double viscosity) {
+  const double w = 4. / (double(stages) * stages + stages - 2);
+  const double mu = (2. * j - 1) / j * rkl_weight(j) / rkl_weight(j - 1);
+  const double nu = -(j - 1.) / j * rkl_weight(j) / rkl_weight(j - 2);
+  const double mu_tilde = mu * w, gamma_tilde = -(1 - rkl_weight(j - 1)) * mu_tilde;
+  return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt,
+          mu_tilde * dt * rkl_stage_time(j - 1, stages) * dt};
+}
+
+}  // namespace eulastic

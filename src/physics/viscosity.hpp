@@ -1,0 +1,33 @@
+// The viscosity where a species has another one than the fluid; docs/method.md, "Viscosity contrast".
+#pragma once
+
+#include "field/local_viscosity.hpp"
+#include "field/phase.hpp"
+#include "physics/fluid.hpp"
+
+#include <limits>
+
+namespace eulastic {
+
+/// Dynamic viscosity of a body.
+inline double viscosity_of(const Material &material, const Fluid &fluid) {
+  return material.viscosity > 0 ? material.viscosity : fluid.viscosity;
+}
+
+/// How far the viscosities of fluid and bodies lie apart, and what follows for the time step.
+struct ViscosityContrast {
+  double fluid, least, most;                                      ///< dynamic viscosities
+  double kelvin_voigt = std::numeric_limits<double>::infinity();  ///< least 2 mu/(rho c^2) of any cell with solid
+
+  explicit ViscosityContrast(const Fluid &f) : fluid(f.viscosity), least(f.viscosity), most(f.viscosity) {}
+  /// A body, with the largest rho c^2 in it.
+  void add(const Material &material, double stiffness);
+  bool exists() const { return least < most; }
+};
+
+/// Harmonic means, weighted by the solid fractions at centres and of four centres on edges. Centres with one layer of
+/// ghosts, edges of owned cells on both sides; one ghost of phi.
+PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const std::vector<Phase> &phases,
+                                 FieldBlock &viscosity);
+
+}  // namespace eulastic

@@ -1,0 +1,198 @@
+#include "physics/viscous_stress.hpp"
+
+#include "base/events.hpp"
+#include "grid/threads.hpp"
+#include "kernels/deviatoric_stress.hpp"
+#include "physics/rkl_coefficients.hpp"
+#include "physics/viscosity.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+template <int Dim>
+EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Grid &grid, const FieldBlock &viscosity,
+                                                             const FieldBlock &v, int a, int j, int k) {
+  const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
+  const auto row = [=](const FieldBlock &block, int f) { return block[f].row(j, k); };
+  const ConstView q = v[0];
+  const Real3 &h = grid.spacing();
+  return {row(v, a),
+          row(v, b),
+          row(v, c),
+          row(viscosity, 0),
+          row(viscosity, viscosity_of_edge(Dim, a, b)),
+          row(viscosity, viscosity_of_edge(Dim, a, c)),
+          q.stride(a),
+          q.stride(b),
+          q.stride(c),
+          1 / h[a],
+          1 / h[b],
+          1 / h[c]};
+}
+
+template <int Dim>
+EULASTIC_INLINE void add_force(const Grid &grid, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
+                               FieldBlock &out, int a, int j, int k) {
+  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, viscosity, velocity, a, j, k);
+  double *sum = out[a].row(j, k);
+#pragma omp simd
+  for (int i = 0; i < grid.owned()[0]; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
+  if (grid.wraps_x()) grid.wrap_row(sum, 1);
+}
+
+EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity, double scale,
+                                  const FieldBlock &velocity, FieldBlock &out, int a, int j, int k) {
+  add_force<2>(grid, viscosity, scale, velocity, out, a, j, k);
+}
+EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity, double scale,
+                                  const FieldBlock &velocity, FieldBlock &out, int a, int j, int k) {
+  add_force<3>(grid, viscosity, scale, velocity, out, a, j, k);
+}
+
+struct StageTerms {
+  const FieldBlock *viscosity, *rate, *slope;  // the latter: null without
+  const FieldBlock *now;                       // W_j-1
+  FieldBlock *before;                          // W_j-2, which gets W_j
+  kernels::RklStage c;
+  bool second;  // W_0 = 0
+};
+
+template <int Dim>
+EULASTIC_INLINE void stage_row(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, *s.viscosity, *s.now, a, j, k);
+  const double *w = (*s.now)[a].row(j, k), *m = (*s.rate)[a].row(j, k);
+  const double *m1 = s.slope ? (*s.slope)[a].row(j, k) : m;
+  const double along_slope = s.slope ? s.c.slope : 0;
+  const kernels::RklStage c = s.c;
+  double *out = (*s.before)[a].row(j, k);
+  const int n = grid.owned()[0];
+  if (s.second) std::fill_n(out, n, 0.0);
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    double sum = c.nu * out[i];
+    sum = kernels::fma(c.mu, w[i], sum);
+    sum = kernels::fma(c.rate, m[i], sum);
+    sum = kernels::fma(along_slope, m1[i], sum);
+    out[i] = kernels::fma(c.viscous, stress.force(i), sum);
+  }
+}
+
+EULASTIC_CLONES void stage_row_2d(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+  stage_row<2>(grid, s, a, j, k);
+}
+EULASTIC_CLONES void stage_row_3d(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+  stage_row<3>(grid, s, a, j, k);
+}
+
+// M_0 with the force of the start, and W_1.
+EULASTIC_CLONES void first_row(int n, double half, const double *slope, double first, double *m, double *w) {
+  if (slope) {
+#pragma omp simd
+    for (int i = 0; i < n; ++i) m[i] = kernels::fma(half, slope[i], m[i]);
+  }
+#pragma omp simd
+  for (int i = 0; i < n; ++i) w[i] = first * m[i];
+}
+
+EULASTIC_CLONES void end_row(const Grid &grid, const double *increment, const double *v, double *out) {
+#pragma omp simd
+  for (int i = 0; i < grid.owned()[0]; ++i) out[i] = increment[i] + v[i];
+  if (grid.wraps_x()) grid.wrap_row(out, 1);
+}
+
+// row(component, j, k) for all owned rows.
+template <class Row>
+void for_velocity_rows(const Grid &grid, const Row &row) {
+  in_row_parts(grid, [&](const RowPart &part) {
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j)
+        for (int a = 0; a < grid.dimension(); ++a) row(a, j, k);
+  });
+}
+
+// Walls move by that from one time to another.
+BoxSides sides_of_increment(const BoxSides &box, double from, double to) {
+  BoxSides sides = box;
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Real3 u = box[d][side].motion.at(from), v = box[d][side].motion.at(to);
+      sides[d][side].motion = {{v[0] - u[0], v[1] - u[1], v[2] - u[2]}, 0, 0};
+    }
+  return sides;
+}
+
+void close_walls(const Grid &grid, FieldBlock &velocity) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    if (grid.is_wall(d)) close_wall_faces(grid, velocity[d], d);
+}
+
+double force_flops(const Grid &grid) {
+  return grid.dimension() == 2 ? kernels::viscous_force_flops_2d : kernels::viscous_force_flops_3d;
+}
+
+EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, const double *D, double *p) {
+#pragma omp simd
+  for (int i = -1; i < n + 1; ++i) p[i] = kernels::fma(-factor * viscosity[i], D[i], p[i]);
+}
+
+}  // namespace
+
+PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, double scale,
+                                 const FieldBlock &velocity, FieldBlock &out) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::viscous);
+  for_velocity_rows(grid, [&](int a, int j, int k) {
+    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity, scale, velocity, out, a, j, k);
+  });
+  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+                               const FieldBlock &viscosity, double time, double dt, int stages,
+                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::viscous);
+  const int n = grid.owned()[0];
+  const double first = rkl_first_step(stages, dt);
+  const FieldBlock *slope = work.slope ? &work.slope : nullptr;
+  for_velocity_rows(grid, [&](int a, int j, int k) {
+    first_row(n, -0.5 * dt, slope ? (*slope)[a].row(j, k) : nullptr, first, work.rate[a].row(j, k),
+              work.now[a].row(j, k));
+  });
+  for (int j = 2; j <= stages; ++j) {
+    PetscCall(exchange.update(work.now, 1));
+    const double reached = time + rkl_stage_time(j - 1, stages) * dt;
+    fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 1);
+    const StageTerms stage{
+        &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
+    for_velocity_rows(grid, [&](int a, int row, int k) {
+      (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row, k);
+    });
+    work.now.swap(work.before);
+  }
+  close_walls(grid, work.now);
+  for_velocity_rows(grid, [&](int a, int j, int k) {
+    end_row(grid, work.now[a].row(j, k), velocity[a].row(j, k), velocity_star[a].row(j, k));
+  });
+  scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,
+                               const FieldBlock &divergence, FieldBlock &pressure) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::correction);
+  in_row_parts(grid, [&](const RowPart &owned) {
+    const RowPart part = owned.with_ghosts(grid);
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j)
+        rotate_row(grid.owned()[0], factor, viscosity[0].row(j, k), divergence[0].row(j, k), pressure[0].row(j, k));
+  });
+  scope.flops(grid.owned_count() * 3);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,24 @@
+// What the deviatoric stress of varying viscosity does: its force, super time stepping with it, and the pressure
+// update.
+#pragma once
+
+#include "physics/super_time_stepping.hpp"
+
+namespace eulastic {
+
+/// out += scale div(tau(v))/rho at owned faces; one ghost of v, corners included. `viscosity`: compute_viscosity().
+/// Rows are wrapped by one around a periodic x.
+PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, double scale,
+                                 const FieldBlock &velocity, FieldBlock &out);
+
+/// super_time_step() with this stress for the Laplacian: its components see each other, so that ghosts are exchanged
+/// before every stage.
+PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+                               const FieldBlock &viscosity, double time, double dt, int stages,
+                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star);
+
+/// p -= factor nu D*, in one ghost layer too: the rotational update where nu is that of the place.
+PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,
+                               const FieldBlock &divergence, FieldBlock &pressure);
+
+}  // namespace eulastic

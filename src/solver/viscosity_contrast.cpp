@@ -1,0 +1,44 @@
+// Solver: what depends on how far the viscosities of fluid and bodies lie apart.
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
+  ViscosityContrast contrast(spec_.fluid);
+  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
+    const Material &material = now_.phases[p].material;
+    contrast.add(material, trace.empty() ? 0 : largest_stiffness(material, trace[p], grid_->dimension()));
+  }
+  return contrast;
+}
+
+TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
+  return time_step_limits(*grid_, spec_.fluid, contrast(extremes.trace), spec_.sides, extremes,
+                          {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
+}
+
+PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
+  PetscFunctionBeginUser;
+  *viscosity = nullptr;
+  if (!viscosity_) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(phases_now(&phases));
+  PetscCall(compute_viscosity(*grid_, spec_.fluid, *phases, viscosity_));
+  *viscosity = &viscosity_;
+  PetscFunctionReturn(0);
+}
+
+// Half of what the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3
+// of it. With the viscosity of the place the pressure grows without bound where viscosities differ by 20 and more, with
+// the largest already at .01 and 20; with the least it only keeps a part of its layer at walls.
+Solver::Rotation Solver::rotation() const {
+  if (!spec_.staggered()) return {};
+  if (!viscosity_) return {0.5 * spec_.fluid.kinematic_viscosity(), 0};
+  constexpr double moderate = 5;
+  const ViscosityContrast range = contrast({});
+  const double share = grid_->dimension() == 3 ? 2. / 3 : 0.5;
+  if (range.most <= moderate * range.fluid && range.fluid <= moderate * range.least) return {0, share};
+  return {share * range.least / spec_.fluid.density, 0};
+}
+
+}  // namespace eulastic

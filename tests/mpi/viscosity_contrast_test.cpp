@@ -1,0 +1,202 @@
+// Bodies with a viscosity of their own: the energy balance of the viscous force to round-off, and whole steps with the
+// same bits on any number of ranks; without contrast those of a scene that has never heard of it.
+#include "diagnostics/energy_rates.hpp"
+#include "diagnostics/flow_measures.hpp"
+#include "diagnostics/wall_shear_stress.hpp"
+#include "physics/viscous_stress.hpp"
+#include "support/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+Function wild(double a) {
+  return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z + a * x * y); };
+}
+
+// Random flow between sides of several kinds, and a phase of another viscosity everywhere.
+struct Box {
+  Grid grid;
+  BoxSides sides{};
+  Fluid fluid;
+  std::vector<Phase> phases{1};
+  FieldBlock velocity, viscosity;
+
+  Box(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
+    GridSpec spec;
+    spec.cells = {7, 13, flat ? 1 : 9};
+    spec.length = {1, 2, 1.5};
+    for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = bounded[d] ? Boundary::wall : Boundary::periodic;
+    EXPECT_EQ(grid.create(comm, spec), 0);
+    const int dim = grid.dimension();
+    sides[0][0].motion.velocity = {0, 0.7, flat ? 0 : -0.3};
+    sides[1][0].kind = SideKind::symmetry;
+    sides[1][1].motion.velocity = {-0.4, 0, flat ? 0 : 0.5};
+    sides[2][1].motion.velocity = {0.2, 0.6, 0};
+    fluid.density = 1.3;
+    fluid.viscosity = 0.2;
+    phases[0].material.viscosity = contrast * fluid.viscosity;
+    velocity = FieldBlock(grid, dim);
+    viscosity = FieldBlock(grid, viscosity_fields(dim));
+    for (int c = 0; c < dim; ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
+    GhostExchange exchange(grid);
+    EXPECT_EQ(exchange.update(velocity, 2), 0);
+    fill_wall_ghosts_velocity(grid, sides, 0, velocity, 2);
+    Phase &phase = phases[0];
+    phase.fraction = FieldBlock(grid, 1);
+    phase.tensor = tensor_at_rest(grid);
+    set(grid, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
+    EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
+    EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
+    fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
+    EXPECT_EQ(compute_viscosity(grid, fluid, phases, viscosity), 0);
+  }
+
+  // Sum of v . div tau over all faces but those on sides, where v = 0.
+  double power_of_force() {
+    FieldBlock force(grid, grid.dimension());
+    EXPECT_EQ(add_viscous_force(grid, viscosity, fluid.density, velocity, force), 0);
+    double power = 0;
+    for (int c = 0; c < grid.dimension(); ++c)
+      for (const Segment &row : grid.rows())
+        for (int i = 0; i < row.i_end; ++i)
+          power += velocity[c](i, row.j, row.k) * force[c](i, row.j, row.k) * grid.cell_volume();
+    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, grid.comm());
+    return power;
+  }
+  FlowMeasures flow() const {
+    FlowMeasures measures;
+    EXPECT_EQ(measure_flow(grid, velocity, phases, {fluid.density, fluid.viscosity, 0, 0, &viscosity}, &measures), 0);
+    return measures;
+  }
+  EnergyRates rates() const {
+    EnergyRates rates;
+    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, {0.5}, &viscosity};
+    EXPECT_EQ(measure_energy_rates(grid, velocity, phases, numbers, &rates), 0);
+    return rates;
+  }
+  std::vector<WallStress> stresses() const {
+    return wall_shear_stress(grid, sides, 0, {grid, fluid.viscosity, fluid.density, &viscosity}, velocity, phases);
+  }
+};
+
+TEST(ViscosityContrast, PowerOfTheForceIsThatOfTheWallsLessTheDissipation) {
+  for (const bool flat : {false, true})
+    for (const double contrast : {0.01, 5.0, 100.0})
+      for (const std::array<bool, 3> &bounded :
+           {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}, {false, false, false}}) {
+        Box box(PETSC_COMM_WORLD, flat, bounded, contrast);
+        const double dissipation = box.flow().viscous_dissipation;
+        const double walls = box.rates().wall_power;
+        EXPECT_GT(dissipation, 0.1);
+        EXPECT_EQ(std::fabs(walls) > 1e-3, bounded[0] || bounded[1]);
+        EXPECT_NEAR(box.power_of_force(), walls - dissipation, 1e-12 * dissipation) << contrast << flat << bounded[0];
+      }
+}
+
+TEST(ViscosityContrast, MeasuresHaveTheBitsOfOneRank) {
+  for (const bool flat : {false, true}) {
+    double values[2][3];
+    for (int alone = 0; alone < 2; ++alone) {
+      const Box box(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, flat, {true, true, false}, 5);
+      double largest = 0;
+      for (const WallStress &wall : box.stresses())
+        for (const std::vector<double> &values_of_wall : wall.components)
+          for (const double value : values_of_wall) largest = std::max(largest, std::fabs(value));
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, box.grid.comm());
+      values[alone][0] = box.flow().viscous_dissipation;
+      values[alone][1] = box.rates().wall_power;
+      values[alone][2] = largest;
+    }
+    EXPECT_EQ(std::memcmp(values[0], values[1], sizeof values[0]), 0);
+  }
+}
+
+struct Case {
+  const char *name;
+  MethodKind method;
+  PressureKind pressure;
+  Int3 cells;
+  double viscosity;  // of the body for .3 of the fluid; 0: none of its own
+  bool split_x = false;
+};
+
+void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
+
+// A body in shear beside a plane of symmetry, another one of the fluid's viscosity.
+std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps) {
+  int size = 0;
+  MPI_Comm_size(comm, &size);
+  Scene scene;
+  GridSpec grid;
+  grid.cells = c.cells;
+  for (int d = 0; d < 3; ++d) grid.length[d] = 0.5 * c.cells[d];
+  grid.boundary[1] = grid.boundary[2] = Boundary::wall;
+  if (c.cells[2] == 1) grid.boundary[2] = Boundary::periodic;
+  if (c.split_x) grid.processors = {size, 1, 1};
+  SolverSpec spec;
+  static_cast<Method &>(spec) = method_preset(c.method);
+  spec.pressure = c.pressure;
+  spec.fluid.density = 1.3;
+  spec.fluid.viscosity = 0.3;
+  spec.sides[1][1].motion = {{0.4, 0, 0}, 0.3, 0.2};
+  spec.sides[2][0].kind = SideKind::symmetry;
+  EXPECT_EQ(scene.create(comm, grid, spec), 0);
+  const double height = grid.length[1];
+  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+      [&](double, double y, double) { return 0.4 * y / height; });
+  const auto ball = [&](Real3 centre, double radius) {
+    if (c.cells[2] == 1) centre[2] = 0.25;
+    return [=](double x, double y, double z) {
+      const double dx = x - centre[0], dy = y - centre[1], dz = z - centre[2];
+      return std::min(1.0, std::max(0.0, 0.5 + (radius - std::sqrt(dx * dx + dy * dy + dz * dz)) / 0.5));
+    };
+  };
+  scene.add_phase(0.5, ball({3.1, 0.42 * height, 2}, 1.6)).material.viscosity = c.viscosity;
+  scene.add_phase(0.3, ball({6.2, 0.5 * height, 3}, 1.1));
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  for (int n = 0; n < steps; ++n) {
+    FlowExtremes extremes;
+    EXPECT_EQ(scene.solver.measure(&extremes), 0);
+    EXPECT_EQ(extremes.first_bad, -1);
+    EXPECT_EQ(scene.solver.step(0.5 * scene.solver.limits(extremes).automatic()), 0);
+  }
+  std::uint64_t hash = 0;
+  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &hash), 0);
+  return hash;
+}
+
+class Contrast : public testing::TestWithParam<Case> {};
+
+TEST_P(Contrast, SameBitsAsOnOneRank) {
+  EXPECT_EQ(hash_after(PETSC_COMM_WORLD, GetParam(), 8), hash_after(PETSC_COMM_SELF, GetParam(), 8));
+}
+
+constexpr PressureKind acm = PressureKind::acm, smac = PressureKind::smac;
+constexpr MethodKind fast = MethodKind::fast, classic = MethodKind::classic;
+INSTANTIATE_TEST_SUITE_P(Scenes, Contrast,
+                         testing::Values(Case{"fast_acm", fast, acm, {18, 16, 14}, 1.5},
+                                         Case{"fast_smac", fast, smac, {18, 16, 14}, 0.006},
+                                         Case{"classic_smac", classic, smac, {18, 16, 14}, 1.5},
+                                         Case{"flat_acm", fast, acm, {23, 19, 1}, 3},
+                                         Case{"flat_classic", classic, acm, {23, 19, 1}, 0.03},
+                                         Case{"split_x", fast, smac, {1030, 9, 1}, 1.5, true}),
+                         [](const auto &test) { return test.param.name; });
+
+TEST(ViscosityContrast, OfOneIsNone) {
+  for (const MethodKind method : {fast, classic})
+    for (const Int3 &cells : {Int3{18, 16, 14}, Int3{23, 19, 1}}) {
+      const Case none{"", method, smac, cells, 0}, same{"", method, smac, cells, 0.3},
+          more{"", method, smac, cells, 0.6};
+      const std::uint64_t reference = hash_after(PETSC_COMM_WORLD, none, 3);
+      EXPECT_EQ(hash_after(PETSC_COMM_WORLD, same, 3), reference);
+      EXPECT_NE(hash_after(PETSC_COMM_WORLD, more, 3), reference);
+    }
+}
+
+}  // namespace
