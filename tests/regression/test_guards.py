@@ -85,16 +85,16 @@ class Guards(Restart):
                     self.assertTrue(numpy.isfinite(file["velocity_x"][()]).all())
 
     def test_no_colour_is_left(self):
-        """Two layers of 36 beads, four cells apart: 36 colours do, until tails of the interface make them 72."""
-        places = [f"{x}.5,{y}.5,{z}.5" for x in (0, 4) for y in range(6) for z in range(6)]
+        """Two layers of 36 beads, five cells apart: 36 colours do, until those ahead reach cells less far from the others."""
+        places = [f"{x}.5,{y}.5,{z}.5" for x in (0, 5) for y in range(6) for z in range(6)]
         pathlib.Path(self.room, "beads.csv").write_text("\n".join(["x,y,z", *places, ""]))
         case = ("-grid_cells 12,6,6 -grid_length 12,6,6 -initial_velocity uniform -initial_velocity_mean 1,0,0 "
-                "-species bead -bead_shape sphere -bead_radius .3 -bead_shear_modulus 1 -bead_placement list "
+                "-species bead -bead_shape sphere -bead_radius .495 -bead_shear_modulus 1 -bead_placement list "
                 "-bead_positions beads.csv -time_end 2 -time_step .1 -checkpoint_interval .1").split()
         for ranks in (0, 2):
             result = self.call(*case, "-output_dir", "run", "-output_overwrite", ranks=ranks)
             self.assertEqual(result.returncode, 3, result.stderr)
-            self.assertIn("eulastic: error: step 3, t = 0.3: -bead_contact: more than 64 bodies within 3 cells of each "
+            self.assertIn("eulastic: error: step 3, t = 0.3: -bead_contact: more than 64 bodies within 4 cells of each "
                           "other; accepted: ", result.stderr)
             summary = self.summary("run")
             self.assertEqual((summary["exit_reason"], summary["steps"], summary["phases"]), ("guard", 3, 36))
