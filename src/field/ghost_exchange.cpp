@@ -33,7 +33,7 @@ bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->
 
 }  // namespace
 
-PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
+PetscErrorCode GhostExchange::make_forest(int width, PetscSF *sf) {
   PetscFunctionBeginUser;
   const Layout &own = grid_->layout();
   const std::ptrdiff_t unit = by_rows() ? own.sy : 1;
@@ -42,23 +42,22 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
   if (by_rows()) points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  for (int f = 0; f < fields; ++f)
-    for (const Point &z : points[2])
-      for (const Point &y : points[1])
-        for (const Point &x : points[0]) {
-          const auto place_in = [&](const Layout &layout, int i, int j, int k) {
-            return static_cast<PetscInt>((f * layout.size + layout.offset(i, j, k) - first_offset(layout)) / unit);
-          };
-          const int rank = grid_->rank_at({x.place, y.place, z.place});
-          const PetscInt leaf = place_in(own, x.here, y.here, z.here),
-                         root = place_in(grid_->layout_of(rank), x.there, y.there, z.there);
-          if (rank == grid_->rank() && root == leaf) continue;  // owned
-          leaves.push_back(leaf);
-          roots.push_back({rank, root});
-        }
+  for (const Point &z : points[2])
+    for (const Point &y : points[1])
+      for (const Point &x : points[0]) {
+        const auto place_in = [&](const Layout &layout, int i, int j, int k) {
+          return static_cast<PetscInt>((layout.offset(i, j, k) - first_offset(layout)) / unit);
+        };
+        const int rank = grid_->rank_at({x.place, y.place, z.place});
+        const PetscInt leaf = place_in(own, x.here, y.here, z.here),
+                       root = place_in(grid_->layout_of(rank), x.there, y.there, z.there);
+        if (rank == grid_->rank() && root == leaf) continue;  // owned
+        leaves.push_back(leaf);
+        roots.push_back({rank, root});
+      }
   PetscCall(PetscSFCreate(grid_->comm(), sf));
   PetscCall(PetscSFSetFromOptions(*sf));
-  PetscCall(PetscSFSetGraph(*sf, static_cast<PetscInt>(fields * own.size / unit), static_cast<PetscInt>(leaves.size()),
+  PetscCall(PetscSFSetGraph(*sf, static_cast<PetscInt>(own.size / unit), static_cast<PetscInt>(leaves.size()),
                             leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
   if (unit_.type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
@@ -67,16 +66,15 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
   PetscFunctionReturn(0);
 }
 
-// Rows of all fields go in one message. Values go field by field: each has two indices in a PetscSF, of every field.
+// Field by field, all under way together: a PetscSF keeps buffers by field, which blocks of any number then share.
 PetscErrorCode GhostExchange::for_fields(const WantedGhosts &wanted,
                                          PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
   FieldBlock &block = *wanted.block;
-  const int fields = by_rows() ? block.count() : 1;
-  SfHandle &forest = forests_[{wanted.width, fields}];
-  if (!forest) PetscCall(make_forest(wanted.width, fields, forest.put()));
-  for (int f = 0; f < block.count(); f += fields) {
-    double *first = block.data() + f * block.layout().size + first_offset(block.layout());
+  SfHandle &forest = forests_[wanted.width];
+  if (!forest) PetscCall(make_forest(wanted.width, forest.put()));
+  for (int f = 0; f < block.count(); ++f) {
+    double *first = block.field(f) + first_offset(block.layout());
     PetscCall(bcast(forest.get(), unit_.type, first, first, MPI_REPLACE));
   }
   PetscFunctionReturn(0);
@@ -103,7 +101,7 @@ PetscErrorCode GhostExchange::end(const WantedGhosts &wanted) {
 
 PetscErrorCode GhostExchange::update(const std::vector<WantedGhosts> &wanted) {
   PetscFunctionBeginUser;
-  constexpr int most = 12;  // fields: each of them that is under way has buffers of its own, for good
+  constexpr int most = 6;  // fields: each of them that is under way has buffers of its own, for good
   for (auto first = wanted.begin(), last = first; first != wanted.end();) {
     for (int fields = 0; last != wanted.end() && (fields == 0 || fields + last->block->count() <= most); ++last) {
       fields += last->block->count();

@@ -28,7 +28,7 @@ public:
   /// Afterwards every ghost within `width` that is not behind a wall is right. In ghost rows those behind walls of x
   /// and further out in x may have changed; all others are not touched.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
-  /// The same of several blocks, whose messages are under way together, those of a dozen fields at a time.
+  /// The same of several blocks, whose messages are under way together, those of six fields at a time, or of one block.
   PetscErrorCode update(const std::vector<WantedGhosts> &wanted);
   /// Its halves: owned values must not change in between. Other blocks may be begun meanwhile.
   PetscErrorCode begin(const WantedGhosts &wanted);
@@ -46,14 +46,14 @@ private:
     }
   };
   bool by_rows() const { return grid_->processors(0) == 1; }
-  PetscErrorCode make_forest(int width, int fields, PetscSF *sf);
+  PetscErrorCode make_forest(int width, PetscSF *sf);
   PetscErrorCode for_fields(const WantedGhosts &wanted,
                             PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
   const Grid *grid_;
   Unit unit_;
-  std::map<std::pair<int, int>, SfHandle> forests_;  ///< by width and fields
+  std::map<int, SfHandle> forests_;  ///< of a field, by width
 };
 
 }  // namespace eulastic
