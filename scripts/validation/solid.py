@@ -86,6 +86,11 @@ def viscous_rate(name):
     return rate
 
 
+def viscous_wall(run):
+    stress = run.snapshots[-1]["wall_shear_stress_ymin"][..., 0]
+    return float(stress.mean()) * (surface(run) / 5 + 1 - surface(run))
+
+
 def viscous_line(run):
     _, y, u, _ = profile_times(run.profile["y"])
     return (y, u[-1]), (y, viscous_layers(y, surface(run)))
@@ -229,6 +234,7 @@ CASES = (
                   "the value in the cell of the kink: .15 h (T - T/5) = .2 h; .01 h for T, which changes with h"),
           Measure("power of the wall over T U", viscous_rate("wall_power"), {"fast": 1e-5, "classic": 1e-5},
                   "exact but for what is left of the start: resistances add up, wherever the surface lies", 1, True),
+          Measure("shear stress on the viscous wall over T", viscous_wall, {"fast": 1e-5, "classic": 1e-5}, "exact", 1, True),
           Measure("dissipation over T U", viscous_rate("viscous_dissipation"), {"fast": 1e-5, "classic": 1e-5},
                   "exact, by parts", 1, True)),
          viscous_line, ("y", "u at t = 2")),
