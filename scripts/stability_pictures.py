@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
 SHEETS = {"flows": ["cavity", "random", "shear", "extension"],
-          "bodies": ["cells", "thin", "contact", "stretched", "flat_cells", "solid"],
+          "bodies": ["cells", "thin", "contact", "stretched", "flat_cells", "solid", "viscosity"],
           "times": ["time_step", "reversing", "layers", "nothing", "long", "corner"]}
 COLOURS = {"lives": "#7fbf7b", "reported": "#fee08b", "energy": "#d73027", "nonfinite": "#67001f", "guard": "#f46d43",
            "volume": "#b2182b", "phi": "#d6604d", "det B": "#c51b7d", "other": "#542788"}

@@ -199,6 +199,22 @@ def long(kind, G):
     return scene | {"series_interval": 0.5}
 
 
+def viscous(contrast, kind):
+    """Bodies with a viscosity of their own, stiff, soft or without stress, fast and creeping."""
+    short = dict(end=1, steps=800)
+    flow = {"cavity": lambda: cavity(1, 100, **short),
+            "random": lambda: random_flow(0.1, 1000, **short),
+            "shear": lambda: shear(1, 1, **short),
+            "drop in shear": lambda: shear(0, 1, **short),
+            "touching the wall": lambda: box(32, "xy", wall_ymax_velocity=UP, **short) | body(1, centre=".5,.2,0"),
+            "slab under a lid": lambda: box(32, "xy", wall_ymax_velocity=UP, **short) | body(1, shape="slab", interval="0,.51"),
+            "3-D": lambda: box(16, "xyz", depth=16, end=1, steps=100, wall_ymax_velocity=UP) | body(1, centre=".6,.5,.5")}[kind]()
+    return flow | {"a_viscosity": contrast * flow["fluid_viscosity"]}
+
+
+VISCOUS = ["cavity", "random", "shear", "drop in shear", "touching the wall", "slab under a lid", "3-D"]
+
+
 def corner(cells, G):
     """A disc that the lid drags into the corner at its end and holds there."""
     return cavity(G, 100, cells, end=60, steps=100000) | {"series_interval": 0.1}
@@ -238,6 +254,8 @@ GROUPS = [
           "G/(ρU²)", [(4, 1)]),
     Group("solid", "3-D", solid, SOLIDS, [0.01, 1, 100], "", "G/(ρU²)", [("cavity", 1), ("lattice, touching", 0.01)]),
     Group("long", "a hundred thousand steps", long, ["rest", "shear", "cavity", "reversing"], [0.01, 1, 100], "", "G/(ρU²)"),
+    Group("viscosity", "viscosity of a body over the fluid's", viscous, [.01, .05, .2, 5, 20, 100], VISCOUS, "contrast", "",
+          [(.01, "cavity"), (100, "shear"), (100, "3-D")]),
     Group("corner", "a disc held in a corner to t = 60", corner, [16, 24], MODULI[1:-1], "cells of the box", "G/(ρU²)",
           [(16, 0.01)]),
 ]

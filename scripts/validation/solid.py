@@ -62,6 +62,40 @@ def resting_line(run):
     return (y, u[-1]), (y, exact.resting_layers(y, 0.5, 0.1))
 
 
+# V1
+def viscous_layers(y, y0, ratio=5):
+    stress = 1 / (y0 / ratio + 1 - y0)
+    return numpy.where(y < y0, stress * y / ratio, 1 - stress * (1 - y))
+
+
+def surface(run):
+    return float(run.options["layer_interval"].split(",")[1])
+
+
+def viscous_error(run):
+    _, y, u, _ = profile_times(run.profile["y"])
+    return float(numpy.abs(u[-1] - viscous_layers(y, surface(run))).max())
+
+
+def viscous_rate(name):
+    """Of the exact one."""
+    def rate(run):
+        y0 = surface(run)
+        length = float(run.options["grid_length"].split(",")[0])
+        return float(getattr(run.series, name)[-1]) / length * (y0 / 5 + 1 - y0)
+    return rate
+
+
+def viscous_wall(run):
+    stress = run.snapshots[-1]["wall_shear_stress_ymin"][..., 0]
+    return float(stress.mean()) * (surface(run) / 5 + 1 - surface(run))
+
+
+def viscous_line(run):
+    _, y, u, _ = profile_times(run.profile["y"])
+    return (y, u[-1]), (y, viscous_layers(y, surface(run)))
+
+
 # S4
 def wave_setup(a, b, mean):
     """The wave u_a(b), in a 2-D box along x or y, in a thin 3-D one along z; `mean` is a velocity along b."""
@@ -195,6 +229,17 @@ CASES = (
           Measure("B_xy at the interface", resting_shear(0.5), SECOND_LAYER, WHY_LAYER, 0.125, True,
                   misses={"classic": (1.0625, "twice the exact one, and first order, 4/n at n = 64")})),
          resting_line, ("y", "u at t = 30")),
+    Case("V1", "Layers of viscosity 1 and 5, the surface .3 h off a face", "viscous_layers",
+         lambda n, _: {**column(n), "layer_interval": f"0,{0.5 + 0.3 / n}"},
+         every((32, 64), classic=(16, 32)), every((16,), solvers=("smac",)),
+         (Measure("largest error of u, of the wall's", viscous_error, {m: lambda n: 0.21 / n for m in ("fast", "classic")},
+                  "the value in the cell of the kink: .15 h (T - T/5) = .2 h; .01 h for T, which changes with h"),
+          Measure("power of the wall over T U", viscous_rate("wall_power"), {"fast": 1e-5, "classic": 1e-5},
+                  "exact but for what is left of the start: resistances add up, wherever the surface lies", 1, True),
+          Measure("shear stress on the viscous wall over T", viscous_wall, {"fast": 1e-5, "classic": 1e-5}, "exact", 1, True),
+          Measure("dissipation over T U", viscous_rate("viscous_dissipation"), {"fast": 1e-5, "classic": 1e-5},
+                  "exact, by parts", 1, True)),
+         viscous_line, ("y", "u at t = 2")),
     wave("x", "y", quick=True), wave("y", "x"), wave("z", "x"), wave("x", "z", quick=True), wave("y", "z"),
     wave("x", "y", mean=0.5, quick=True),
     Case("S5", "Strain where vortices stretch and turn", "shear_wave",

@@ -152,19 +152,20 @@ public:
     if (config_.time.steps_max > 0) steps = std::min(steps, double(config_.time.steps_max));
     report.line("time step (estimate)", "%.6g (%s)", dt, name);
     report.line("steps (estimate)", "%.0f", steps);
-    wall_time(report, steps, dt / limits.viscous, ranks);
+    wall_time(report, steps, dt / limits.viscous, ranks, contrast.exists());
   }
 
 private:
   /// From user times of short runs on one core of 2024 (AVX-512): options/channel_rbc.opts, its plasma alone, and
   /// options/capillary_h20.opts at two time steps, reproduced within 15 %. `viscous`: time step over the viscous limit.
-  void wall_time(Report &report, double steps, double viscous, int ranks) const {
+  void wall_time(Report &report, double steps, double viscous, int ranks, bool contrast) const {
     const Int3 &n = config_.grid.cells;
     const double phases = double(config_.species.size());
     double ns = 45 + 85 * phases;
     if (config_.method.viscous == ViscousScheme::rkl) {
       const double stages = rkl_stages(viscous, 1);
       ns = 70 + 8 * stages + (phases > 0 ? 10 * stages : 0) + 250 * phases;
+      if (contrast) ns += 40 + 6 * stages;
     }
     const int cores = ranks * config_.threads;
     const double seconds = 1e-9 * ns * n[0] * n[1] * n[2] * steps / cores;

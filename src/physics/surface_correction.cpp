@@ -149,7 +149,8 @@ bool extend_full(const unsigned char *mask, const double *const *fields, const s
 
 }  // namespace
 
-void SurfaceCorrection::find_points(const Grid &grid, const Phase &phase, Location *location) const {
+void SurfaceCorrection::find_points(const Grid &grid, const BoxSides &sides, const Phase &phase,
+                                    Location *location) const {
   const Layout &layout = grid.layout();
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
@@ -158,7 +159,12 @@ void SurfaceCorrection::find_points(const Grid &grid, const Phase &phase, Locati
   mask.assign(layout.size, outside);
   location->points.clear();
   Grid::Range box[3];
-  for (int d = 0; d < 3; ++d) box[d] = grid.points_near(d, at[d], ghosts);
+  for (int d = 0; d < 3; ++d) {
+    box[d] = grid.points_near(d, at[d], ghosts);
+    if (!grid.is_wall(d)) continue;
+    if (sides[d][0].kind == SideKind::symmetry) box[d].begin = -ghosts;
+    if (sides[d][1].kind == SideKind::symmetry) box[d].end = grid.points_end(d, at[d]) + ghosts;
+  }
   const int row_end = grid.points_end(0, at[0]);
   for (int k = box[2].begin; k < box[2].end; ++k)
     for (int j = box[1].begin; j < box[1].end; ++j) {
@@ -266,7 +272,7 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
         edges.at = c.staggering();
       }
   }
-  in_parallel(team, static_cast<int>(locations_.size()), [&](int l) { find_points(grid, phase, &locations_[l]); });
+  in_parallel(team, static_cast<int>(locations_.size()), [&](int l) { find_points(grid, step.sides, phase, &locations_[l]); });
   in_parallel(team, team, [&](int part) {
     for (const Location &location : locations_)
       with_law(phase.material, [&](const auto &law) {

@@ -13,12 +13,13 @@ namespace eulastic {
 struct SurfaceStep {
   double dt;
   Fluid fluid;
+  const BoxSides &sides;
 };
 
 class SurfaceCorrection {
 public:
-  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve. Four
-  /// ghosts of B, five of phi, two of the velocity; `work` is a block like B, of any values.
+  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor behind
+  /// walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the velocity; `work` is a block like B, of any values.
   PetscErrorCode apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
                        FieldBlock &work);
 
@@ -32,7 +33,7 @@ private:
     std::vector<unsigned char> mask;  ///< of every point: full, surface or outside
     std::vector<PetscInt> points;     ///< of the surface, owned: offsets from the field's first double
   };
-  void find_points(const Grid &grid, const Phase &phase, Location *location) const;
+  void find_points(const Grid &grid, const BoxSides &sides, const Phase &phase, Location *location) const;
   template <int Dim, class Law>
   void correct(const Grid &grid, const SurfaceStep &step, const Law &law, const FieldBlock &velocity,
                const Phase &phase, const Location &location, Piece piece, FieldBlock &next) const;

@@ -307,8 +307,8 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
     if (!identity && !phase.material.linear) {
-      PetscCall(exchange_->update(phase.tensor, SurfaceCorrection::ghosts, rows));
-      PetscCall(surface_.apply(*grid_, {dt, spec_.fluid}, now_.velocity, phase, next));
+      PetscCall(update_tensor_ghosts(phase.tensor, SurfaceCorrection::ghosts, rows));
+      PetscCall(surface_.apply(*grid_, {dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
     }
   } else {
     PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));

@@ -29,8 +29,8 @@ PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
 }
 
 // Half of what the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3
-// of it. With the viscosity of the place the pressure grows without bound where viscosities differ by 20 and more, with
-// the largest already at .01 and 20; with the least it only keeps a part of its layer at walls.
+// of it. With the viscosity of the place p turns into noise where bodies are 20 or 100 times as viscous; with the least
+// one it does not at any contrast.
 Solver::Rotation Solver::rotation() const {
   if (!spec_.staggered()) return {};
   if (!viscosity_) return {0.5 * spec_.fluid.kinematic_viscosity(), 0};
