@@ -39,7 +39,6 @@ EULASTIC_INLINE void add_force(const Grid &grid, const FieldBlock &viscosity, do
   double *sum = out[a].row(j, k);
 #pragma omp simd
   for (int i = 0; i < grid.owned()[0]; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
-  if (grid.wraps_x()) grid.wrap_row(sum, 1);
 }
 
 EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity, double scale,
@@ -99,7 +98,6 @@ EULASTIC_CLONES void first_row(int n, double half, const double *slope, double f
 EULASTIC_CLONES void end_row(const Grid &grid, const double *increment, const double *v, double *out) {
 #pragma omp simd
   for (int i = 0; i < grid.owned()[0]; ++i) out[i] = increment[i] + v[i];
-  if (grid.wraps_x()) grid.wrap_row(out, 1);
 }
 
 // row(component, j, k) for all owned rows.

@@ -7,7 +7,6 @@
 namespace eulastic {
 
 /// out += scale div(tau(v))/rho at owned faces; one ghost of v, corners included. `viscosity`: compute_viscosity().
-/// Rows are wrapped by one around a periodic x.
 PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, double scale,
                                  const FieldBlock &velocity, FieldBlock &out);
 

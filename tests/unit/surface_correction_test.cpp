@@ -153,9 +153,10 @@ struct Wall {
   }
   void apply(double dt) {
     Fluid fluid;  // nu = 1 damps waves of a cell
-    EXPECT_EQ(surface.apply(grid, {dt, fluid}, velocity, phase, work), 0);
+    EXPECT_EQ(surface.apply(grid, {dt, fluid, sides}, velocity, phase, work), 0);
   }
   SurfaceCorrection surface;
+  BoxSides sides{};
 };
 
 }  // namespace
