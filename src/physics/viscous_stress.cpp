@@ -1,7 +1,7 @@
 #include "physics/viscous_stress.hpp"
 
 #include "base/events.hpp"
-#include "grid/threads.hpp"
+#include "grid/blocks.hpp"
 #include "kernels/deviatoric_stress.hpp"
 #include "physics/rkl_coefficients.hpp"
 #include "physics/viscosity.hpp"
@@ -104,10 +104,24 @@ EULASTIC_CLONES void end_row(const Grid &grid, const double *increment, const do
 template <class Row>
 void for_velocity_rows(const Grid &grid, const Row &row) {
   in_row_parts(grid, [&](const RowPart &part) {
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = part.j_begin; j < part.j_end; ++j)
-        for (int a = 0; a < grid.dimension(); ++a) row(a, j, k);
+    for_rows_in_blocks(part, [&](int j, int k) {
+      for (int a = 0; a < grid.dimension(); ++a) row(a, j, k);
+    });
   });
+}
+
+// What a stage reads of the row that comes RowAhead::rows later: of what its stencil reads, the row ahead of it.
+void ask_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+  if (grid.dimension() == 2) return;
+  const int n = grid.owned()[0], begin = j / block_rows * block_rows,
+            end = std::min(begin + block_rows, grid.owned()[1]);
+  const RowAhead next(begin, end, j, k);
+  prefetch((*s.now)[a].row(next.j, next.k + 1), n);
+  prefetch((*s.rate)[a].row(next.j, next.k), n);
+  prefetch((*s.before)[a].row(next.j, next.k), n);
+  if (s.slope) prefetch((*s.slope)[a].row(next.j, next.k), n);
+  prefetch((*s.viscosity)[a + 1].row(next.j, next.k + 1), n);
+  if (a == 0) prefetch((*s.viscosity)[0].row(next.j, next.k), n);
 }
 
 // Walls move by that from one time to another.
@@ -167,6 +181,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     const StageTerms stage{
         &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
     for_velocity_rows(grid, [&](int a, int row, int k) {
+      ask_ahead(grid, stage, a, row, k);
       (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row, k);
     });
     work.now.swap(work.before);

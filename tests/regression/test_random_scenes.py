@@ -103,6 +103,10 @@ def scene(dice):
             words += option
     if walls and dice.random() < 0.3 and f"-wall_{walls[0]}max_velocity" not in words:
         words += [f"-boundary_{walls[0]}max", "symmetry"]
+    for name in names:
+        own = random.Random(f"{name} {words}")  # not of the dice, whose other scenes would become different ones
+        if own.random() < 0.4:
+            words += [f"-{name}_viscosity", own.choice(("0.01", "0.5", "2", "20"))]
     words += ["-time_end", "1000", "-series_interval", dice.choice(("0.05", "0.5", "1000"))]
     return words + [word for name in GUARDS for word in (f"-guard_{name}", "0")], cells
 
