@@ -1,0 +1,100 @@
+// Solver: phi and B of all phases from one time to another, (4) and (5).
+#include "physics/positive_definite.hpp"
+#include "physics/transport.hpp"
+#include "solver/solver.hpp"
+
+#include <utility>
+
+namespace eulastic {
+namespace {
+
+// Rows of a phase, and of what its fields are swapped with, which may be those of another phase: ghosts need an
+// exchange, and those behind walls values, if they did in either.
+struct MovedRows {
+  OccupiedRows swapped_in, joined;
+  void join(const OccupiedRows &rows) {
+    joined = rows;
+    if (!swapped_in.inside()) joined.join(swapped_in);
+  }
+};
+
+}  // namespace
+
+// All phases together, so that their ghosts come together.
+PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
+  PetscFunctionBeginUser;
+  const int ghosts = grid_->spec().ghosts;
+  std::vector<MovedRows> rows(phases.size());
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    rows[p].swapped_in = std::exchange(next_rows_, phase.rows);
+    if (spec_.interface == InterfaceScheme::plic) {
+      PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
+    } else {
+      PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, rows[p].swapped_in, next_fraction_));  // (4)
+      phase.fraction.swap(next_fraction_);
+    }
+    rows[p].join(phase.rows);  // it has moved less than a cell
+  }
+  std::vector<WantedGhosts> fractions, tensors;
+  for (std::size_t p = 0; p < phases.size(); ++p) fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+  PetscCall(exchange_->update(fractions));
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
+    rows[p].join(phase.rows);
+    fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
+    const ActiveSegments before = std::move(phase.strained);
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+    PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
+    tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});
+  }
+  PetscCall(exchange_->update(tensors));
+  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);
+  PetscFunctionReturn(0);
+}
+
+// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
+// `before` is where the B of the phase differed from I; what lies outside it stays I untouched. Where B is
+// extended the first stage is read no further than that of now: the rest of it may be anything. Else I is read around
+// it. Leaves the ghosts to the caller.
+PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
+                                                   const OccupiedRows *rows) {
+  PetscFunctionBeginUser;
+  const EvolveRule rule = evolve_rule(phase);
+  const bool identity = spec_.exterior == SolidExterior::identity;
+  if (spec_.staggered()) {
+    const ActiveSegments *first = identity ? nullptr : &phase.strained;
+    WorkSpace::Lease stage;
+    PetscCall(work_->take("first stage of B", phase.tensor.count(), &stage));
+    FieldBlock &next = stage.fields();
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, first}, now_.velocity, phase, phase.tensor, next));
+    PetscCall(extend_exterior(phase, next, rows));
+    PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
+    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
+    if (!identity && !phase.material.linear) {
+      PetscCall(update_tensor_ghosts(phase.tensor, SurfaceCorrection::ghosts, rows));
+      PetscCall(surface_.apply(*grid_, {dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
+    }
+  } else {
+    PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));
+    phase.tensor.swap(next_tensor_);
+    stale_ = before;
+  }
+  PetscCall(extend_exterior(phase, phase.tensor, rows));
+  PetscFunctionReturn(0);
+}
+
+// B outside the body, where it is extended there. Its ghosts are stale afterwards.
+PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
+  PetscFunctionBeginUser;
+  if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
+  PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
+  PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
+  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
+  PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
