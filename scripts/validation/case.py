@@ -26,7 +26,8 @@ class Measure:
     """ours: number from a run, or from all runs of a setting, {key: run}, if `whole`. reference 0: ours is an error.
     tolerance: {method, or label: number, or function of the key}; a method that is not in it is reported, not judged.
     order: {method: least observed order}, between the two finest runs.
-    misses: as tolerance, {...: (bound, why)}: a tolerance that is known to be missed, and the bound that is kept instead."""
+    misses: as tolerance, {...: (bound, why)}: a tolerance that is known to be missed, and the bound that is kept instead.
+    order_misses: {method: (least, why)}, the same of an order."""
     what: str
     ours: Callable
     tolerance: dict
@@ -36,6 +37,7 @@ class Measure:
     order: dict = dataclasses.field(default_factory=dict)
     whole: bool = False
     misses: dict = dataclasses.field(default_factory=dict)
+    order_misses: dict = dataclasses.field(default_factory=dict)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -45,6 +45,7 @@ def judge(case, setting, runs, measure):
     verdict = None if limit is None else bool(error(ours) <= limit)  # a nan fails
     shown_limit, why = "" if limit is None else percent(limit), measure.why
     bound, reason = of_setting(measure.misses) or (None, "")
+    bound = bound(key) if callable(bound) else bound
     if bound is not None and verdict is False:
         verdict = "misses" if error(ours) <= bound else False
         shown_limit, why = f"{shown_limit}; kept: {percent(bound)}", f"{why}; kept: {reason}"
@@ -52,8 +53,13 @@ def judge(case, setting, runs, measure):
              percent(error(ours)), shown_limit, why, shown, WORDS[verdict]]]
     least = measure.order.get(setting.method)
     if least is not None and len(ladder) > 1:
+        verdict, asked, why = bool(order >= least), f"at least {least}", "second order, measured on two grids"
+        kept, reason = measure.order_misses.get(setting.method, (None, ""))
+        if kept is not None and not verdict:
+            verdict = "misses" if order >= kept else False
+            asked, why = f"{asked}; kept: {kept}", f"{why}; kept: {reason}"
         rows.append([case.name, measure.what + ": order", setting.label, name_of(key), "2", f"{order:.2f}", f"{2 - order:.2f}",
-                     f"at least {least}", "second order, measured on two grids", shown, WORDS[bool(order >= least)]])
+                     asked, why, shown, WORDS[verdict]])
     return [dict(zip(HEADER, row)) for row in rows]
 
 

@@ -200,6 +200,7 @@ void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const
   const double shortest = *std::min_element(h.begin(), h.begin() + Dim), rho = step.fluid.density;
   const double mu = step.fluid.viscosity, wave = std::sqrt(rho * phase.material.shear_modulus) * shortest;
   const double fading = forgetting * step.dt * (mu < wave ? mu / wave : mu > 0 ? 1 : 0);
+  const double kinked = mu > wave ? wave / mu : 1;  // the share of K
   const double *phi = phase.fraction.data(), *B[6] = {}, *v[3] = {};
   const unsigned char *mask[6] = {};
   double *out[6] = {};
@@ -223,7 +224,7 @@ void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const
     const double G = law.traction_modulus(excess);
     const double k = G > 0 ? G / (mu + 0.25 * shortest * std::sqrt(rho * G)) : 0;
     const kernels::Vector<Dim> normal = kernels::surface_normal<Dim>(phi + p, at.data(), stride, inverse);
-    kernels::Tensor<Dim> moved = kernels::relax_traction<Dim>(tensor, normal, (1 - share) * k * step.dt);
+    kernels::Tensor<Dim> moved = kernels::relax_traction<Dim>(tensor, normal, (1 - share) * kinked * k * step.dt);
     // F
     double mean[Dim];
     const double *full_fields[Dim];
