@@ -13,13 +13,13 @@ using Words = std::vector<std::string>;
 
 const std::vector<std::pair<Words, std::string>> &missing() {
   static const std::vector<std::pair<Words, std::string>> table{
-      {{"density", "viscosity"},
-       "bodies have the density and viscosity of the fluid: -fluid_density and -fluid_viscosity are those of both"},
+      {{"density"}, "bodies have the density of the fluid: -fluid_density is that of both"},
       {{"buoyancy", "gravity", "sedimentation"},
        "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both"},
-      {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "symmetry", "symmetric", "slip", "farfield"},
-       "a side of the box is periodic, or a wall without slip that may move in its plane; -body_force drives a flow "
-       "through"},
+      {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "farfield"},
+       "a side of the box is periodic, a wall without slip that may move in its plane, or a plane of symmetry; "
+       "-body_force "
+       "drives a flow through"},
       {{"rigid", "prescribed", "torque"},
        "bodies are elastic and go with the flow; a stiff -NAME_shear_modulus comes near a rigid one, and "
        "-NAME_attached holds what touches a wall"},
@@ -29,7 +29,7 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
       {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",
         "ogden", "hookean", "stvk"},
-       "bodies are isotropic and elastic, neo_hookean or mooney_rivlin, beside the viscosity of the fluid"},
+       "bodies are isotropic and elastic, neo_hookean or mooney_rivlin, beside a viscosity"},
       {{"newtonian", "carreau", "rheology", "turbulence", "turbulent", "les", "rans", "smagorinsky"},
        "the fluid is Newtonian and every eddy is resolved"},
       {{"temperature", "heat", "thermal", "concentration", "diffusion", "scalar", "solute", "salt", "charge"},

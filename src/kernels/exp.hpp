@@ -1,7 +1,7 @@
 // A branch-free exp for field loops: no libm, explicit fma, the same bits on AVX2 and AVX-512.
 //
-// x = k ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of degree 13 in r, scaled by 2^k through the exponent bits. Integers
-// become doubles and back by adding 2^52 constants: AVX2 has no 64-bit conversion.
+// x = k ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of degree 13 in r, scaled by 2^k through the exponent bits.
+// Integers become doubles and back by adding 2^52 constants: AVX2 has no 64-bit conversion.
 #pragma once
 
 #include "kernels/isa.hpp"

@@ -273,7 +273,8 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
         edges.at = c.staggering();
       }
   }
-  in_parallel(team, static_cast<int>(locations_.size()), [&](int l) { find_points(grid, step.sides, phase, &locations_[l]); });
+  in_parallel(team, static_cast<int>(locations_.size()),
+              [&](int l) { find_points(grid, step.sides, phase, &locations_[l]); });
   in_parallel(team, team, [&](int part) {
     for (const Location &location : locations_)
       with_law(phase.material, [&](const auto &law) {

@@ -18,8 +18,9 @@ struct SurfaceStep {
 
 class SurfaceCorrection {
 public:
-  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor behind
-  /// walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the velocity; `work` is a block like B, of any values.
+  /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor
+  /// behind walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the
+  /// velocity; `work` is a block like B, of any values.
   PetscErrorCode apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
                        FieldBlock &work);
 

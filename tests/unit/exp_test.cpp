@@ -44,9 +44,7 @@ EULASTIC_INLINE void all(const double *x, double *e, int n) {
 
 [[gnu::noinline]] void baseline(const double *x, double *e, int n) { all(x, e, n); }
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-[[gnu::noinline, gnu::target("arch=x86-64-v4")]] void wide(const double *x, double *e, int n) {
-  all(x, e, n);
-}
+[[gnu::noinline, gnu::target("arch=x86-64-v4")]] void wide(const double *x, double *e, int n) { all(x, e, n); }
 bool has_wide() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"); }
 #else
 void wide(const double *x, double *e, int n) { all(x, e, n); }

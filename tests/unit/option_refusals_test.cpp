@@ -48,7 +48,6 @@ TEST(OptionRefusals, WhatThereIsNot) {
   const std::string read = "; see README.md, \"What it does not do\"";
   expect_refusals(
       {{"-cell_density 2", {"unknown option -cell_density: \"density\" is not supported: bodies have", read}},
-       {"-viscosity_ratio 5", {"\"viscosity\" is not supported", "-fluid_viscosity", read}},
        {"-gravity 0,-9.81,0", {"\"gravity\" is not supported", "-body_force", read}},
        {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
        {"-inflow 1", {"\"inflow\" is not supported", read}},
