@@ -67,22 +67,29 @@ Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, Const
   return best;
 }
 
-// Labels of the cells of a part that keep theirs; those of emptied ones are dropped. Returns the others.
-std::vector<Open> open_cells(const Grid &grid, const RowPart &part, ConstView phi, View label) {
+// The cells of a part that do not keep their label as it is.
+struct OpenCells {
   std::vector<Open> open;
+  std::vector<Int3> emptied;  // tell their neighbours whose they were: a body may have left all of its cells
+};
+
+OpenCells open_cells(const Grid &grid, const RowPart &part, ConstView phi, View label) {
+  OpenCells cells;
   for (const Segment &row : part.rows(grid)) {
     const double *fraction = phi.row(row.j, row.k);
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
       if (fraction[i] <= label_threshold) {
-        if (own[i] != 0) own[i] = 0;  // rest is left at rest: FieldBlock::at_rest
+        if (own[i] == 0) continue;  // rest is left at rest: FieldBlock::at_rest
+        own[i] = -own[i];
+        cells.emptied.push_back({i, row.j, row.k});
         continue;
       }
       if (fraction[i] <= 0.5) own[i] = -own[i];
-      if (own[i] <= 0) open.push_back({{i, row.j, row.k}, own[i]});
+      if (own[i] <= 0) cells.open.push_back({{i, row.j, row.k}, own[i]});
     }
   }
-  return open;
+  return cells;
 }
 
 }  // namespace
@@ -93,25 +100,27 @@ PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *ph
   PetscCall(exchange.update(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
-  std::vector<std::vector<Open>> open(row_parts(grid));
-  in_row_parts(grid, [&](const RowPart &part) { open[part.number] = open_cells(grid, part, phi, label); });
+  std::vector<OpenCells> cells(row_parts(grid));
+  in_row_parts(grid, [&](const RowPart &part) { cells[part.number] = open_cells(grid, part, phi, label); });
   const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1, &phase->rows));
     in_row_parts(grid, [&](const RowPart &part) {
-      for (Open &o : open[part.number]) {
+      for (Open &o : cells[part.number].open) {
         const Candidate best = best_neighbour(o.cell, reach, phi, label);
         if (best.label > 0 || o.label == 0) o.label = best.label;
       }
     });
     in_row_parts(grid, [&](const RowPart &part) {
-      std::vector<Open> &own = open[part.number];
+      std::vector<Open> &own = cells[part.number].open;
       for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
       own.erase(std::remove_if(own.begin(), own.end(), [](const Open &o) { return o.label > 0; }), own.end());
     });
   }
-  for (const std::vector<Open> &own : open)
-    for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
+  for (const OpenCells &part : cells) {
+    for (const Open &o : part.open) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
+    for (const Int3 &c : part.emptied) label(c[0], c[1], c[2]) = 0;
+  }
   PetscFunctionReturn(0);
 }
 

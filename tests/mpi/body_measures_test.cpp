@@ -276,6 +276,28 @@ TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
   }
 }
 
+TEST(Labels, ABodyOfLessThanACellKeepsItsNameWhenItLeavesItsCell) {
+  // All of phi in one cell, .11, that is the next one at every call, all around the box along y.
+  const int n = 12;
+  Scene scene(PETSC_COMM_WORLD, box({6, n, 1}, {6, double(n), 1}));
+  scene.add(species(Shape::sphere, 0.4), {{{2.5, 0.5, 0.5}, {}}});
+  GhostExchange exchange(scene.grid);
+  Phase &phase = scene.phases[0];
+  const int first = scene.grid.layout().begin[1];
+  for (int place = 1; place <= n; ++place) {
+    for (const Segment &row : scene.grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i)
+        phase.fraction[0](i, row.j, 0) = scene.grid.layout().begin[0] + i == 2 && first + row.j == place % n ? .11 : 0;
+    ASSERT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
+    ASSERT_EQ(carry_labels(scene.grid, exchange, &phase), 0);
+    int wrong = 0;
+    for (const Segment &row : scene.grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i)
+        wrong += phase.label[0](i, row.j, 0) != (phase.fraction[0](i, row.j, 0) > 0 ? 1 : 0);
+    EXPECT_EQ(wrong, 0) << place;
+  }
+}
+
 TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
   // phi > 1e-6 everywhere between the bodies, as after a diffusive transport: the border must move with them.
   const int nx = 30, ny = 13, nz = 12;
