@@ -27,7 +27,7 @@ class Faults(Restart):
         self.environment.update({"LD_PRELOAD": LIBRARY, "EULASTIC_FAULT": f"{kind} {verb} {rank} {count}",
                                  "OMPI_MCA_orte_base_help_aggregate": "0"})
         command = [MPIEXEC, "--oversubscribe", "-n", str(ranks), BINARY, *FLAT, *OFTEN, *NEEDS.get(verb, []),
-                   "-time_steps_max", "20", "-output_dir", f"{kind}_{verb}_{rank}"]
+                   "-time_steps_max", "60", "-output_dir", f"{kind}_{verb}_{rank}"]
         result = subprocess.run(list(map(str, command)), cwd=self.room, env=self.environment, timeout=SECONDS,
                                 capture_output=True, text=True)
         self.assertIn(f"fault: {kind} in {verb}", result.stderr, "the fault was not met")
