@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned char full = 0, surface = 1, outside = 2;
 constexpr EvolveRule evolves = evolve_above_half, is_full = evolve_where_full;
 constexpr double forgetting = 3;           // per unit of strain, where viscosity damps short waves
-constexpr double least_determinant = 0.5;  // F does not go below
+constexpr double least_determinant = 0.75;  // F does not go below
 
 // What the points of a row are; phi at their centres or low edges.
 EULASTIC_CLONES void flag_edges(int n, const double *phi, std::ptrdiff_t a, std::ptrdiff_t b, unsigned char *row) {
