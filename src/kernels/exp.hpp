@@ -10,8 +10,6 @@
 
 namespace eulastic::kernels {
 
-inline constexpr double exp_flops = 32;
-
 /// e^x for |x| <= 700, to one unit in the last place.
 EULASTIC_INLINE double exp(double x) noexcept {
   constexpr double shifter = 0x1.8p52;  // its last bits hold the nearest integer
