@@ -123,7 +123,7 @@ PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const Occupie
 // is split.
 void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
-  if (!grid_->wraps_x()) return;
+  if (!grid_->wraps_x() || !wanted.row_ends) return;
   FieldBlock &block = *wanted.block;
   const Layout &own = block.layout();
   const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*grid_);
@@ -134,7 +134,10 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
     for (int f = 0; f < block.count(); ++f)
       for (int k = z.begin + int(planes.begin); k < z.begin + int(planes.end); ++k)
         for (int j = y.begin; j < y.end; ++j) {
-          if (wanted.rows && wanted.rows->idle(j, k)) continue;
+          if (wanted.rows) {
+            const OccupiedRows::Span span = wanted.rows->span(j, k);
+            if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
+          }
           double *row = block[f].row(j, k);
           const double *later = row + ahead * own.sy;
           for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);

@@ -13,12 +13,14 @@
 
 namespace eulastic {
 
-/// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere: the
-/// ends of idle rows are left alone, and if all is inside() ghost rows are, too.
+/// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere: ends
+/// of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several stages
+/// that wrap x around by themselves (Sides::wrap) want no row ends.
 struct WantedGhosts {
   FieldBlock *block;
   int width;
   const OccupiedRows *rows = nullptr;
+  bool row_ends = true;
 };
 
 class GhostExchange {

@@ -27,8 +27,7 @@ struct MooneyRivlin {
 
   MooneyRivlin scaled(double factor) const noexcept { return {factor * k1, factor * k2, factor * k3}; }
   double shear_modulus() const noexcept { return k1 + k2; }
-  /// Exact in plane strain; in 3-D that of c2 is the one at rest.
-  EULASTIC_INLINE double traction_modulus(double excess) const noexcept { return fma(k3, excess, k1 + k2); }
+  double stiffening() const noexcept { return k3; }  ///< exact in plane strain; in 3-D c2 counts as at rest
   static constexpr double flops(int dimension) noexcept { return dimension == 2 ? 124 : 310; }
   double stiffness(const StretchBounds &b) const noexcept {
     const double spread = b.stretch - 1 / b.inverse;

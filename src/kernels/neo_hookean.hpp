@@ -12,8 +12,9 @@ struct NeoHookean {
 
   NeoHookean scaled(double factor) const noexcept { return {factor * modulus}; }
   double shear_modulus() const noexcept { return modulus; }  ///< at rest
-  /// Tangential traction on a plane with normal n over the tangential part of Bn, where tr B - 3 = excess.
-  EULASTIC_INLINE double traction_modulus(double) const noexcept { return modulus; }
+  /// Tangential traction on a plane with normal n over the tangential part of Bn is shear_modulus() and so much times
+  /// tr B - 3.
+  double stiffening() const noexcept { return 0; }
   /// Of the force, per face.
   static constexpr double flops(int dimension) noexcept { return dimension == 2 ? 32 : 57; }
   /// The largest rho c^2 of an elastic wave (docs/method.md).

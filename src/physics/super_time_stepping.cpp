@@ -187,10 +187,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(grid, *field);
   if (work.slope) {
-    PetscCall(exchange.update({{&work.rate, depth}, {&work.slope, depth}}));
+    PetscCall(exchange.update({{&work.rate, depth, nullptr, false}, {&work.slope, depth, nullptr, false}}));
     stressed = stressed_rows(grid, phases);
   } else {
-    PetscCall(exchange.update(work.rate, depth));
+    PetscCall(exchange.update({{&work.rate, depth, nullptr, false}}));
   }
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
@@ -214,9 +214,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
         }
     }
     if (!pass.starts && pass.depth > 2)
-      PetscCall(exchange.update({{&work.now, pass.depth}, {&work.before, pass.depth - 1}}));
+      PetscCall(
+          exchange.update({{&work.now, pass.depth, nullptr, false}, {&work.before, pass.depth - 1, nullptr, false}}));
     else if (!pass.starts)
-      PetscCall(exchange.update(work.now, pass.depth));
+      PetscCall(exchange.update({{&work.now, pass.depth, nullptr, false}}));
     const StageFields fields{&work.rate, &work.slope,   work.slope ? &stressed : nullptr, &work.now, &work.before,
                              &velocity,  &velocity_star};
     const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());

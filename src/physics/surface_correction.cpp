@@ -2,258 +2,290 @@
 
 #include "base/events.hpp"
 #include "field/law.hpp"
-#include "grid/row_scratch.hpp"
-#include "grid/threads.hpp"
 #include "kernels/surface.hpp"
+#include "kernels/tensor.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <utility>
 
 namespace eulastic {
 namespace {
 
-constexpr unsigned char full = 0, surface = 1, outside = 2;
-constexpr EvolveRule evolves = evolve_above_half, is_full = evolve_where_full;
-constexpr double forgetting = 3;           // per unit of strain, where viscosity damps short waves
+constexpr double forgetting = 3;            // per unit of strain, where viscosity damps short waves
 constexpr double least_determinant = 0.75;  // F does not go below
 
-// What the points of a row are; phi at their centres or low edges.
-EULASTIC_CLONES void flag_edges(int n, const double *phi, std::ptrdiff_t a, std::ptrdiff_t b, unsigned char *row) {
+// What the points of a chunk read: fields of the phase and what is measured at centres, and how strong K and F are.
+struct Terms {
+  std::ptrdiff_t stride[3];
+  const double *B[6], *phi, *gradient[3], *rate;
+  double G, stiffening, mu, wave, kink, fading;  // 1/k = mu/G + wave/sqrt(G)
+
+  Terms(const Grid &grid, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured) {
+    const int dimension = grid.dimension();
+    const Layout &layout = grid.layout();
+    const Real3 &h = grid.spacing();
+    const double shortest = *std::min_element(h.begin(), h.begin() + dimension), rho = step.fluid.density;
+    const double across = std::sqrt(rho * phase.material.shear_modulus) * shortest;
+    stride[0] = 1;
+    stride[1] = layout.sy;
+    stride[2] = layout.sz;
+    for (int f = 0; f < phase.tensor.count(); ++f) B[f] = phase.tensor.data() + f * layout.size;
+    for (int d = 0; d < dimension; ++d) gradient[d] = measured.data() + d * layout.size;
+    rate = measured.data() + dimension * layout.size;
+    phi = phase.fraction.data();
+    with_law(phase.material, [&](const auto &law) {
+      G = law.shear_modulus();
+      stiffening = law.stiffening();
+    });
+    mu = step.fluid.viscosity;
+    wave = 0.25 * shortest * std::sqrt(rho);
+    kink = step.dt * (mu > across ? across / mu : 1);
+    fading = forgetting * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
+  }
+};
+
+// Points that go through one loop.
+struct Chunk {
+  static constexpr int most = 64;
+  int count = 0;
+  std::ptrdiff_t at[most];
+  std::uint64_t evolving[most];  // bit 4 l + n: whether neighbour n of the four at location l evolves
+  double heard[most];            // whether full points are within reach: 1 or 0
+  double mean[3][most];          // of what they say
+  double next[3][most];          // B
+};
+
+// x where bit n is set, else 0, whatever x is: by its bits, as loads that hang on a condition are not vectorised.
+EULASTIC_INLINE double where(std::uint64_t bits, int n, double x) {
+  return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, x) & -(bits >> n & 1));
+}
+
+// The mean over those of the four points around that evolve, which is where a component lives that does not live at
+// this point.
+EULASTIC_INLINE double mean_of_four(const double *q, std::ptrdiff_t s, std::ptrdiff_t t, std::uint64_t evolving) {
+  const double sum =
+      (where(evolving, 0, q[0]) + where(evolving, 1, q[s])) + (where(evolving, 2, q[t]) + where(evolving, 3, q[s + t]));
+  const double count =
+      (where(evolving, 0, 1) + where(evolving, 1, 1)) + (where(evolving, 2, 1) + where(evolving, 3, 1));
+  return sum / (count > 0 ? count : 1);
+}
+
+// Component (X, Y) at a point of the location (A, B): centres if A = B, else the edges of that component.
+template <int Dim, int A, int B, int X, int Y>
+EULASTIC_INLINE double component_at(const Terms &t, std::ptrdiff_t p, std::uint64_t evolving) {
+  constexpr bool here[3] = {A != B && (A == 0 || B == 0), A != B && (A == 1 || B == 1), A != B && (A == 2 || B == 2)};
+  constexpr bool there[3] = {X != Y && (X == 0 || Y == 0), X != Y && (X == 1 || Y == 1), X != Y && (X == 2 || Y == 2)};
+  constexpr int d = here[0] != there[0] ? 0 : 1, e = here[2] != there[2] ? 2 : 1;
+  constexpr int f = kernels::position<Dim>(X, Y), location = X == Y ? 0 : f - Dim + 1;
+  const double *q = t.B[f] + p;
+  if constexpr (here[0] == there[0] && here[1] == there[1] && here[2] == there[2]) return q[0];
+  return mean_of_four(q, here[d] ? -t.stride[d] : t.stride[d], here[e] ? -t.stride[e] : t.stride[e],
+                      evolving >> (4 * location));
+}
+
+// What is known at centres.
+template <int A, int B>
+EULASTIC_INLINE double centred_at(const Terms &t, const double *q) {
+  if constexpr (A == B) return q[0];
+  return kernels::average4(q, -t.stride[A], -t.stride[B]);
+}
+
+// B = S B S^T, then what fades of it, at all points of a chunk.
+template <int Dim, int A, int B>
+EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
+  const Terms t = terms;
+  Chunk &c = *chunk;
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const double share = kernels::average4(phi + i, -a, -b);
-    row[i] = share >= is_full.edge ? full : share >= evolves.edge ? surface : outside;
+  for (int n = 0; n < c.count; ++n) {
+    const std::ptrdiff_t p = c.at[n];
+    const std::uint64_t evolving = c.evolving[n];
+    kernels::Tensor T{
+        component_at<Dim, A, B, 0, 0>(t, p, evolving), component_at<Dim, A, B, 1, 1>(t, p, evolving), 1, 0, 0,
+        component_at<Dim, A, B, 0, 1>(t, p, evolving)};
+    kernels::Vector gradient{centred_at<A, B>(t, t.gradient[0] + p), centred_at<A, B>(t, t.gradient[1] + p), 0};
+    if constexpr (Dim == 3) {
+      T.zz = component_at<Dim, A, B, 2, 2>(t, p, evolving);
+      T.yz = component_at<Dim, A, B, 1, 2>(t, p, evolving);
+      T.xz = component_at<Dim, A, B, 0, 2>(t, p, evolving);
+      gradient.z = centred_at<A, B>(t, t.gradient[2] + p);
+    }
+    const double excess = (T.xx - 1) + (T.yy - 1) + (T.zz - 1), G = kernels::fma(t.stiffening, excess, t.G);
+    const double limited = kernels::fma(t.wave, __builtin_sqrt(G > 0 ? G : 0), t.mu), k = G > 0 ? G / limited : 0;
+    const double missing = 1 - centred_at<A, B>(t, t.phi + p);
+    const kernels::Tensor K = kernels::relax_traction(T, kernels::unit(gradient), missing * t.kink * k);
+    const double keep = kernels::decay(t.fading * centred_at<A, B>(t, t.rate + p));
+    const auto faded = [=](bool here, double now, double mean)
+                           EULASTIC_BODY { return here ? kernels::fma(keep, now, (1 - keep) * mean) : now; };
+    const double mean[3] = {c.mean[0][n], A == B ? c.mean[1][n] : 0, A == B && Dim == 3 ? c.mean[2][n] : 0};
+    constexpr bool centre = A == B;
+    const kernels::Tensor F{faded(centre, K.xx, mean[0]),
+                            faded(centre, K.yy, mean[1]),
+                            faded(centre && Dim == 3, K.zz, mean[2]),
+                            faded(A == 1 && B == 2, K.yz, mean[0]),
+                            faded(A == 0 && B == 2, K.xz, mean[0]),
+                            faded(A == 0 && B == 1, K.xy, mean[0])};
+    const double before = kernels::determinant(K), after = kernels::determinant(F);
+    const bool fades = (c.heard[n] != 0) & ((after >= least_determinant) | (after >= before));
+    const auto chosen = [=](double yes, double no) EULASTIC_BODY { return fades ? yes : no; };
+    if constexpr (A == B) {
+      const auto positive = [](double next, double now) EULASTIC_BODY { return next > 0 ? next : now; };
+      c.next[0][n] = positive(chosen(F.xx, K.xx), T.xx);  // means need not be positive definite
+      c.next[1][n] = positive(chosen(F.yy, K.yy), T.yy);
+      c.next[2][n] = positive(chosen(F.zz, K.zz), T.zz);
+    } else {
+      c.next[0][n] = A == 1 ? chosen(F.yz, K.yz) : B == 2 ? chosen(F.xz, K.xz) : chosen(F.xy, K.xy);
+    }
   }
 }
 
-// Full are centres with full edges around alone.
-template <int Dim>
-EULASTIC_INLINE void flag_centre_row(int n, const double *phi, const std::ptrdiff_t *stride, unsigned char *row) {
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const double *q = phi + i;
-    double least = q[0];
-#pragma GCC unroll 3
-    for (int a = 0; a < Dim; ++a)
-#pragma GCC unroll 3
-      for (int b = a + 1; b < Dim; ++b) {
-        const std::ptrdiff_t x = stride[a], y = stride[b];
-        const auto edge = [&](std::ptrdiff_t s, std::ptrdiff_t t) EULASTIC_BODY {
-          const double share = kernels::average4(q, s, t);
-          least = share < least ? share : least;
-        };
-        edge(x, y);
-        edge(-x, y);
-        edge(x, -y);
-        edge(-x, -y);
-      }
-    row[i] = q[0] >= is_full.centre && least >= is_full.edge ? full : q[0] >= evolves.centre ? surface : outside;
+EULASTIC_CLONES void correct_2d(const Terms &terms, int location, Chunk *chunk) {
+  location == 0 ? correct_chunk<2, 0, 0>(terms, chunk) : correct_chunk<2, 0, 1>(terms, chunk);
+}
+EULASTIC_CLONES void correct_3d(const Terms &terms, int location, Chunk *chunk) {
+  switch (location) {
+    case 0:
+      return correct_chunk<3, 0, 0>(terms, chunk);
+    case 1:
+      return correct_chunk<3, 1, 2>(terms, chunk);
+    case 2:
+      return correct_chunk<3, 0, 2>(terms, chunk);
+    default:
+      return correct_chunk<3, 0, 1>(terms, chunk);
   }
 }
 
-EULASTIC_CLONES void flag_centres_2d(int n, const double *phi, const std::ptrdiff_t *stride, unsigned char *row) {
-  flag_centre_row<2>(n, phi, stride, row);
-}
-EULASTIC_CLONES void flag_centres_3d(int n, const double *phi, const std::ptrdiff_t *stride, unsigned char *row) {
-  flag_centre_row<3>(n, phi, stride, row);
-}
+template <int Fields>
+struct Sum {
+  double value[Fields] = {};
+  int count = 0;
+  EULASTIC_INLINE void add(const Sum &other) {
+    for (int f = 0; f < Fields; ++f) value[f] += other.value[f];
+    count += other.count;
+  }
+};
 
-// A field whose diagonal components live at centres and the others on edges, at one point of a location: the mean of
-// the four values around it where they live elsewhere; of those that `counts` alone.
-template <int Dim, class Value, class Counts>
-EULASTIC_INLINE kernels::Tensor<Dim> at_point(const Staggering &at, const std::ptrdiff_t *stride, const Value &value,
-                                              const Counts &counts) {
-  kernels::Tensor<Dim> t;
-  for (int a = 0; a < Dim; ++a)
-    for (int b = a; b < Dim; ++b) {
-      std::ptrdiff_t step[2] = {0, 0};
-      int steps = 0;
-      for (int d = 0; d < Dim; ++d)
-        if (at[d] != (a != b && (d == a || d == b))) step[steps++] = at[d] ? -stride[d] : stride[d];
-      double sum = 0;
-      if (steps == 0) {
-        sum = value(a, b, 0);
-      } else {
-        int count = 0;
-        const auto one = [&](std::ptrdiff_t o) EULASTIC_BODY {
-          if (!counts(a, b, o)) return 0.0;
-          ++count;
-          return value(a, b, o);
-        };
-        const double low = one(0) + one(step[0]);
-        sum = low + (one(step[1]) + one(step[0] + step[1]));
-        sum = count > 0 ? sum / count : 0;
+// What full points say of some fields further out.
+template <int Fields>
+struct FullPoints {
+  const unsigned char *kind;
+  const double *field[Fields];
+  std::ptrdiff_t stride[3];
+  static constexpr auto full = SurfaceCorrection::full;
+
+  // Of the smaller one of the two slopes behind it, none if they differ in sign or lie beyond the ghosts.
+  template <int Away>
+  EULASTIC_INLINE void add_line(std::ptrdiff_t o, std::ptrdiff_t in, Sum<Fields> &one) const {
+    if constexpr (Away > 0 && Away + 2 <= SurfaceCorrection::ghosts) {
+      if (kind[o + in] != full || kind[o + 2 * in] != full) return;
+      for (int f = 0; f < Fields; ++f) {
+        const double *q = field[f] + o;
+        const double near = q[0] - q[in], far = q[in] - q[2 * in];
+        const double slope = __builtin_fabs(near) < __builtin_fabs(far) ? near : far;
+        one.value[f] += near * far > 0 ? Away * slope : 0;
       }
-      t[a][b] = t[b][a] = sum;
     }
-  return t;
-}
-
-// What full points say of `fields` further out: the mean over the nearest ones, in steps from face to face; false if
-// none is within reach. Each is extended along its steps by a line, of the smaller one of the two slopes behind it,
-// none if they differ in sign or lie beyond the ghosts.
-template <int Dim, int Fields>
-bool extend_full(const unsigned char *mask, const double *const *fields, const std::ptrdiff_t *stride, double *mean) {
-  struct Sum {
-    double value[Fields] = {};
-    int count = 0;
-    void add(const Sum &other) {
-      for (int f = 0; f < Fields; ++f) value[f] += other.value[f];
-      count += other.count;
-    }
-  };
-  const auto slope = [](const double *q, std::ptrdiff_t in) {
-    const double near = q[0] - q[in], far = q[in] - q[2 * in];
-    return near * far > 0 ? (std::fabs(near) < std::fabs(far) ? near : far) : 0.0;
-  };
-  // `away` steps of these strides from here.
-  const auto point = [&](const Int3 &away, const std::array<std::ptrdiff_t, 3> &step) {
-    Sum one;
-    const std::ptrdiff_t o = away[0] * step[0] + away[1] * step[1] + away[2] * step[2];
-    if (mask[o] != full) return one;
+  }
+  // The one that is (X, Y, Z) steps of these strides away, extended along its steps by lines.
+  template <int X, int Y, int Z>
+  EULASTIC_INLINE Sum<Fields> point(std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t z) const {
+    Sum<Fields> one;
+    const std::ptrdiff_t o = X * x + Y * y + Z * z;
+    if (kind[o] != full) return one;
     one.count = 1;
-    for (int f = 0; f < Fields; ++f) one.value[f] = fields[f][o];
-    for (int d = 0; d < Dim; ++d) {
-      if (away[d] == 0 || away[d] + 2 > SurfaceCorrection::ghosts) continue;
-      if (mask[o + step[d]] != full || mask[o + 2 * step[d]] != full) continue;
-      for (int f = 0; f < Fields; ++f) one.value[f] += away[d] * slope(fields[f] + o, step[d]);
-    }
+    for (int f = 0; f < Fields; ++f) one.value[f] = field[f][o];
+    add_line<X>(o, x, one);
+    add_line<Y>(o, y, one);
+    add_line<Z>(o, z, one);
     return one;
-  };
+  }
   // Both sides of a direction first: a mirrored scene gives the mirrored bits.
-  const auto sides = [&](const Int3 &away) {
-    Sum all;
-    for (int z = 0; z <= (away[2] > 0); ++z) {
-      Sum plane;
-      for (int y = 0; y <= (away[1] > 0); ++y) {
-        Sum row;
-        for (int x = 0; x <= (away[0] > 0); ++x)
-          row.add(point(away, {x ? -stride[0] : stride[0], y ? -stride[1] : stride[1], z ? -stride[2] : stride[2]}));
+  template <int X, int Y, int Z>
+  EULASTIC_INLINE void add_sides(Sum<Fields> &sum) const {
+    const std::ptrdiff_t x = stride[0], y = stride[1], z = stride[2];
+    Sum<Fields> all;
+    for (int c = 0; c <= (Z > 0); ++c) {
+      Sum<Fields> plane;
+      for (int b = 0; b <= (Y > 0); ++b) {
+        Sum<Fields> row = point<X, Y, Z>(x, b ? -y : y, c ? -z : z);
+        if constexpr (X > 0) row.add(point<X, Y, Z>(-x, b ? -y : y, c ? -z : z));
         plane.add(row);
       }
       all.add(plane);
     }
-    return all;
-  };
-  for (int steps = 1; steps <= SurfaceCorrection::reach; ++steps) {
-    Sum sum;
-    for (int z = 0; z <= (Dim == 3 ? steps : 0); ++z)
-      for (int y = 0; y <= steps - z; ++y) sum.add(sides({steps - z - y, y, z}));
-    if (sum.count == 0) continue;
-    for (int f = 0; f < Fields; ++f) mean[f] = sum.value[f] / sum.count;
-    return true;
+    sum.add(all);
   }
-  return false;
-}
+  template <int Dim, int Steps, int Y = 0, int Z = 0>
+  EULASTIC_INLINE void add_shell(Sum<Fields> &sum) const {
+    add_sides<Steps - Y - Z, Y, Z>(sum);
+    if constexpr (Y + Z < Steps)
+      add_shell<Dim, Steps, Y + 1, Z>(sum);
+    else if constexpr (Dim == 3 && Z < Steps)
+      add_shell<Dim, Steps, 0, Z + 1>(sum);
+  }
+  // The mean over the nearest ones, in steps from face to face; false if none is within reach.
+  template <int Dim, int Steps = 1>
+  bool mean(double (*out)[Chunk::most], int slot) const {
+    Sum<Fields> sum;
+    add_shell<Dim, Steps>(sum);
+    if constexpr (Steps < SurfaceCorrection::reach)
+      if (sum.count == 0) return mean<Dim, Steps + 1>(out, slot);
+    for (int f = 0; f < Fields; ++f) out[f][slot] = sum.count > 0 ? sum.value[f] / sum.count : 0;
+    return sum.count > 0;
+  }
+};
 
 }  // namespace
 
-void SurfaceCorrection::find_points(const Grid &grid, const BoxSides &sides, const Phase &phase,
-                                    Location *location) const {
-  const Layout &layout = grid.layout();
-  const ConstView phi = phase.fraction[0];
-  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
-  const Staggering &at = location->at;
-  std::vector<unsigned char> &mask = location->mask;
-  mask.assign(layout.size, outside);
-  location->points.clear();
-  Grid::Range box[3];
-  for (int d = 0; d < 3; ++d) {
-    box[d] = grid.points_near(d, at[d], ghosts);
-    if (!grid.is_wall(d)) continue;
-    if (sides[d][0].kind == SideKind::symmetry) box[d].begin = -ghosts;
-    if (sides[d][1].kind == SideKind::symmetry) box[d].end = grid.points_end(d, at[d]) + ghosts;
-  }
-  const int row_end = grid.points_end(0, at[0]);
-  for (int k = box[2].begin; k < box[2].end; ++k)
-    for (int j = box[1].begin; j < box[1].end; ++j) {
-      const OccupiedRows::Span span = phase.rows.span(j, k);
-      const int begin = std::max(span.begin, box[0].begin), end = std::min(span.end, box[0].end);
-      if (begin >= end) continue;
-      unsigned char *row = mask.data() + layout.offset(0, j, k);
-      const double *q = phi.row(j, k) + begin;
-      if (location->a != location->b)
-        flag_edges(end - begin, q, phi.stride(location->a), phi.stride(location->b), row + begin);
-      else
-        (grid.dimension() == 2 ? flag_centres_2d : flag_centres_3d)(end - begin, q, stride, row + begin);
-      if (j < 0 || j >= grid.points_end(1, at[1]) || k < 0 || k >= grid.points_end(2, at[2])) continue;
-      const int last = std::min(end, row_end);
-      for (int i = std::max(begin, 0); i < last; ++i) {
-        const void *next = std::memchr(row + i, surface, last - i);
-        if (!next) break;
-        i = static_cast<int>(static_cast<const unsigned char *>(next) - row);
-        location->points.push_back(static_cast<PetscInt>(layout.offset(i, j, k)));
-      }
+template <int Dim>
+void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const Phase &phase,
+                                const FieldBlock &measured, Piece piece, Location *location) const {
+  const Terms terms(grid, step, phase, measured);
+  const bool centre = location->a == location->b;
+  const int own = static_cast<int>(location - locations_.data()), components = centre ? Dim : 1;
+  const int first = centre ? 0 : Dim + own - 1;
+  std::ptrdiff_t around[4][4] = {};  // of every location, where its four points lie
+  for (std::size_t l = 0; l < locations_.size(); ++l) {
+    int n = 1;
+    for (int d = 0; d < Dim; ++d) {
+      if (location->at[d] == locations_[l].at[d]) continue;
+      around[l][n++] = location->at[d] ? -terms.stride[d] : terms.stride[d];
     }
-}
-
-template <int Dim, class Law>
-void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const Law &law, const FieldBlock &velocity,
-                                const Phase &phase, const Location &location, Piece piece, FieldBlock &next) const {
-  const Layout &layout = grid.layout();
-  const Real3 &h = grid.spacing();
-  const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
-  const std::ptrdiff_t stride[3] = {1, layout.sy, Dim == 3 ? layout.sz : 0};
-  const Staggering &at = location.at;
-  const bool centre = location.a == location.b;
-  const double shortest = *std::min_element(h.begin(), h.begin() + Dim), rho = step.fluid.density;
-  const double mu = step.fluid.viscosity, wave = std::sqrt(rho * phase.material.shear_modulus) * shortest;
-  const double fading = forgetting * step.dt * (mu < wave ? mu / wave : mu > 0 ? 1 : 0);
-  const double kinked = mu > wave ? wave / mu : 1;  // the share of K
-  const double *phi = phase.fraction.data(), *B[6] = {}, *v[3] = {};
-  const unsigned char *mask[6] = {};
-  double *out[6] = {};
-  for (int f = 0; f < next.count(); ++f) {
-    B[f] = phase.tensor.data() + f * layout.size;
-    out[f] = next.data() + f * layout.size;
-    mask[f] = locations_[f < Dim ? 0 : f - Dim + 1].mask.data();
+    around[l][3] = around[l][1] + around[l][2];
   }
-  for (int d = 0; d < Dim; ++d) v[d] = velocity.data() + d * layout.size;
-  const int first = centre ? 0 : kernels::position<Dim>(location.a, location.b), count = centre ? Dim : 1;
+  FullPoints<Dim> centres{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}};
+  FullPoints<1> edges{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}};
+  Chunk chunk;
+  std::size_t done = piece.begin;
+  const auto work = [&] {
+    const int count = chunk.count;
+    for (; chunk.count % 8 != 0; ++chunk.count) {  // whole vectors
+      chunk.at[chunk.count] = chunk.at[0];
+      chunk.evolving[chunk.count] = 0;
+    }
+    (Dim == 2 ? correct_2d : correct_3d)(terms, own, &chunk);
+    for (int n = 0; n < count; ++n)
+      for (int f = 0; f < components; ++f) location->next[components * (done + n) + f] = chunk.next[f][n];
+    done += std::exchange(chunk.count, 0);
+  };
   for (std::size_t n = piece.begin; n < piece.end; ++n) {
-    const std::ptrdiff_t p = location.points[n];
-    const auto tensor = at_point<Dim>(
-        at, stride,
-        [&](int a, int b, std::ptrdiff_t o) EULASTIC_BODY { return B[kernels::position<Dim>(a, b)][p + o]; },
-        [&](int a, int b, std::ptrdiff_t o)
-            EULASTIC_BODY { return mask[kernels::position<Dim>(a, b)][p + o] != outside; });
-    double excess = -Dim;
-    for (int a = 0; a < Dim; ++a) excess += tensor[a][a];
-    const double share = centre ? phi[p] : kernels::average4(phi + p, -stride[location.a], -stride[location.b]);
-    const double G = law.traction_modulus(excess);
-    const double k = G > 0 ? G / (mu + 0.25 * shortest * std::sqrt(rho * G)) : 0;
-    const kernels::Vector<Dim> normal = kernels::surface_normal<Dim>(phi + p, at.data(), stride, inverse);
-    kernels::Tensor<Dim> moved = kernels::relax_traction<Dim>(tensor, normal, (1 - share) * kinked * k * step.dt);
-    // F
-    double mean[Dim];
-    const double *full_fields[Dim];
-    for (int f = 0; f < count; ++f) full_fields[f] = B[first + f] + p;
-    if (fading > 0 && (centre ? extend_full<Dim, Dim>(mask[first] + p, full_fields, stride, mean)
-                              : extend_full<Dim, 1>(mask[first] + p, full_fields, stride, mean))) {
-      const auto rate = at_point<Dim>(
-          at, stride,
-          [&](int a, int b, std::ptrdiff_t o) EULASTIC_BODY {
-            const double *va = v[a] + p + o, *vb = v[b] + p + o;
-            if (a == b) return inverse[a] * (va[stride[a]] - va[0]);
-            return 0.5 * (inverse[b] * (va[0] - va[-stride[b]]) + inverse[a] * (vb[0] - vb[-stride[a]]));
-          },
-          [](int, int, std::ptrdiff_t) EULASTIC_BODY { return true; });
-      const double strain = fading * __builtin_sqrt(kernels::double_contraction<Dim>(rate));
-      const double keep = kernels::exp(strain < 700 ? -strain : -700);
-      kernels::Tensor<Dim> faded = moved;
-      for (int f = 0; f < count; ++f) {
-        const int a = centre ? f : location.a, b = centre ? f : location.b;
-        faded[a][b] = faded[b][a] = kernels::fma(keep, moved[a][b], (1 - keep) * mean[f]);
-      }
-      const double before = kernels::determinant<Dim>(moved), after = kernels::determinant<Dim>(faded);
-      if (!(after < least_determinant && after < before)) moved = faded;
-    }
-    for (int f = 0; f < count; ++f) {
-      const double value = moved[centre ? f : location.a][centre ? f : location.b];
-      out[first + f][p] = centre && value <= 0 ? B[first + f][p] : value;  // means need not be positive definite
-    }
+    const std::ptrdiff_t p = location->points[n];
+    std::uint64_t evolving = 0;
+    for (std::size_t l = 0; l < locations_.size(); ++l)
+      for (int m = 0; m < 4; ++m)
+        evolving |= std::uint64_t(locations_[l].kind[p + around[l][m]] != outside) << (4 * l + m);
+    chunk.at[chunk.count] = p;
+    chunk.evolving[chunk.count] = evolving;
+    const auto heard = [&](auto &inside) {
+      inside.kind = location->kind.data() + p;
+      for (int f = 0; f < components; ++f) inside.field[f] = terms.B[first + f] + p;
+      return inside.template mean<Dim>(chunk.mean, chunk.count);
+    };
+    chunk.heard[chunk.count] = terms.fading > 0 && (centre ? heard(centres) : heard(edges));
+    if (++chunk.count == Chunk::most) work();
   }
+  work();
 }
 
 PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity,
@@ -273,31 +305,31 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
         edges.at = c.staggering();
       }
   }
-  in_parallel(team, static_cast<int>(locations_.size()),
-              [&](int l) { find_points(grid, step.sides, phase, &locations_[l]); });
+  in_parallel(team, static_cast<int>(locations_.size()) - 1,
+              [&](int l) { find_points(grid, step.sides, phase, &locations_[l + 1]); });
+  find_points(grid, step.sides, phase, &locations_[0]);  // by the edges
+  band_.build_band(grid, phase.fraction[0], phase.rows, 1);
+  measure_centres(grid, velocity, phase.fraction[0], work);
   in_parallel(team, team, [&](int part) {
-    for (const Location &location : locations_)
-      with_law(phase.material, [&](const auto &law) {
-        const Piece piece(location.points.size(), part, team);
-        if (dimension == 2)
-          correct<2>(grid, step, law, velocity, phase, location, piece, work);
-        else
-          correct<3>(grid, step, law, velocity, phase, location, piece, work);
-      });
+    for (Location &location : locations_) {
+      const Piece piece(location.points.size(), part, team);
+      (this->*(dimension == 2 ? &SurfaceCorrection::correct<2> : &SurfaceCorrection::correct<3>))(
+          grid, step, phase, work, piece, &location);
+    }
   });
   const std::ptrdiff_t size = grid.layout().size;
   int first = 0;
   for (const Location &location : locations_) {
     const int fields = location.a == location.b ? dimension : 1;
-    for (int f = first; f < first + fields; ++f) {
-      double *B = phase.tensor.data() + f * size;
-      const double *next = work.data() + f * size;
-      for (const PetscInt p : location.points) B[p] = next[p];
-    }
+    const double *next = location.next.data();
+    double *B = phase.tensor.data() + first * size;
+    for (const PetscInt p : location.points)
+      for (int f = 0; f < fields; ++f) B[f * size + p] = *next++;
     first += fields;
     scope.flops(double(location.points.size()) *
                 (dimension == 2 ? kernels::surface_flops_2d : kernels::surface_flops_3d));
   }
+  scope.flops(band_.points() * (dimension == 2 ? kernels::gradient_flops_2d : kernels::gradient_flops_3d));
   PetscFunctionReturn(0);
 }
 

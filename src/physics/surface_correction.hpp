@@ -20,25 +20,32 @@ class SurfaceCorrection {
 public:
   /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor
   /// behind walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the
-  /// velocity; `work` is a block like B, of any values.
+  /// velocity, those behind walls too; `work` is a block like B, of any values.
   PetscErrorCode apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
                        FieldBlock &work);
 
   /// How far full points are heard, in steps from face to face, and the layers that are read.
   static constexpr int reach = 3, ghosts = 4;
 
+  /// What a point is.
+  enum Kind : unsigned char { full, surface, outside };
+
 private:
   struct Location {
     int a = 0, b = 0;  ///< of the component on these edges; the same: centres
     Staggering at{};
-    std::vector<unsigned char> mask;  ///< of every point: full, surface or outside
+    std::vector<unsigned char> kind;  ///< of every point
     std::vector<PetscInt> points;     ///< of the surface, owned: offsets from the field's first double
+    std::vector<double> next;         ///< their components, corrected, one after the other
   };
   void find_points(const Grid &grid, const BoxSides &sides, const Phase &phase, Location *location) const;
-  template <int Dim, class Law>
-  void correct(const Grid &grid, const SurfaceStep &step, const Law &law, const FieldBlock &velocity,
-               const Phase &phase, const Location &location, Piece piece, FieldBlock &next) const;
+  /// At the centres of the band: the gradient of phi, up to a factor, and the strain rate, behind each other.
+  void measure_centres(const Grid &grid, const FieldBlock &velocity, ConstView phi, FieldBlock &measured) const;
+  template <int Dim>
+  void correct(const Grid &grid, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured, Piece piece,
+               Location *location) const;
 
+  ActiveSegments band_;              ///< cells that are neither full nor empty with all their neighbours
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
 };
 

@@ -172,7 +172,8 @@ TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
   });
 }
 
-// A block that is at rest but around a body: away from y's sides no ghost row is touched, nor the ends of other rows.
+// A block that is at rest but around bodies: away from y's sides no ghost row is touched, nor the ends of rows but of
+// those with a body near them.
 TEST(GhostExchange, LeavesRestAlone) {
   GridSpec spec;
   spec.cells = {40, 40, 1};
@@ -188,15 +189,17 @@ TEST(GhostExchange, LeavesRestAlone) {
         << i << ' ' << j;
   };
   for (const bool inside : {true, false}) {
-    phi[0](20, inside ? 20 : 35, 0) = 1;
+    phi[0](20, inside ? 12 : 35, 0) = 1;
+    phi[0](2, 27, 0) = 1;
     ASSERT_EQ(rows.find(grid, phi[0]), 0);
     ASSERT_EQ(rows.inside(), inside);
-    ASSERT_TRUE(rows.idle(2, 0) && !rows.idle(20, 0));
+    ASSERT_TRUE(rows.idle(2, 0) && !rows.idle(12, 0) && !rows.idle(27, 0));
     prepare(grid, block);
     ASSERT_EQ(exchange.update(block, 3, &rows), 0);
     for (const int i : {-3, -1, 40, 42}) {
       expect_ghosts(i, 2, false);
-      expect_ghosts(i, 20, true);
+      expect_ghosts(i, 12, false);
+      expect_ghosts(i, 27, true);
       expect_ghosts(i, -1, !inside);
     }
     for (const int j : {-3, -1, 40, 42}) expect_ghosts(7, j, !inside);

@@ -4,14 +4,42 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 
 using namespace eulastic;
-using kernels::Tensor;
-using kernels::Vector;
 
 namespace {
+
+template <int Dim>
+using Vector = std::array<double, Dim>;
+template <int Dim>
+using Tensor = std::array<Vector<Dim>, Dim>;
+
+template <int Dim>
+kernels::Tensor kernel_tensor(const Tensor<Dim> &t) {
+  if constexpr (Dim == 2)
+    return {t[0][0], t[1][1], 1, 0, 0, t[0][1]};
+  else
+    return {t[0][0], t[1][1], t[2][Dim - 1], t[1][2], t[0][2], t[0][1]};
+}
+template <int Dim>
+double determinant(const Tensor<Dim> &t) {
+  return kernels::determinant(kernel_tensor<Dim>(t));
+}
+template <int Dim>
+Tensor<Dim> relax_traction(const Tensor<Dim> &B, const Vector<Dim> &n, double strength) {
+  const kernels::Vector normal{n[0], n[1], Dim == 3 ? n[Dim - 1] : 0};
+  const kernels::Tensor k = kernels::relax_traction(kernel_tensor<Dim>(B), normal, strength);
+  const double all[3][3] = {{k.xx, k.xy, k.xz}, {k.xy, k.yy, k.yz}, {k.xz, k.yz, k.zz}};
+  EXPECT_TRUE(Dim == 3 || (k.zz == 1 && k.xz == 0 && k.yz == 0));
+  Tensor<Dim> t;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) t[a][b] = all[a][b];
+  return t;
+}
 
 std::mt19937 &dice() {
   static std::mt19937 engine(35);
@@ -78,11 +106,11 @@ void check_relaxation() {
     const Tensor<Dim> B = random_tensor<Dim>();
     const Vector<Dim> n = random_normal<Dim>();
     const double strength = std::exp(draw(-8, 8));
-    const Tensor<Dim> next = kernels::relax_traction<Dim>(B, n, strength);
-    const double det = kernels::determinant<Dim>(B);
+    const Tensor<Dim> next = relax_traction<Dim>(B, n, strength);
+    const double det = determinant<Dim>(B);
     double scale = 1;
     for (int a = 0; a < Dim; ++a) scale *= next[a][a];
-    EXPECT_NEAR(kernels::determinant<Dim>(next), det, 1e-12 * (scale + det));
+    EXPECT_NEAR(determinant<Dim>(next), det, 1e-12 * (scale + det));
     const auto before = traction<Dim>(B, n), after = traction<Dim>(next, n);
     const double left = std::exp(-strength * before[Dim]);
     for (int a = 0; a < Dim; ++a) EXPECT_NEAR(after[a], left * before[a], 1e-12 * (1 + B[0][0] + B[1][1]));
@@ -108,7 +136,7 @@ double error_of_step(const Tensor<Dim> &B, const Vector<Dim> &n, const Tensor<Di
       for (int b = 0; b < Dim; ++b) F[a][b] = (a == b) + dt * L[a][b];
     return product<Dim>(product<Dim>(F, B), transposed<Dim>(F));
   };
-  const Tensor<Dim> found = kernels::relax_traction<Dim>(sheared(mixture), n, (1 - share) * rate * dt);
+  const Tensor<Dim> found = relax_traction<Dim>(sheared(mixture), n, (1 - share) * rate * dt);
   const Tensor<Dim> exact = sheared(solid);
   double sum = 0;
   for (int a = 0; a < Dim; ++a)
@@ -171,23 +199,39 @@ TEST(SurfaceCorrection, RecoversTheGradientOfTheSolid) {
   check_gradient<3>();
 }
 
-TEST(SurfaceCorrection, TheNormalOfALinearFractionIsExact) {
-  constexpr std::ptrdiff_t stride[3] = {1, 8, 64};
+TEST(SurfaceCorrection, GradientAndStrainRateOfLinearFieldsAreExact) {
+  constexpr std::ptrdiff_t stride[3] = {1, 8, 64}, middle = 4 + 8 * 4 + 64 * 4;
   const double spacing[3] = {0.5, 0.25, 1}, inverse[3] = {2, 4, 1}, slope[3] = {0.3, -0.4, 1.2};
-  std::vector<double> phi(512);
+  const double L[3][3] = {{0.5, 1.5, -0.25}, {0.75, -2, 3}, {1, -0.5, 1.5}};  // of the velocity, whose values
+  std::vector<double> phi(512), v[3];                                         // lie on the low faces
+  for (std::vector<double> &component : v) component.resize(512);
   for (int k = 0; k < 8; ++k)
     for (int j = 0; j < 8; ++j)
-      for (int i = 0; i < 8; ++i)
-        phi[i + 8 * j + 64 * k] = slope[0] * spacing[0] * i + slope[1] * spacing[1] * j + slope[2] * spacing[2] * k;
-  const bool locations[4][3] = {{false, false, false}, {true, true, false}, {true, false, true}, {false, true, true}};
-  for (const auto &at : locations) {
-    const auto n = kernels::surface_normal<3>(&phi[4 + 8 * 4 + 64 * 4], at, stride, inverse);
-    for (int d = 0; d < 3; ++d) EXPECT_NEAR(n[d], slope[d] / 1.3, 1e-14);
-  }
-  for (int l = 0; l < 2; ++l) {
-    const auto n = kernels::surface_normal<2>(&phi[4 + 8 * 4], locations[l], stride, inverse);
-    for (int d = 0; d < 2; ++d) EXPECT_NEAR(n[d], slope[d] / 0.5, 1e-14);
-  }
+      for (int i = 0; i < 8; ++i) {
+        const int n = i + 8 * j + 64 * k;
+        const double x[3] = {spacing[0] * i, spacing[1] * j, spacing[2] * k};
+        for (int d = 0; d < 3; ++d) {
+          phi[n] += slope[d] * x[d];
+          for (int e = 0; e < 3; ++e) v[d][n] += L[d][e] * x[e];
+        }
+      }
+  const double *velocity[3] = {v[0].data(), v[1].data(), v[2].data()};
+  const auto check = [&](auto dimension) {
+    constexpr int Dim = decltype(dimension)::value;
+    const double norm = Dim == 3 ? 1.3 : 0.5;
+    double g[3] = {};
+    for (int d = 0; d < Dim; ++d) g[d] = kernels::fraction_slope<Dim>(&phi[middle], d, stride, inverse);
+    const kernels::Vector n = kernels::unit({g[0], g[1], g[2]});
+    EXPECT_NEAR(n.x, slope[0] / norm, 1e-14);
+    EXPECT_NEAR(n.y, slope[1] / norm, 1e-14);
+    EXPECT_NEAR(n.z, Dim == 3 ? slope[2] / norm : 0, 1e-14);
+    double twice = 0;  // 2 D:D
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) twice += 0.5 * (L[a][b] + L[b][a]) * (L[a][b] + L[b][a]);
+    EXPECT_NEAR(kernels::strain_rate<Dim>(velocity, middle, stride, inverse), std::sqrt(twice), 1e-13);
+  };
+  check(std::integral_constant<int, 2>());
+  check(std::integral_constant<int, 3>());
 }
 
 TEST(SurfaceCorrection, WhatLiesAtTheSurfaceFadesWithStrain) {
