@@ -73,9 +73,10 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(extend_exterior(phase, next, rows));
     PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
-    if (!identity && !phase.material.linear) {
+    // Over two steps at once, in every second: their rates are slow against a step.
+    if (!identity && !phase.material.linear && now_.step % 2 == 1) {
       PetscCall(update_tensor_ghosts(phase.tensor, SurfaceCorrection::ghosts, rows));
-      PetscCall(surface_.apply(*grid_, {dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
+      PetscCall(surface_.apply(*grid_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
     }
   } else {
     PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));
