@@ -52,7 +52,7 @@ PetscErrorCode find_homes(const Grid &grid, const std::vector<Phase> &phases, co
 }
 
 // What one look at all phases finds.
-struct Look {
+struct ContactSurvey {
   std::map<int, std::vector<int>> colours;       // of each species
   std::map<int, std::vector<NearBodies>> pairs;  // of this rank, in one phase
   std::map<int, int> near;                       // whether any rank has a pair
@@ -60,35 +60,36 @@ struct Look {
 };
 
 // One Allreduce for all species.
-PetscErrorCode look_at(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases, Look *look) {
+PetscErrorCode survey_contacts(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
+                               ContactSurvey *survey) {
   PetscFunctionBeginUser;
-  *look = {};
-  look->colours = colours_of(*phases);
+  *survey = {};
+  survey->colours = colours_of(*phases);
   std::vector<int> found(phases->size(), 0);  // then one of each species
-  for (const auto &[first, colours] : look->colours) {
+  for (const auto &[first, colours] : survey->colours) {
     PetscCall(update_ghosts(exchange, contact_reach, colours, phases));
-    std::vector<NearBodies> &pairs = look->pairs[first];
+    std::vector<NearBodies> &pairs = survey->pairs[first];
     for (const int p : colours) {
       if (p != first) found[p] = !labels_in(grid, (*phases)[p].label[0]).empty();
       find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
     }
     found.push_back(!pairs.empty());
   }
-  if (look->colours.empty()) PetscFunctionReturn(0);
+  if (survey->colours.empty()) PetscFunctionReturn(0);
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
   std::size_t next = phases->size();
-  for (const auto &[first, colours] : look->colours) look->near[first] = found[next++];
+  for (const auto &[first, colours] : survey->colours) survey->near[first] = found[next++];
   found.resize(phases->size());
-  look->occupied = std::move(found);
+  survey->occupied = std::move(found);
   PetscFunctionReturn(0);
 }
 
 // Removes phases without a body from the end of a species' colours, but the first one. Returns whether there were any.
-bool remove_empty_colours(const Look &look, std::vector<Phase> *phases) {
+bool remove_empty_colours(const ContactSurvey &survey, std::vector<Phase> *phases) {
   std::set<int> empty;
-  for (const auto &[first, colours] : look.colours)
-    for (auto last = colours.rbegin(); *last != first && !look.occupied[*last]; ++last) empty.insert(*last);
+  for (const auto &[first, colours] : survey.colours)
+    for (auto last = colours.rbegin(); *last != first && !survey.occupied[*last]; ++last) empty.insert(*last);
   for (auto p = empty.rbegin(); p != empty.rend(); ++p) phases->erase(phases->begin() + *p);
   return !empty.empty();
 }
@@ -198,15 +199,15 @@ PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::v
   moves->clear();
   crowded->clear();
   VerbScope scope(Verb::contact);
-  Look look;
-  do PetscCall(look_at(grid, exchange, phases, &look));
-  while (remove_empty_colours(look, phases));  // positions have changed
-  for (const auto &[first, colours] : look.colours) {
+  ContactSurvey survey;
+  do PetscCall(survey_contacts(grid, exchange, phases, &survey));
+  while (remove_empty_colours(survey, phases));  // positions have changed
+  for (const auto &[first, colours] : survey.colours) {
     std::vector<BodyMove> own;
-    if (!look.near[first]) {
+    if (!survey.near[first]) {
       PetscCall(empty_last_colour(grid, exchange, colours, phases, &own));
     } else {
-      std::vector<NearBodies> &pairs = look.pairs[first];
+      std::vector<NearBodies> &pairs = survey.pairs[first];
       PetscCall(gather_near(grid.comm(), &pairs));
       own = choose_bodies(pairs);
       PetscCall(find_neighbours(grid, *phases, colours, own, contact_reach, &pairs));

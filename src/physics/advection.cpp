@@ -14,7 +14,7 @@ EULASTIC_INLINE void in_pieces(const Segment &row, const RowsAhead &ahead, const
     piece.i_end = std::min(piece.i_begin + length, row.i_end);
     const int begin = piece.i_begin - row.i_begin;
     for (int d = 0; d < Dim; ++d) {
-      ahead.ask(d, begin, piece.i_end < row.i_end ? length : ahead.length - begin);
+      ahead.prefetch_rows(d, begin, piece.i_end < row.i_end ? length : ahead.length - begin);
       along(piece, d);
     }
   }

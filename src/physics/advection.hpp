@@ -14,7 +14,7 @@ struct RowsAhead {
   int length = 0;                 ///< of all
 
   /// For n values of the rows of d.
-  [[gnu::always_inline]] void ask(int d, int begin, int n) const noexcept {
+  [[gnu::always_inline]] void prefetch_rows(int d, int begin, int n) const noexcept {
     for (const double *row : rows[d])
       if (row) prefetch(row + begin, n);
   }

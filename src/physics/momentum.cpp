@@ -91,7 +91,7 @@ EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, doub
         face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, advection);
         if (t.advection) combine_advection(n, t.weights, (*t.advection)[a].row(j, block.k), advection);
       } else {
-        for (int d = 0; d < Dim; ++d) ahead.ask(d, 0, ahead.length);
+        for (int d = 0; d < Dim; ++d) ahead.prefetch_rows(d, 0, ahead.length);
         std::fill_n(advection, n, 0.0);
       }
       kernels::fluid_rate<Dim>(row, advection, v[a], t.viscosity, p, p.stride(a), t.inverse[a] / t.density,

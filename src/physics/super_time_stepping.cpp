@@ -125,14 +125,14 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3) {
         const RowAhead next(first, j_end, row.j, row.k);
-        const auto ask = [&](const FieldBlock *field, int k) { prefetch((*field)[a].row(next.j, k), n[0]); };
+        const auto prefetch_row = [&](const FieldBlock *field, int k) { prefetch((*field)[a].row(next.j, k), n[0]); };
         if (stage == 0) {
-          ask(f.now, s < 0 ? next.k : next.k + 1);
-          ask(f.rate, next.k);
-          if (f.stressed) ask(f.slope, next.k);
+          prefetch_row(f.now, s < 0 ? next.k : next.k + 1);
+          prefetch_row(f.rate, next.k);
+          if (f.stressed) prefetch_row(f.slope, next.k);
         }
-        if (s == 0) ask(f.before, next.k);
-        if (pass.ends && s == pass.depth - 1) ask(f.velocity, next.k);
+        if (s == 0) prefetch_row(f.before, next.k);
+        if (pass.ends && s == pass.depth - 1) prefetch_row(f.velocity, next.k);
       }
       if (!is_on_wall(sides, a, row)) {
         double *values = out.row(row.j, row.k);

@@ -160,14 +160,14 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     for (const Segment &s : phase.solid.row(j, k)) {
       if (Dim == 3) {  // the next plane, what is beside its vectors
         const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
-        const auto ask_ends = [&](ConstView q, int plane) {
+        const auto prefetch_ends = [&](ConstView q, int plane) {
           prefetch(q.row(j, plane) + i, 1);
           prefetch(q.row(j, plane) + s.i_end, 1);
         };
-        for (int f = first; f < last; ++f) ask_ends(B[f], k + 1 + reach);
+        for (int f = first; f < last; ++f) prefetch_ends(B[f], k + 1 + reach);
         if (centre) {
-          ask_ends(phi, k + 1);
-          for (int d = 0; d < Dim; ++d) ask_ends((*t.velocity)[d], k + 2);
+          prefetch_ends(phi, k + 1);
+          for (int d = 0; d < Dim; ++d) prefetch_ends((*t.velocity)[d], k + 2);
         }
         for (const int side : {-1, 1})
           for (int n = 1; phase.solid.idle(j + side, k) && n <= reach; ++n)

@@ -111,7 +111,7 @@ void for_velocity_rows(const Grid &grid, const Row &row) {
 }
 
 // What a stage reads of the row that comes RowAhead::rows later: of what its stencil reads, the row ahead of it.
-void ask_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+void prefetch_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) {
   if (grid.dimension() == 2) return;
   const int n = grid.owned()[0], begin = j / block_rows * block_rows,
             end = std::min(begin + block_rows, grid.owned()[1]);
@@ -181,7 +181,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     const StageTerms stage{
         &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
     for_velocity_rows(grid, [&](int a, int row, int k) {
-      ask_ahead(grid, stage, a, row, k);
+      prefetch_ahead(grid, stage, a, row, k);
       (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row, k);
     });
     work.now.swap(work.before);

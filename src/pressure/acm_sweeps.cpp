@@ -49,12 +49,12 @@ PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {
 }
 
 /// How far a solve has come.
-struct AcmSweepSolver::Course {
+struct AcmSweepSolver::SolveState {
   double dt;
   FieldBlock &increment;
-  ConstView residual, before{};     // D of now and of a step earlier
-  bool recurs = false;              // there is a d, and a D before
-  bool first = true, left = false;  // nothing has set the increment; the last d is not in it yet
+  ConstView residual, before{};        // D of now and of a step earlier
+  bool recurs = false;                 // there is a d, and a D before
+  bool first = true, pending = false;  // nothing has set the increment; the last d is not in it yet
   bool done = false;
 };
 
@@ -66,7 +66,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   residual_ = lease.part(0, 1);
   before_ = lease.part(1, 1);
   direction_ = lease.part(2, 1);
-  Course course{dt, increment, memory_ ? divergence[0] : residual_[0]};
+  SolveState state{dt, increment, memory_ ? divergence[0] : residual_[0]};
   if (memory_) {
     if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
     ghosts_of_memory_ = true;
@@ -74,7 +74,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[(newest_ + f) % memory_.count()]);
     newest_ = (newest_ + memory_.count() - 1) % memory_.count();  // the oldest: it will be
     sums_.start(*grid_, memory_.count());
-    PetscCall(sweep(false, course));
+    PetscCall(sweep(false, state));
   } else {
     for (const Segment &s : grid_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
@@ -83,9 +83,9 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   }
   FieldBlock correction = lease.part(3, 1), scratch;  // multigrid may swap them
   if (multigrid_) scratch = memory_ ? memory_.part(newest_, 1) : own_scratch_.part(0, 1);
-  for (int s = 1; s <= options_.sweeps_max && !course.done; ++s) {
+  for (int s = 1; s <= options_.sweeps_max && !state.done; ++s) {
     if (multigrid_) {
-      const SweepTask next{grid_, nullptr, 1, course.recurs, course.residual, course.before};
+      const SweepTask next{grid_, nullptr, 1, state.recurs, state.residual, state.before};
       sums_.start(*grid_, next.directions());
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
@@ -97,56 +97,56 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
       scope.flops(multigrid_->flops());
     }
     directions_.assign(1, multigrid_ ? correction[0] : residual_[0]);
-    PetscCall(sweep(s == options_.sweeps_max, course));
+    PetscCall(sweep(s == options_.sweeps_max, state));
     ++sweeps_;
   }
   if (memory_) memory_.part(newest_, 1).copy_from(increment);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::sweep(bool last, Course &course) {
+PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
   PetscFunctionBeginUser;
-  const SweepTask task{grid_,         directions_.data(), static_cast<int>(directions_.size()),
-                       course.recurs, course.residual,    course.before};
+  const SweepTask task{grid_,        directions_.data(), static_cast<int>(directions_.size()),
+                       state.recurs, state.residual,     state.before};
   SweepMinimum minimum;
   double mean = 0;
   PetscCall(sums_.find_minimum(task, &minimum, &mean));
   residual_rms_ = std::sqrt(minimum.square / grid_->cell_count());
-  course.done = last || !(residual_rms_ > target_);  // NaN is done
+  state.done = last || !(residual_rms_ > target_);  // NaN is done
   const int n = task.directions();
   const double laplacians = task.stencils * (4 * grid_->dimension() + 1) + task.recurs;
   const double products = 2 + n + 0.5 * n * (n + 1);
   PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * products + 2 * n + 2)));
-  const bool left = course.left;
-  const Increment how = !left && !course.done ? Increment::later
-                        : course.first        ? (left ? Increment::set_two : Increment::set)
-                                              : (left ? Increment::add_two : Increment::add);
-  course.left = how == Increment::later;
-  if (!course.left) course.first = false;
+  const bool pending = state.pending;
+  const Increment how = !pending && !state.done ? Increment::later
+                        : state.first           ? (pending ? Increment::set_two : Increment::set)
+                                                : (pending ? Increment::add_two : Increment::add);
+  state.pending = how == Increment::later;
+  if (!state.pending) state.first = false;
   StepTask step{task,
                 minimum.coefficient,
                 minimum.coefficient[0] * mean,
-                1 / course.dt,
+                1 / state.dt,
                 how,
-                course.done,
+                state.done,
                 before_[0],
                 direction_[0],
-                course.increment[0],
+                state.increment[0],
                 {}};
   const ConstView D = step.new_residual;
   const SweepTask next{grid_, &D, 1, true, D, task.residual};
-  if (!multigrid_ && !course.done) {
+  if (!multigrid_ && !state.done) {
     sums_.start(*grid_, next.directions());
     if (grid_->wraps_x())
       step.after = [&](int thread, int j_begin, int j_end, int k) { sums_.add_inner(next, thread, j_begin, j_end, k); };
   }
   take_step(step);
-  if (course.done) PetscFunctionReturn(0);
+  if (state.done) PetscFunctionReturn(0);
   PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * n)));
   residual_.swap(before_);
-  course.before = task.residual;
-  course.residual = D;
-  course.recurs = true;
+  state.before = task.residual;
+  state.residual = D;
+  state.recurs = true;
   PetscCall(exchange_->update(residual_, Multigrid::halo));
   fill_wall_ghosts_even(*grid_, at_centre, residual_[0], 1);
   PetscFunctionReturn(0);

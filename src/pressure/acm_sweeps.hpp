@@ -36,9 +36,9 @@ public:
 
 private:
   PetscErrorCode update_ghosts(FieldBlock &field, int width);
-  struct Course;
+  struct SolveState;
   /// One sweep over directions_.
-  PetscErrorCode sweep(bool last, Course &course);
+  PetscErrorCode sweep(bool last, SolveState &state);
 
   const Grid *grid_ = nullptr;
   GhostExchange *exchange_ = nullptr;

@@ -74,7 +74,7 @@ struct Pass {
   ConstView rhs;
   View fields[2];
   int depth;
-  const Multigrid::Follow *follow;  // the stage after them
+  const Multigrid::RowsDone *rows_done;  // the stage after them
 };
 
 // out = factor r + interpolated e; e has `coarse_cells` owned cells in x.
@@ -104,7 +104,7 @@ template <int Dim>
 EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
   order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
-    if (s == pass.depth) return (*pass.follow)(q, task.thread, row.j, j_end, row.k);
+    if (s == pass.depth) return (*pass.rows_done)(q, task.thread, row.j, j_end, row.k);
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3 && s == 0)
         for (const double *values :
@@ -176,10 +176,10 @@ std::size_t Multigrid::bytes() const {
 }
 
 PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                                const Follow &follow) {
+                                const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch,
-                  levels_[0]->grid().wraps_x() && levels_[0]->grid().dimension() == 3 ? follow : Follow()));
+                  levels_[0]->grid().wraps_x() && levels_[0]->grid().dimension() == 3 ? rows_done : RowsDone()));
   PetscCall(levels_[0]->exchange().update(solution, 1));
   PetscFunctionReturn(0);
 }
@@ -189,7 +189,7 @@ int Multigrid::halo_of(const MultigridLevel &level) { return std::max(halo, leve
 
 // Leaves the ghosts of the solution to the caller.
 PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                                const Follow &follow) {
+                                const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
   if (level.single_cell()) PetscFunctionReturn(0);  // defined up to a constant: 0, for ever
@@ -204,13 +204,13 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
   if (gathers)
     take_part(level, next, solution);
   else
-    PetscCall(smooth(level, next, rhs, solution, scratch, follow));
+    PetscCall(smooth(level, next, rhs, solution, scratch, rows_done));
   PetscFunctionReturn(0);
 }
 
 // solution = the coarse one, interpolated, + one relaxation of `rhs`; then it is relaxed.
 PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs,
-                                 FieldBlock &solution, FieldBlock &scratch, const Follow &follow) {
+                                 FieldBlock &solution, FieldBlock &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   const Sides sides(fine.grid());
   const Relaxations &relax = relaxations(fine);
@@ -224,11 +224,11 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
       PetscCall(coarse.exchange().update(coarse.solution, 1 + depth / 2));
     else
       PetscCall(fine.exchange().update(solution, depth));
-    const bool followed = follow && done + depth == stages;
+    const bool reports = rows_done && done + depth == stages;
     const Pass pass{
-        &sides, &fine,  done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]},
-        depth,  &follow};
-    const StagePass order(fine.grid(), sides, depth + followed, 1, followed ? -1 : 0);
+        &sides, &fine,     done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]},
+        depth,  &rows_done};
+    const StagePass order(fine.grid(), sides, depth + reports, 1, reports ? -1 : 0);
     order.for_tasks([&](const StagePass::Task &task) {
       (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
     });

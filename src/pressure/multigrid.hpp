@@ -16,16 +16,17 @@ class Multigrid {
 public:
   static constexpr int halo = 2;  ///< ghost layers of the right-hand side that a cycle reads
 
-  using Follow = std::function<void(ConstView, int, int, int, int)>;
+  using RowsDone = std::function<void(ConstView, int, int, int, int)>;
 
   /// Builds all levels, collectively; keeps no reference to `grid`.
   PetscErrorCode create(const Grid &grid);
   /// solution = V rhs, about the q with lap q = rhs. `rhs`: `halo` ghost layers valid. `solution`: one ghost layer
   /// valid on return; `scratch` is lost. All on the grid. Ghosts behind walls are neither used (but must be finite)
   /// nor set.
-  /// In 3-D, where x wraps around, follow(solution, thread, j_begin, j_end, k), if given, is called for rows as soon as
-  /// all owned ones around them have their last values, but for those at the ends of y and z.
-  PetscErrorCode apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch, const Follow &follow = {});
+  /// In 3-D, where x wraps around, rows_done(solution, thread, j_begin, j_end, k), if given, is called for rows as soon
+  /// as all owned ones around them have their last values, but for those at the ends of y and z.
+  PetscErrorCode apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
+                       const RowsDone &rows_done = {});
   /// Floating-point operations of one cycle on this rank.
   double flops() const { return flops_; }
   std::size_t bytes() const;
@@ -35,14 +36,14 @@ public:
 private:
   using Level = std::unique_ptr<MultigridLevel>;
   PetscErrorCode cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                       const Follow &follow);
+                       const RowsDone &rows_done);
   const Relaxations &relaxations(const MultigridLevel &level) const;
   static int halo_of(const MultigridLevel &level);
   PetscErrorCode gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs);
   void take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const;
   void restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse);
   PetscErrorCode smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs, FieldBlock &solution,
-                        FieldBlock &scratch, const Follow &follow);
+                        FieldBlock &scratch, const RowsDone &rows_done);
 
   std::vector<Level> levels_;              ///< the finest first
   std::vector<double> packed_, gathered_;  ///< owned cells of the gathered level, of one rank and of all
