@@ -56,6 +56,7 @@ public:
       report.line("spacing", "%g x %g x %g", spacing_[0], spacing_[1], spacing_[2]);
     report.line("ranks", "%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks,
                 cells / ranks);
+    if (ranks > 1) boxes(report, parts);
     if (cells > std::numeric_limits<PetscInt>::max())
       report.line("warning",
                   "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
@@ -70,6 +71,22 @@ public:
       report.line("phases (estimate)",
                   "%d, %zu for the species, %.4g GB per rank for each more that keeps bodies apart",
                   expected_phases(config_), config_.species.size(), 1e-9 * bytes_per_phase(config_, parts));
+  }
+
+  void boxes(Report &report, const Int3 &parts) const {
+    const Int3 box = Grid::largest_box(config_.grid, parts);
+    double own = 1, travelling = 1, in_memory = 1;
+    int around = 1;
+    for (int d = 0; d < 3; ++d) {
+      own *= box[d];
+      travelling *= box[d] + (parts[d] > 1 ? 2 * Grid::stencil_width : 0);
+      in_memory *= box[d] + (d < dimension_ ? 2 * config_.grid.ghosts : 0);
+      around *= std::min(parts[d], 3);
+    }
+    report.line("largest box of a rank", "%d x %d x %d cells, %.3g times as many with the ghosts in memory", box[0],
+                box[1], box[2], in_memory / own);
+    report.line("exchange of the velocity", "%d neighbours, %.3g values per cell and component, %.4g MB for each rank",
+                around - 1, travelling / own - 1, 8e-6 * dimension_ * (travelling - own));
   }
 
   void bodies(Report &report) const {

@@ -100,6 +100,7 @@ struct Config {
   GuardControl guard;
   int threads = 1;  ///< per rank
   bool check_only = false;
+  int ranks = 0;  ///< that -check_only speaks of; 0: those that there are
   bool print_options = false;
 
   /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.

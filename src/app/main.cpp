@@ -48,6 +48,7 @@ PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
 int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
   if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
   if (!parsed.error.empty()) {
     print_error(parsed.error);

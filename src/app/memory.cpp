@@ -50,10 +50,9 @@ double fields(const Config &config) {
 }
 
 double ghosted_cells(const Config &config, const Int3 &parts) {
+  const Int3 box = Grid::largest_box(config.grid, parts);
   double cells = 1;
-  for (int d = 0; d < 3; ++d)
-    cells *=
-        std::ceil(double(config.grid.cells[d]) / parts[d]) + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
+  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
   return cells;
 }
 

@@ -22,6 +22,10 @@ bool is_file(const std::string &path) {
 bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 
 std::string check_grid(const Config &config) {
+  if (config.ranks > 0 && !config.check_only)
+    return "-ranks: " + std::to_string(config.ranks) +
+           " without -check_only; accepted: 0, as mpiexec -n says how many "
+           "ranks a run has";
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
   if (const std::string reason = Grid::why_not(serial, 1); !reason.empty()) return reason;

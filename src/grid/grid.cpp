@@ -41,28 +41,41 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
 }  // namespace
 
 Int3 Grid::decompose(const GridSpec &spec, int ranks) {
-  Int3 best{0, 0, 0};
-  double best_cost = 0;
+  constexpr double worth = 1.3;  // of the ghosts, before x is split more than it must be
+  Int3 best{0, 0, 0}, shorter{0, 0, 0};
+  double best_cost = 0, shorter_cost = 0;
   for (int px = 1; px <= ranks; ++px) {
     if (ranks % px) continue;
     if (spec.processors[0] && px != spec.processors[0]) continue;
+    const bool least = best[0] == 0 || best[0] == px;
+    if (!least && spec.cells[0] < sum_block * px) break;
     for (int py = 1; py <= ranks / px; ++py) {
       if ((ranks / px) % py) continue;
       const Int3 trial{px, py, ranks / px / py};
       if (spec.processors[1] && py != spec.processors[1]) continue;
       if (spec.processors[2] && trial[2] != spec.processors[2]) continue;
       if (!fits(spec, trial)) continue;
-      // Ghost cells per rank; z before y, because planes are contiguous.
-      const double ny = double(spec.cells[1]) / py, nz = double(spec.cells[2]) / trial[2];
-      const double cost = (py > 1) * nz * 1.001 + (trial[2] > 1) * ny;
-      if (best[0] == 0 || cost < best_cost) {
-        best = trial;
-        best_cost = cost;
-      }
+      // Ghost cells per rank and layer; z before y, because planes are contiguous.
+      double n[3];
+      for (int d = 0; d < 3; ++d) n[d] = double(spec.cells[d]) / trial[d];
+      const double cost = n[0] * ((py > 1) * n[2] * 1.001 + (trial[2] > 1) * n[1]) + (px > 1) * n[1] * n[2];
+      Int3 &chosen = least ? best : shorter;
+      double &chosen_cost = least ? best_cost : shorter_cost;
+      if (chosen[0] != 0 && cost >= chosen_cost) continue;
+      chosen = trial;
+      chosen_cost = cost;
     }
-    if (best[0]) break;  // the smallest split of x that works
   }
-  return best;
+  return shorter[0] != 0 && best_cost > worth * shorter_cost ? shorter : best;
+}
+
+Int3 Grid::largest_box(const GridSpec &spec, const Int3 &ranks) {
+  Int3 most{0, 0, 0};
+  for (int d = 0; d < 3; ++d) {
+    const std::vector<int> starts = split(spec.cells[d], ranks[d], d == 0);
+    for (int p = 0; p < ranks[d]; ++p) most[d] = std::max(most[d], starts[p + 1] - starts[p]);
+  }
+  return most;
 }
 
 std::string Grid::why_not(const GridSpec &spec, int ranks) {

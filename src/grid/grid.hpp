@@ -44,13 +44,16 @@ class Grid {
 public:
   static constexpr int stencil_width = 3;  ///< layers that WENO5 reads; also the fewest cells of a rank
 
-  /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, or by order) and makes
+  /// Decomposes the cells over `comm` (x is split only when y and z cannot take all ranks, where a whole x means many
+  /// more ghosts, or by order) and makes
   /// the DMDA. Call `why_not` first: it explains in one line why a spec cannot be decomposed.
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
   /// Empty if `spec` fits on `ranks` ranks, else one sentence with the numbers.
   static std::string why_not(const GridSpec &spec, int ranks);
   /// Ranks per direction that `create` would use; {0,0,0} when impossible.
   static Int3 decompose(const GridSpec &spec, int ranks);
+  /// The most cells along each direction that one of so many ranks has.
+  static Int3 largest_box(const GridSpec &spec, const Int3 &ranks);
 
   /// The DMDA, one value per cell, that says which rank owns what. Its stencil is a box as wide as there are ghosts, or
   /// as the narrowest rank has cells. None of a coarse() grid.

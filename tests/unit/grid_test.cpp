@@ -34,6 +34,21 @@ TEST(GridDecomposition, SplitsXOnlyWhenItMust) {
   EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 5), (Int3{5, 1, 1}));
 }
 
+// Where a whole x has many more ghosts, in whole blocks of the exact sums alone.
+TEST(GridDecomposition, SplitsALongXInBlocks) {
+  const GridSpec paper = box({24576, 5184, 5120});
+  const Int3 best = Grid::decompose(paper, 82944), rank = Grid::largest_box(paper, best);
+  EXPECT_EQ(best[0] * best[1] * best[2], 82944);
+  EXPECT_EQ(rank[0] % 256, 0);
+  const auto ghosts = [](const Int3 &n) { return double(n[0]) * n[1] + double(n[1]) * n[2] + double(n[0]) * n[2]; };
+  EXPECT_LT(ghosts(rank), 0.3 * ghosts({24576, 18, 20}));
+  EXPECT_EQ(Grid::decompose(box({1024, 64, 64}), 16), (Int3{4, 1, 4}));  // 17408 a layer, 32768 with a whole x
+  EXPECT_EQ(Grid::decompose(box({512, 512, 512}), 16)[0], 1);            // 131072 and 163840
+  EXPECT_EQ(Grid::decompose(box({510, 64, 64}), 256)[0], 1);  // less than two blocks
+  EXPECT_EQ(Grid::decompose(box({1024, 1024, 1}), 16), (Int3{4, 4, 1}));
+  EXPECT_EQ(Grid::decompose(box({1024, 1024, 1}, {1, 0, 0}), 16), (Int3{1, 16, 1}));
+}
+
 TEST(GridDecomposition, ObeysOrders) {
   EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {2, 0, 0}), 4), (Int3{2, 1, 2}));
   EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {0, 4, 0}), 4), (Int3{1, 4, 1}));
