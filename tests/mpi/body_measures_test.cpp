@@ -167,9 +167,9 @@ TEST(BodyMeasures, StretchedBodiesHaveTheirEnergy) {
       SpeciesSpec spec = species(Shape::sphere, 0.15);
       const double stretch = s ? 1.5 : 1.2;
       spec.initial_stretch = {stretch, flat ? 1 / stretch : 1, flat ? 1 : 1 / stretch};
+      spec.shear_modulus = 1 + 3 * s;
       trace[s] = stretch * stretch + 1 / (stretch * stretch) + 1;
       scene.add(spec, {{{0.25 + 0.5 * s, 0.5, 0.5}, {}}});
-      scene.phases.back().material.shear_modulus = 1 + 3 * s;
     }
     scene.set_velocity([](int, const Real3 &) { return 0.0; });
     const std::vector<BodyMeasure> bodies = scene.measure();
