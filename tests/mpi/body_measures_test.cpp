@@ -5,6 +5,7 @@
 #include "bodies/shapes.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "diagnostics/flow_measures.hpp"
+#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -126,6 +127,7 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
       EXPECT_EQ(many.elastic_energy, one.elastic_energy);
       EXPECT_GT(many.trace_max, 3.3);
       EXPECT_EQ(many.trace_max, one.trace_max);
+      EXPECT_EQ(many.rest_deformation, one.rest_deformation);
     }
   }
 }
@@ -176,6 +178,29 @@ TEST(BodyMeasures, StretchedBodiesHaveTheirEnergy) {
     for (int s = 0; s < 2; ++s) {
       EXPECT_NEAR(bodies[s].elastic_energy, (1 + 3 * s) / 2.0 * (trace[s] - 3) * bodies[s].volume, 1e-13);
       EXPECT_NEAR(bodies[s].trace_max, trace[s], 1e-14);
+    }
+  }
+}
+
+// An ellipsoid of semi-axes l a is what B = diag(l^2), turned with it, makes of one of semi-axes a.
+TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
+  for (const bool flat : {false, true}) {
+    const Real3 stretch{1.6, flat ? 1 / 1.6 : .8, flat ? 1 : 1 / (1.6 * .8)},
+        turned{flat ? 0. : 20, flat ? 0. : -35, 70};
+    for (const double longer : {1., 1.3}) {  // a sphere, or an ellipsoid at rest
+      SpeciesSpec spec =
+          species(Shape::ellipsoid, 0, {.25 * longer * stretch[0], .25 * stretch[1], .25 * stretch[2]}, turned);
+      spec.initial_stretch = stretch;
+      spec.shear_modulus = 1;
+      Scene scene(PETSC_COMM_WORLD, box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
+      scene.add(spec, {{{.1, .5, .5}, turned}});
+      GhostExchange exchange(scene.grid);
+      ASSERT_EQ(exchange.update(scene.phases[0].tensor, 1), 0);
+      const BodyMeasure body = scene.measure()[0];
+      EXPECT_GT(body.taylor_deformation, .3);
+      EXPECT_NEAR(body.rest_deformation, (longer - 1) / (longer + 1), 1e-3);
+      scene.phases[0].tensor = tensor_at_rest(scene.grid);  // without the stretch it is the shape's
+      EXPECT_NEAR(scene.measure()[0].rest_deformation, body.taylor_deformation, 1e-14);
     }
   }
 }
