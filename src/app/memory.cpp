@@ -19,9 +19,16 @@ namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
-/// Doubles per cell of a phase: fraction, label and B; of the staggered method again at the time of the output.
-double phase_fields(const Config &config) {
-  return (1 + config.body_series + (dimension_of(config) == 2 ? 3 : 6)) * (config.method.staggered() ? 2 : 1);
+/// Doubles per cell of a phase: fraction, label and, with a modulus, B; of the staggered method again at the time of
+/// the output.
+double phase_fields(const Config &config, bool elastic = true) {
+  const int tensor = !elastic ? 0 : dimension_of(config) == 2 ? 3 : 6;
+  return (1 + config.body_series + tensor) * (config.method.staggered() ? 2 : 1);
+}
+
+int phases_of(const Config &config, std::size_t species) {
+  const SpeciesSpec &spec = config.species[species];
+  return config.separates(spec) ? expected_colours(spec, config.grid, config.places[species]) : 1;
 }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
@@ -29,8 +36,7 @@ double phase_fields(const Config &config) {
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
-  const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, phases > 0);
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, !config.species.empty());
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
@@ -38,14 +44,19 @@ double fields(const Config &config) {
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
-  if (phases == 0) return sum;
+  if (config.species.empty()) return sum;
+  double tensor = 0;
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const bool elastic = config.species[s].material().elastic();
+    if (elastic) tensor = dimension == 2 ? 3 : 6;
+    sum += phases_of(config, s) * phase_fields(config, elastic);
+  }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
   if (method.interface == InterfaceScheme::weno5) sum += 1;
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension);
-  sum += phases * phase_fields(config);
   return sum;
 }
 
@@ -78,10 +89,8 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 }  // namespace
 
 int expected_phases(const Config &config) {
-  int phases = static_cast<int>(config.species.size());
-  for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (config.separates(config.species[s]))
-      phases += expected_colours(config.species[s], config.grid, config.places[s]) - 1;
+  int phases = 0;
+  for (std::size_t s = 0; s < config.species.size(); ++s) phases += phases_of(config, s);
   return phases;
 }
 

@@ -175,6 +175,7 @@ std::vector<BodyRecord> Outputs::records() const {
     record.inclination = body.inclination;
     record.elastic_energy = body.elastic_energy;
     record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
+    record.rest_deformation = body.rest_deformation;
     records.push_back(record);
   }
   return records;

@@ -22,7 +22,7 @@ constexpr double many_steps = 1e9;
 std::string unresolved(const State &state) {
   char text[200];
   std::snprintf(text, sizeof text,
-                "t = %.9g: the grid does not resolve the strain of a body (det B > %g), which is forgotten there; more "
+                "t = %.9g: the grid does not resolve the strain of a body (det B > %g), part of which is lost there; more "
                 "-grid_cells",
                 state.time, largest_determinant);
   return text;

@@ -111,6 +111,9 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().elastic())
+    return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
+           spec.name + "_shear_modulus > 0";
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   const bool random = spec.placement == Placement::random;

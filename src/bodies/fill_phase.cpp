@@ -79,7 +79,7 @@ template <class PhaseOf>
 void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                   PhaseOf phase_of) {
   const Real3 &l = spec.initial_stretch;
-  if (l[0] == l[1] && l[1] == l[2]) return;
+  if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().elastic()) return;
   const Surface surface(spec, grid.dimension());
   const auto &components = tensor_components(grid.dimension());
   for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
@@ -124,6 +124,7 @@ std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spe
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   phase->tensor = tensor_at_rest(grid);
+  if (!phase->material.elastic()) return;
   const auto &components = tensor_components(grid.dimension());
   const ConstView fraction = phase->fraction[0];
   for (std::size_t c = 0; c < components.size(); ++c) {

@@ -21,7 +21,7 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::
 void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                    const std::vector<int> &colour, std::vector<Phase> *phases);
 
-/// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere.
+/// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere and in bodies without modulus.
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase);
 
 }  // namespace eulastic

@@ -3,7 +3,9 @@
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
 #include "field/exact_sum.hpp"
+#include "field/sides.hpp"
 #include "grid/threads.hpp"
+#include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +15,12 @@ namespace {
 
 constexpr double degrees = 180 / 3.14159265358979323846;
 // Order of the sums of one body; second moments xx, yy, zz, yz, xz, xy.
-constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13;
-constexpr int all_sums = 14, position_sums = 4;
+constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13, full_cells = 14, mean_tensor = 15;
+constexpr int all_sums = 21, position_sums = 4;
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+constexpr double full_cell = 0.999;
 
-// Calls visit(body index, phi, i, j, k) for every cell of a part with a label.
+// Calls visit(phase, body index, phi, i, j, k) for every cell of a part with a label.
 template <class Visit>
 void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
   for (const Phase &phase : phases) {
@@ -24,7 +28,7 @@ void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phas
     for (const Segment &row : part.rows(grid))
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
-        if (body >= 0 && body < bodies) visit(body, fraction(i, row.j, row.k), i, row.j, row.k);
+        if (body >= 0 && body < bodies) visit(phase, body, fraction(i, row.j, row.k), i, row.j, row.k);
       }
   }
 }
@@ -107,17 +111,56 @@ Real3 eigenvalues(const std::array<double, 6> &m) {
   return values;
 }
 
-// Lengths, deformation and inclination from central second moments per volume.
-void set_lengths(const std::array<double, 6> &moments, int dimension, BodyMeasure *body) {
+// Of the ellipsoid (ellipse) with these central second moments per volume, longest first.
+Real3 semi_axes(const std::array<double, 6> &moments, int dimension) {
   Real3 squares = eigenvalues(moments);
   if (dimension == 2) {  // the xy block alone
     const double mean = (moments[0] + moments[1]) / 2, half = (moments[0] - moments[1]) / 2;
     const double radius = std::sqrt(half * half + moments[5] * moments[5]);
     squares = {mean + radius, mean - radius, 0};
   }
-  for (int d = 0; d < dimension; ++d) body->semi_axes[d] = std::sqrt((dimension + 2) * std::max(squares[d], 0.0));
-  const double a = body->semi_axes[0], c = body->semi_axes[dimension - 1];
-  body->taylor_deformation = a + c > 0 ? (a - c) / (a + c) : 0;
+  Real3 axes{};
+  for (int d = 0; d < dimension; ++d) axes[d] = std::sqrt((dimension + 2) * std::max(squares[d], 0.0));
+  return axes;
+}
+
+double taylor_deformation(const Real3 &axes, int dimension) {
+  const double a = axes[0], c = axes[dimension - 1];
+  return a + c > 0 ? (a - c) / (a + c) : 0;
+}
+
+// What stretch B = V V makes of moments M, undone: V^-1 M V^-1 has the eigenvalues of K^-1 M K^-T, B = K K^T
+// (Cholesky).
+std::array<double, 6> undo_stretch(const std::array<double, 6> &moments, const std::array<double, 6> &B) {
+  double K[3][3] = {}, M[3][3];
+  for (int c = 0; c < 6; ++c) {
+    const auto [p, q] = pairs[c];
+    M[p][q] = M[q][p] = moments[c];
+    K[q][p] = B[c];  // below the diagonal
+  }
+  for (int p = 0; p < 3; ++p)
+    for (int q = p; q < 3; ++q) {
+      for (int m = 0; m < p; ++m) K[q][p] -= K[q][m] * K[p][m];
+      K[q][p] = p == q ? std::sqrt(K[p][p]) : K[q][p] / K[p][p];
+    }
+  for (const bool rows : {true, false})  // K^-1 from the left, then from the right
+    for (int q = 0; q < 3; ++q)
+      for (int p = 0; p < 3; ++p) {
+        const auto at = [&](int n) -> double & { return rows ? M[n][q] : M[q][n]; };
+        for (int m = 0; m < p; ++m) at(p) -= K[p][m] * at(m);
+        at(p) /= K[p][p];
+      }
+  std::array<double, 6> undone;
+  for (int c = 0; c < 6; ++c) undone[c] = M[pairs[c][0]][pairs[c][1]];
+  return undone;
+}
+
+// Lengths, deformations and inclination from central second moments per volume and the mean of B.
+void set_lengths(const std::array<double, 6> &moments, const std::array<double, 6> &B, int dimension,
+                 BodyMeasure *body) {
+  body->semi_axes = semi_axes(moments, dimension);
+  body->taylor_deformation = taylor_deformation(body->semi_axes, dimension);
+  body->rest_deformation = taylor_deformation(semi_axes(undo_stretch(moments, B), dimension), dimension);
   const double angle = std::atan2(2 * moments[5], moments[0] - moments[1]) / 2 * degrees;
   body->inclination = angle > -90 ? angle : 90;
 }
@@ -142,15 +185,16 @@ BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &
   body.elastic_energy = sums.value(b, strain) * largest.energy * grid.cell_volume();
   body.trace_max = std::max(largest.trace[b], 3.0);  // det B = 1
   if (!(cells > 0)) return body;
-  std::array<double, 6> moments{};
-  constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  std::array<double, 6> moments{}, B{1, 1, 1, 0, 0, 0};
+  const double full = sums.value(b, full_cells);
   for (int c = 0; c < 6; ++c) {
     const int p = pairs[c][0], q = pairs[c][1];
     if (std::max(p, q) >= grid.dimension()) continue;
+    if (full > 0) B[c] = sums.value(b, mean_tensor + c) / full;
     const double central = sums.value(b, second_moment + c) / cells - mean[p] * mean[q];
     moments[c] = (central - (p == q ? 1.0 / 12 : 0.0)) * h[p] * h[q];
   }
-  set_lengths(moments, grid.dimension(), &body);
+  set_lengths(moments, B, grid.dimension(), &body);
   return body;
 }
 
@@ -175,7 +219,7 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
   BodySums sums(bodies(), position_sums);
   const std::vector<Int3> references = within_box(grid, references_);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+    for_each_cell(grid, part, phases, bodies(), [&](const Phase &, int b, double phi, int i, int j, int k) {
       const Real3 x = offset(grid, references[b], {i, j, k});
       some.add(b, 0, phi);
       for (int d = 0; d < grid.dimension(); ++d) some.add(b, first_moment + d, phi * x[d]);
@@ -204,7 +248,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2 + bodies(), 0.0));
   in_row_parts(grid, [&](const RowPart &part) {
     std::vector<double> &some = found[part.number];
-    for_each_cell(grid, part, phases, bodies(), [&](int, double, int i, int j, int k) {
+    for_each_cell(grid, part, phases, bodies(), [&](const Phase &, int, double, int i, int j, int k) {
       for (int d = 0; d < dimension; ++d) some[0] = std::max(some[0], std::abs(centred(d, i, j, k)));
     });
     for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double trace) {
@@ -218,7 +262,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   BodySums sums(bodies(), all_sums);
   const std::vector<Int3> references = within_box(grid, references_);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, bodies(), [&](int b, double phi, int i, int j, int k) {
+    for_each_cell(grid, part, phases, bodies(), [&](const Phase &phase, int b, double phi, int i, int j, int k) {
       const Real3 x = offset(grid, references[b], {i, j, k});
       some.add(b, 0, phi);
       for (int d = 0; d < dimension; ++d) {
@@ -229,6 +273,14 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       some.add(b, second_moment + 3, phi * x[1] * x[2]);
       some.add(b, second_moment + 4, phi * x[0] * x[2]);
       some.add(b, second_moment + 5, phi * x[0] * x[1]);
+      if (!(phi > full_cell)) return;
+      some.add(b, full_cells, 1);
+      for (int f = 0; f < phase.tensor.count(); ++f) {
+        const auto [p, q] = tensor_components(dimension)[f];
+        const ConstView B = phase.tensor[f];
+        const double value = p == q ? B(i, j, k) : kernels::average4(&B(i, j, k), B.stride(p), B.stride(q));
+        some.add(b, mean_tensor + (p == q ? p : 6 - p - q), value);
+      }
     });
     for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double) {
       if (largest.energy > 0) some.add(b, strain, density / largest.energy);

@@ -15,7 +15,7 @@ struct Material {
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
 
-  /// false: a marked part of the fluid.
+  /// false: a marked part of the fluid, or a drop; its B is I.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }
 };
 

@@ -16,7 +16,8 @@ struct BodyRecord {
   double taylor_deformation = 0;  ///< (a - c) / (a + c), lengths from second moments
   double inclination = 0;         ///< degrees of the long axis from x in the xy plane
   double elastic_energy = 0;
-  double largest_stretch = 0;  ///< largest principal stretch anywhere in it, from tr B
+  double largest_stretch = 0;   ///< largest principal stretch anywhere in it, from tr B
+  double rest_deformation = 0;  ///< taylor_deformation of what is left when the mean of B is undone
 };
 
 }  // namespace eulastic

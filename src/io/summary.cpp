@@ -18,7 +18,8 @@ std::string summary_text(const Summary &s) {
                          .add("taylor_deformation", b.taylor_deformation)
                          .add("inclination", b.inclination)
                          .add("elastic_energy", b.elastic_energy)
-                         .add("largest_stretch", b.largest_stretch));
+                         .add("largest_stretch", b.largest_stretch)
+                         .add("rest_deformation", b.rest_deformation));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))

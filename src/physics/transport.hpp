@@ -15,6 +15,8 @@ struct EvolveRule {
 };
 /// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
 inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
+/// Bodies without modulus: B is I.
+inline constexpr EvolveRule evolve_nowhere{2, 2, 2};
 
 /// WENO5 makes tails without end. Below this they are cut off: round-off of phi = 1, and rows without solid stay empty.
 inline constexpr double negligible_fraction = 1e-16;

@@ -57,13 +57,14 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
   const Int3 n = grid.owned();
   const int dimension = grid.dimension(), deep = dimension == 3 ? 1 : 0;
   const ConstView phi = phase.fraction[0];
-  // With one layer of ghosts: an edge looks at the four centres around it.
+  const bool extended = rule.layers > 0;
+  // Of B that is reset outside. With one layer of ghosts: an edge looks at the four centres around it.
   std::vector<unsigned char> forgotten;  // empty while there is none
   const auto centre = [&](int i, int j, int k) {
     return Centre(phase.tensor.data() + layout.offset(i, j, k), layout.size, layout.sy, layout.sz, dimension);
   };
   long found = 0;
-  for (int k = -deep; k < n[2] + deep; ++k)
+  for (int k = -deep; !extended && k < n[2] + deep; ++k)
     for (int j = -1; j <= n[1]; ++j) {
       if (phase.rows.idle(j, k)) continue;
       for (int i = -1; i <= n[0]; ++i) {
@@ -90,11 +91,13 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
           if (here[0] | here[-low_a] | here[-low_b] | here[-low_a - low_b]) B(i, j, k) = a == b ? 1 : 0;
         }
   }
-  // Neighbours have lost part of their off-diagonals, and det B is larger for it.
-  for (int k = 0; !forgotten.empty() && k < n[2]; ++k)
+  // Where B is extended, all that evolve. Else full neighbours: they have lost part of their off-diagonals, and det B is
+  // larger for it.
+  const double solid = extended ? rule.centre : full_cell;
+  for (int k = 0; (extended || !forgotten.empty()) && k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0] && !phase.rows.idle(j, k); ++i) {
-        if (!(phi(i, j, k) > full_cell)) continue;
+        if (!(phi(i, j, k) >= solid)) continue;
         const Centre here = centre(i, j, k);
         if (!(here.determinant() > largest_determinant)) continue;
         const double factor = here.isochoric_factor(dimension);

@@ -17,6 +17,7 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscCall(find_rows(phase));
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+  if (!phase.material.elastic()) PetscFunctionReturn(0);
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
   PetscCall(extend_exterior(phase, phase.tensor, &phase.rows));
   PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
@@ -35,7 +36,8 @@ PetscErrorCode Solver::find_rows(Phase &phase) {
   fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
   const Int3 &n = grid_->owned();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
-    for (FieldBlock *block : {&phase.fraction, &phase.tensor, &next_fraction_, &next_tensor_}) block->leave_rest();
+    for (FieldBlock *block : {&phase.fraction, &phase.tensor, &next_fraction_, &next_tensor_})
+      if (block != &phase.tensor || phase.material.elastic()) block->leave_rest();
   PetscFunctionReturn(0);
 }
 
@@ -62,7 +64,11 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   *phases = &phases_now_;
   if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
   phases_now_.resize(now_.phases.size());
-  if (flow_) phases_now_[0].tensor = idle_tensor(now_.phases[0].tensor.count());
+  for (std::size_t p = 0; flow_ && p < phases_now_.size(); ++p)
+    if (now_.phases[p].material.elastic()) {
+      phases_now_[p].tensor = idle_tensor(now_.phases[p].tensor.count());
+      break;
+    }
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
   PetscCall(transport(phases_now_, 0.5 * now_.dt));
   for (Phase &copy : phases_now_)

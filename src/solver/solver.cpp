@@ -72,7 +72,9 @@ PetscErrorCode Solver::prepare() {
   }
   PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
-  if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
+  if (!spec_.staggered() &&
+      std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
+    next_tensor_ = tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::plic)
     interface_ = std::make_unique<InterfaceTransport>(*grid_, *work_);
   else
@@ -97,12 +99,13 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
+    if (phase.material.elastic()) PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
 
 EvolveRule Solver::evolve_rule(const Phase &phase) const {
+  if (!phase.material.elastic()) return evolve_nowhere;
   const bool reset = spec_.exterior == SolidExterior::identity;
   EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
@@ -135,7 +138,10 @@ std::size_t Solver::bytes() const {
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
                     viscosity_.bytes() + pressure_solver_->bytes();
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
-    for (const Phase &phase : *phases) sum += phase.fraction.bytes() + phase.tensor.bytes() + phase.label.bytes();
+    for (const Phase &phase : *phases) {
+      sum += phase.fraction.bytes() + phase.label.bytes();
+      if (phase.material.elastic()) sum += phase.tensor.bytes();  // else nobody writes there
+    }
   return sum;
 }
 

@@ -48,7 +48,7 @@ public:
   /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
-  /// Sets B to I where the grid does not resolve it. A part of the method: for what measure() found, before the step.
+  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;

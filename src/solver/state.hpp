@@ -14,7 +14,7 @@ struct State {
   double dt = 0;               ///< of the last step; the automatic one grows from it smoothly
   double speed_scale = 0;      ///< max |v| when last measured; scales WENO5's epsilon
   double crossing_rate = 0;    ///< max |u_d|/h_d when last measured, cells per time
-  std::int64_t forgotten = 0;  ///< centres where B was not resolved and set to I, of all steps
+  std::int64_t forgotten = 0;  ///< centres where B was not resolved, and mended or set to I, of all steps
   double travel = 0;           ///< cells the interface may have moved since the labels were carried
   FieldBlock velocity;         ///< u, v (, w) on faces, three ghosts valid
   FieldBlock pressure;         ///< at centres, one ghost valid; half a step behind when staggered

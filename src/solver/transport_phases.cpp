@@ -27,7 +27,11 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   std::vector<MovedRows> rows(phases.size());
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
-    rows[p].swapped_in = std::exchange(next_rows_, phase.rows);
+    rows[p].swapped_in = next_rows_;
+    if (phase.material.elastic())
+      next_rows_ = phase.rows;
+    else
+      next_rows_.join(phase.rows);  // its B is not swapped
     if (spec_.interface == InterfaceScheme::plic) {
       PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
     } else {
@@ -44,6 +48,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
+    if (!phase.material.elastic()) continue;
     const ActiveSegments before = std::move(phase.strained);
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));

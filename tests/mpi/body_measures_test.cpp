@@ -1,90 +1,17 @@
-// Labels and measures of bodies: right values, and the same bits on any number of ranks.
-#include "bodies/fill_phase.hpp"
+// Measures of bodies: right values, and the same bits on any number of ranks.
 #include "bodies/labels.hpp"
-#include "bodies/measures.hpp"
-#include "bodies/shapes.hpp"
-#include "diagnostics/energy_rates.hpp"
 #include "diagnostics/flow_measures.hpp"
+#include "field/sides.hpp"
+#include "support/body_scene.hpp"
 
-#include <gtest/gtest.h>
+using namespace eulastic;
+using namespace eulastic::test;
 
-#include <cmath>
-#include <utility>
-
-namespace eulastic {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-GridSpec box(const Int3 &cells, const Real3 &length) {
-  GridSpec spec;
-  spec.cells = cells;
-  spec.length = length;
-  return spec;
-}
-
-SpeciesSpec species(Shape shape, double radius, const Real3 &semi_axes = {}, const Real3 &orientation = {}) {
-  SpeciesSpec spec;
-  spec.shape = shape;
-  spec.radius = radius;
-  spec.semi_axes = semi_axes;
-  spec.orientation = orientation;
-  return spec;
-}
-
-// One phase of bodies and a velocity field on a grid of `comm`.
-struct Scene {
-  Grid grid;
-  std::vector<Phase> phases;
-  FieldBlock velocity;
-  BodyTracker tracker;
-
-  Scene(MPI_Comm comm, const GridSpec &spec) {
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    velocity = FieldBlock(grid, grid.dimension());
-  }
-  void add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places) {
-    phases.emplace_back();
-    EXPECT_EQ(fill_phase(grid, spec, places, 1 + tracker.bodies(), &phases.back()), 0);
-    tracker.add_phase(grid, places);
-  }
-  /// Only the fraction moves to `places`: what an interface scheme does.
-  void move(const SpeciesSpec &spec, const std::vector<BodyPlace> &places) {
-    Phase moved;
-    EXPECT_EQ(fill_phase(grid, spec, places, 1, &moved), 0);
-    phases[0].fraction.swap(moved.fraction);
-  }
-  template <class Function>  // velocity component d at x, ghosts included
-  void set_velocity(Function &&function) {
-    for (int d = 0; d < grid.dimension(); ++d)
-      for (int k = -grid.layout().ghosts[2]; k < grid.owned()[2] + grid.layout().ghosts[2]; ++k)
-        for (int j = -3; j < grid.owned()[1] + 3; ++j)
-          for (int i = -3; i < grid.owned()[0] + 3; ++i) {
-            const Int3 local{i, j, k};
-            Real3 x{};
-            for (int e = 0; e < 3; ++e) {
-              const int n = grid.cells()[e], global = (grid.layout().begin[e] + local[e] + n) % n;
-              x[e] = (global + (e == d ? 0.0 : 0.5)) * grid.spacing()[e];
-            }
-            velocity[d](i, j, k) = function(d, x);
-          }
-  }
-  /// B_xx of every body by 1 + sin(7 x)/2: strains that differ from cell to cell.
-  void strain() {
-    for (Phase &phase : phases)
-      for (const Segment &row : grid.rows())
-        for (int i = 0; i < row.i_end; ++i)
-          if (phase.fraction[0](i, row.j, row.k) > 0)
-            phase.tensor[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
-  }
-  std::vector<BodyMeasure> measure() const {
-    std::vector<BodyMeasure> bodies;
-    EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &bodies), 0);
-    return bodies;
-  }
-};
-
-double wrap(double x, double length) { return x - length * std::floor(x / length); }
+}  // namespace
 
 TEST(BodyMeasures, SameBitsOnAnyRanks) {
   for (const Int3 &cells : {Int3{21, 26, 31}, Int3{33, 30, 1}}) {
@@ -93,7 +20,7 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
     std::vector<BodyMeasure> all[2];
     const MPI_Comm comms[2] = {PETSC_COMM_WORLD, PETSC_COMM_SELF};
     for (int c = 0; c < 2; ++c) {
-      Scene scene(comms[c], spec);
+      BodyScene scene(comms[c], spec);
       const bool flat = cells[2] == 1;
       scene.add(species(Shape::ellipsoid, 0, {0.7, 0.4, 0.5}, flat ? Real3{0, 0, 25} : Real3{15, 30, 25}),
                 {{{0.1, 1.3, 0.05}, flat ? Real3{0, 0, 25} : Real3{15, 30, 25}}, {{1.2, 0.6, 1.6}, {}}});
@@ -126,6 +53,7 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
       EXPECT_EQ(many.elastic_energy, one.elastic_energy);
       EXPECT_GT(many.trace_max, 3.3);
       EXPECT_EQ(many.trace_max, one.trace_max);
+      EXPECT_EQ(many.rest_deformation, one.rest_deformation);
     }
   }
 }
@@ -136,7 +64,7 @@ TEST(BodyMeasures, EllipsoidsHaveTheirAxesAcrossSeams) {
     const GridSpec full = box({36, 40, 44}, {3.6, 4.0, 4.4}), flat = box({72, 80, 1}, {3.6, 4.0, 1});
     for (const GridSpec &spec : {full, flat}) {
       const bool is_flat = spec.cells[2] == 1;
-      Scene scene(PETSC_COMM_WORLD, spec);
+      BodyScene scene(PETSC_COMM_WORLD, spec);
       const Real3 centre{0.123, 3.9, is_flat ? 0.5 : 0.05};
       scene.add(species(Shape::ellipsoid, 0, {1.2, 0.7, 0.9}), {{centre, {0, 0, angle}}});
       scene.set_velocity([](int d, const Real3 &) { return 0.3 - 0.7 * d; });
@@ -161,21 +89,44 @@ TEST(BodyMeasures, EllipsoidsHaveTheirAxesAcrossSeams) {
 // B = diag(l^2) everywhere inside: W = G/2 (tr B - 3), per body of its own species.
 TEST(BodyMeasures, StretchedBodiesHaveTheirEnergy) {
   for (const bool flat : {false, true}) {
-    Scene scene(PETSC_COMM_WORLD, box({24, 24, flat ? 1 : 24}, {1, 1, 1}));
+    BodyScene scene(PETSC_COMM_WORLD, box({24, 24, flat ? 1 : 24}, {1, 1, 1}));
     double trace[2];
     for (int s = 0; s < 2; ++s) {
       SpeciesSpec spec = species(Shape::sphere, 0.15);
       const double stretch = s ? 1.5 : 1.2;
       spec.initial_stretch = {stretch, flat ? 1 / stretch : 1, flat ? 1 : 1 / stretch};
+      spec.shear_modulus = 1 + 3 * s;
       trace[s] = stretch * stretch + 1 / (stretch * stretch) + 1;
       scene.add(spec, {{{0.25 + 0.5 * s, 0.5, 0.5}, {}}});
-      scene.phases.back().material.shear_modulus = 1 + 3 * s;
     }
     scene.set_velocity([](int, const Real3 &) { return 0.0; });
     const std::vector<BodyMeasure> bodies = scene.measure();
     for (int s = 0; s < 2; ++s) {
       EXPECT_NEAR(bodies[s].elastic_energy, (1 + 3 * s) / 2.0 * (trace[s] - 3) * bodies[s].volume, 1e-13);
       EXPECT_NEAR(bodies[s].trace_max, trace[s], 1e-14);
+    }
+  }
+}
+
+// An ellipsoid of semi-axes l a is what B = diag(l^2), turned with it, makes of one of semi-axes a.
+TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
+  for (const bool flat : {false, true}) {
+    const Real3 stretch{1.6, flat ? 1 / 1.6 : .8, flat ? 1 : 1 / (1.6 * .8)},
+        turned{flat ? 0. : 20, flat ? 0. : -35, 70};
+    for (const double longer : {1., 1.3}) {  // a sphere, or an ellipsoid at rest
+      SpeciesSpec spec =
+          species(Shape::ellipsoid, 0, {.25 * longer * stretch[0], .25 * stretch[1], .25 * stretch[2]}, turned);
+      spec.initial_stretch = stretch;
+      spec.shear_modulus = 1;
+      BodyScene scene(PETSC_COMM_WORLD, box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
+      scene.add(spec, {{{.1, .5, .5}, turned}});
+      GhostExchange exchange(scene.grid);
+      ASSERT_EQ(exchange.update(scene.phases[0].tensor, 1), 0);
+      const BodyMeasure body = scene.measure()[0];
+      EXPECT_GT(body.taylor_deformation, .3);
+      EXPECT_NEAR(body.rest_deformation, (longer - 1) / (longer + 1), 1e-3);
+      scene.phases[0].tensor = tensor_at_rest(scene.grid);  // without the stretch it is the shape's
+      EXPECT_NEAR(scene.measure()[0].rest_deformation, body.taylor_deformation, 1e-14);
     }
   }
 }
@@ -191,7 +142,7 @@ TEST(BodyMeasures, RedCellHasItsSecondMoments) {
     along += 2 * pi * r * h * h * h / 12 / n;
     across += pi * r * r * r * h / n;
   }
-  Scene scene(PETSC_COMM_WORLD, box({44, 44, 44}, {2.4, 2.4, 2.4}));
+  BodyScene scene(PETSC_COMM_WORLD, box({44, 44, 44}, {2.4, 2.4, 2.4}));
   scene.add(species(Shape::biconcave, 1), {{{0.03, 1.2, 1.25}, {20, 0, 35}}});
   const BodyMeasure body = scene.measure()[0];
   const double a = std::sqrt(5 * across / volume), c = std::sqrt(5 * along / volume);
@@ -204,14 +155,14 @@ TEST(BodyMeasures, RedCellHasItsSecondMoments) {
 TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   const GridSpec spec = box({20, 18, 16}, {2.0, 1.8, 1.6});
   const SpeciesSpec sphere = species(Shape::sphere, 0.4);
-  Scene scene(PETSC_COMM_WORLD, spec), silent(PETSC_COMM_WORLD, spec);
+  BodyScene scene(PETSC_COMM_WORLD, spec), silent(PETSC_COMM_WORLD, spec);
   const Real3 start{1.9, 0.05, 0.8}, step{0.05, -0.03, 0.04};
-  for (Scene *s : {&scene, &silent}) s->add(sphere, {{start, {}}});
+  for (BodyScene *s : {&scene, &silent}) s->add(sphere, {{start, {}}});
   GhostExchange exchange(scene.grid);
   for (int n = 1; n <= 100; ++n) {
     Real3 centre{};
     for (int d = 0; d < 3; ++d) centre[d] = wrap(start[d] + n * step[d], spec.length[d]);
-    for (Scene *s : {&scene, &silent}) {
+    for (BodyScene *s : {&scene, &silent}) {
       s->move(sphere, {{centre, {}}});
       ASSERT_EQ(carry_labels(s->grid, exchange, &s->phases[0]), 0);
       ASSERT_EQ(s->tracker.follow(s->grid, s->phases), 0);
@@ -234,7 +185,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
 TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   SpeciesSpec slab = species(Shape::slab, 0);
   slab.interval = {0.2, 0.5};
-  Scene scene(PETSC_COMM_WORLD, box({12, 10, 7}, {1.2, 1.0, 0.7}));
+  BodyScene scene(PETSC_COMM_WORLD, box({12, 10, 7}, {1.2, 1.0, 0.7}));
   std::vector<BodyPlace> places;
   ASSERT_EQ(place_bodies(slab, scene.grid.spec(), &places), "");
   scene.add(slab, places);
@@ -245,97 +196,3 @@ TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   EXPECT_NEAR(body.centroid[1], 0.35, 1e-13);
   EXPECT_NEAR(body.centroid[2], 0.35, 1e-13);
 }
-
-TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
-  // Radius 4 cells, 3 cells between the surfaces, half a cell a call, twice around x.
-  for (int layers : {1, 14}) {
-    const GridSpec spec = box({28, 15, layers}, {28, 15, double(layers)});
-    const SpeciesSpec sphere = species(Shape::sphere, 4);
-    Scene scene(PETSC_COMM_WORLD, spec);
-    const auto places_at = [&](int n) {
-      const double z = layers / 2.0;
-      return std::vector<BodyPlace>{{{wrap(5 + 0.5 * n, 28), wrap(6 + 0.25 * n, 15), z}, {}},
-                                    {{wrap(16 + 0.5 * n, 28), wrap(6 + 0.25 * n, 15), z}, {}}};
-    };
-    scene.add(sphere, places_at(0));
-    GhostExchange exchange(scene.grid);
-    for (int n = 1; n <= 112; ++n) {
-      Phase fresh;
-      ASSERT_EQ(fill_phase(scene.grid, sphere, places_at(n), 1, &fresh), 0);
-      scene.move(sphere, places_at(n));
-      ASSERT_EQ(carry_labels(scene.grid, exchange, &scene.phases[0]), 0);
-      const ConstView expected = std::as_const(fresh.label)[0], label = std::as_const(scene.phases[0].label)[0];
-      int wrong = 0;
-      for (const Segment &row : scene.grid.rows())
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const bool solid = fresh.fraction[0](i, row.j, row.k) > label_threshold;
-          wrong += label(i, row.j, row.k) != (solid ? expected(i, row.j, row.k) : 0);
-        }
-      EXPECT_EQ(wrong, 0) << n;
-    }
-  }
-}
-
-TEST(Labels, ABodyOfLessThanACellKeepsItsNameWhenItLeavesItsCell) {
-  // All of phi in one cell, .11, that is the next one at every call, all around the box along y.
-  const int n = 12;
-  Scene scene(PETSC_COMM_WORLD, box({6, n, 1}, {6, double(n), 1}));
-  scene.add(species(Shape::sphere, 0.4), {{{2.5, 0.5, 0.5}, {}}});
-  GhostExchange exchange(scene.grid);
-  Phase &phase = scene.phases[0];
-  const int first = scene.grid.layout().begin[1];
-  for (int place = 1; place <= n; ++place) {
-    for (const Segment &row : scene.grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i)
-        phase.fraction[0](i, row.j, 0) = scene.grid.layout().begin[0] + i == 2 && first + row.j == place % n ? .11 : 0;
-    ASSERT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
-    ASSERT_EQ(carry_labels(scene.grid, exchange, &phase), 0);
-    int wrong = 0;
-    for (const Segment &row : scene.grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i)
-        wrong += phase.label[0](i, row.j, 0) != (phase.fraction[0](i, row.j, 0) > 0 ? 1 : 0);
-    EXPECT_EQ(wrong, 0) << place;
-  }
-}
-
-TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
-  // phi > 1e-6 everywhere between the bodies, as after a diffusive transport: the border must move with them.
-  const int nx = 30, ny = 13, nz = 12;
-  const auto phi_of = [&](double centre, const Int3 &cell) {
-    const double x = std::remainder(cell[0] + 0.5 - centre, nx), y = cell[1] + 0.5 - 6.5, z = cell[2] + 0.5 - 6;
-    return 0.5 * (1 - std::tanh(std::sqrt(x * x + y * y + z * z) - 4));
-  };
-  const MPI_Comm comms[2] = {PETSC_COMM_WORLD, PETSC_COMM_SELF};
-  Scene world(comms[0], box({nx, ny, nz}, {30, 13, 12})), alone(comms[1], box({nx, ny, nz}, {30, 13, 12}));
-  for (Scene *scene : {&world, &alone}) {
-    scene->add(species(Shape::sphere, 4), {{{5, 6.5, 6}, {}}, {{16, 6.5, 6}, {}}});
-    GhostExchange exchange(scene->grid);
-    for (int n = 1; n <= 150; ++n) {
-      const double first = 5 + 0.4 * n, second = 16 + 0.4 * n;
-      Phase &phase = scene->phases[0];
-      const Layout &layout = scene->grid.layout();
-      const auto global = [&](int i, const Segment &row) {
-        return Int3{layout.begin[0] + i, layout.begin[1] + row.j, layout.begin[2] + row.k};
-      };
-      for (const Segment &row : scene->grid.rows())
-        for (int i = row.i_begin; i < row.i_end; ++i)
-          phase.fraction[0](i, row.j, row.k) = phi_of(first, global(i, row)) + phi_of(second, global(i, row));
-      ASSERT_EQ(carry_labels(scene->grid, exchange, &phase), 0);
-      int wrong = 0;
-      for (const Segment &row : scene->grid.rows())
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const double a = phi_of(first, global(i, row)), b = phi_of(second, global(i, row));
-          wrong += a + b > 0.2 && phase.label[0](i, row.j, row.k) != (a > b ? 1 : 2);
-        }
-      EXPECT_EQ(wrong, 0) << n;
-    }
-  }
-  const Layout &layout = world.grid.layout();
-  for (const Segment &row : world.grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i)
-      ASSERT_EQ(world.phases[0].label[0](i, row.j, row.k),
-                alone.phases[0].label[0](layout.begin[0] + i, layout.begin[1] + row.j, layout.begin[2] + row.k));
-}
-
-}  // namespace
-}  // namespace eulastic

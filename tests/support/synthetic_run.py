@@ -60,10 +60,10 @@ def write_run(directory, cells=(32, 24, 16), times=(0.0, 50.0, 100.0), speed=SPE
     with h5py.File(directory / "bodies.h5", "w") as file:
         file["time"], file["id"], file["species"] = list(times), [1, 2], ["rbc", "rbc"]
         file["centroid"], file["velocity"] = positions, numpy.gradient(positions, times, axis=0)
-        for name in ("volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch"):
+        for name in ("volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch", "rest_deformation"):
             file[name] = numpy.ones((len(times), 2))
     bodies = [{"id": i, "species": "rbc", "centroid": list(c), "velocity": [SPEED * i, 0, 0], "volume": 1.0,
-               "taylor_deformation": 0.1, "inclination": 30.0 + i, "elastic_energy": 0.1, "largest_stretch": 1.2} for i, c in enumerate(positions[-1], 1)]
+               "taylor_deformation": 0.1, "inclination": 30.0 + i, "elastic_energy": 0.1, "largest_stretch": 1.2, "rest_deformation": 0.0} for i, c in enumerate(positions[-1], 1)]
     (directory / "summary.json").write_text(json.dumps(
         {"version": "0", "exit_reason": "time_end", "steps": 10, "time": times[-1], "divergence_rms": 1e-4,
          "divergence_max": 1e-3, "wall_seconds": 2.0, "ns_per_cell_step": 80.0, "bodies": bodies}))

@@ -41,8 +41,8 @@ std::vector<BodyRecord> bodies_at(int row) {
   for (int b = 0; b < 3; ++b) {
     const double x = 100 * row + 10 * b;
     bodies[b] = {
-        b + 1, b < 2 ? "rbc" : "platelet", {x, x + 1, x + 2}, {x + 3, x + 4, x + 5}, x + 6, x + 7, x + 8, x + 9,
-        x + 10};
+        b + 1, b < 2 ? "rbc" : "platelet", {x, x + 1, x + 2}, {x + 3, x + 4, x + 5}, x + 6, x + 7, x + 8, x + 9, x + 10,
+        x + 11};
   }
   return bodies;
 }
@@ -69,7 +69,8 @@ TEST(BodiesFile, GrowsAndIsReadableAllTheTime) {
   const std::vector<double> centroid = table.read("centroid", &shape);
   ASSERT_EQ(shape, (std::vector<hsize_t>{rows, 3, 3}));
   const std::vector<double> velocity = table.read("velocity", &shape);
-  const char *const scalars[] = {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch"};
+  const char *const scalars[] = {"volume",         "taylor_deformation", "inclination",
+                                 "elastic_energy", "largest_stretch",    "rest_deformation"};
   for (int n = 0; n < rows; ++n) {
     EXPECT_EQ(time[n], 0.5 * n);
     for (int b = 0; b < 3; ++b)

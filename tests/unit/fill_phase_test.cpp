@@ -58,6 +58,7 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
 TEST(FillPhase, StretchTurnsWithTheBody) {
   SpeciesSpec spec = species(Shape::ellipsoid, 0.25, {0.05, 0.5, 0.5});  // across the periodic x
   spec.initial_stretch = {1.5, 0.5, 4. / 3};
+  spec.shear_modulus = 1;
   spec.orientation = {20, -35, 70};
   const GridSpec grid_spec = box({32, 32, 32}, {1, 1, 1});
   std::vector<BodyPlace> places;

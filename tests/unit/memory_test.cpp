@@ -73,6 +73,13 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
                merged = parse_line(line + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(apart, {1, 1, 1}),
                    bytes_per_rank(merged, {1, 1, 1}) + bytes_per_phase(apart, {1, 1, 1}));
+  // Phi, label and six of B, and the same at the time of the output; without modulus no B, the first B lies elsewhere.
+  const double fluid = bytes_per_rank(parse_line("-time_end 1 -grid_cells 32,32,32 -grid_length 8,8,8").config, {1, 1, 1});
+  std::string without = line;
+  without.replace(without.find("-vessel_shear_modulus 1"), 23, "-vessel_shear_modulus 0");
+  const Config soft = parse_line(without + "32,32,32 -ball_contact merge").config;
+  EXPECT_DOUBLE_EQ(bytes_per_rank(merged, {1, 1, 1}), bytes_per_rank(soft, {1, 1, 1}) + 8 * 12 * std::pow(42, 3));
+  EXPECT_GT(bytes_per_rank(soft, {1, 1, 1}), fluid);
   // Viscosities of the place: at centres and on edges.
   const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(apart, {1, 1, 1}) + 8 * 4 * std::pow(42, 3));

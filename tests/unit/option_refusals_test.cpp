@@ -251,6 +251,8 @@ TEST(OptionRefusals, TwoDimensions) {
                    {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
                    {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
                    {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
+                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_initial_stretch 2,.5,1",
+                    {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
                    {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
                     {"-a_initial_stretch", "2-D"}},
                    {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",

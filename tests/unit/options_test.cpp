@@ -32,7 +32,7 @@ TEST(Options, ValuesArrive) {
       "-fluid_viscosity 0.1 -fluid_inertia no -body_force -1,2e-4,+3 -body_force_frequency 6 -body_force_phase -1 "
       "-initial_velocity shear_wave_xy -initial_velocity_amplitude -1.5 -initial_velocity_mean 1,0,0 -species a,b_2 "
       "-a_shape biconcave -a_diameter 1 -a_axis z -a_shear_modulus 7 -a_placement lattice -a_count 2,1,1 "
-      "-b_2_shape slab -b_2_interval -1,1.2 -b_2_shear_modulus 0 -b_2_initial_stretch 2,1,.5 "
+      "-b_2_shape slab -b_2_interval -1,1.2 -b_2_shear_modulus 1 -b_2_initial_stretch 2,1,.5 "
       "-method classic -pressure_solver acm -time_end 10 -time_step .01 -time_steps_max 99 -output_dir out/a "
       "-output_overwrite -snapshot_interval 2 -snapshot_fields pressure,left_cauchy_green -snapshot_precision double "
       "-series_interval 3");
@@ -215,7 +215,7 @@ TEST(Options, TextReadsBackTheSame) {
                          " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
                          "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
                      ("-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
-                      "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 0 -b_initial_stretch 1.5,1,1"),
+                      "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 3 -b_initial_stretch 1.5,1,1"),
                      "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c3 .6"};
   for (const std::string &line : scenes) {
     const ParseResult first = parse_line(line);

@@ -162,7 +162,8 @@ TEST(Summary, HasEveryKey) {
                                           "bodies.0.taylor_deformation",
                                           "bodies.0.inclination",
                                           "bodies.0.elastic_energy",
-                                          "bodies.0.largest_stretch"};
+                                          "bodies.0.largest_stretch",
+                                          "bodies.0.rest_deformation"};
   ASSERT_GE(json.keys().size(), expected.size());
   for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_EQ(json.keys()[n], expected[n]);
   EXPECT_EQ(json["cell_updates_per_second"], "20480");

@@ -1,6 +1,7 @@
 // B that the grid does not resolve is forgotten, and nothing else changes.
 #include "physics/unresolved.hpp"
 
+#include "physics/exterior.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -146,6 +147,29 @@ TEST(Unresolved, CellsAtTheSurfaceHaveMoreRoom) {
     xx(1, 1, 0) = determinant;
     EXPECT_EQ(body.forget(reset_below_one_per_cent), count) << fraction << " " << determinant;
   }
+}
+
+TEST(Unresolved, WhereBIsExtendedDiagonalsAreScaled) {
+  for (const bool flat : {true, false})
+    for (const double fraction : {1., .6}) {
+      Body body(flat, 3);
+      const int k = flat ? 0 : 2, dimension = body.grid.dimension();
+      for (int d = 0; d < dimension; ++d)
+        body.phase.tensor[d](2, 2, k) *= 2;  // det B = 4 (3 + 1/3)^2/4 - (3 - 1/3)^2/4
+      body.phase.fraction[0](2, 2, k) = fraction;
+      const std::vector<double> before = body.values();
+      std::vector<double> want = before;
+      const std::ptrdiff_t p = body.grid.layout().offset(2, 2, k), size = body.grid.layout().size;
+      EXPECT_EQ(body.forget(evolve_above_half), 1);
+      const std::vector<double> after = body.values();
+      const double xx = after[p], xy = after[(flat ? 2 : 5) * size + p], zz = flat ? 1 : after[2 * size + p];
+      EXPECT_NEAR((xx * xx - xy * xy) * zz, 1, 1e-12);
+      for (int d = 0; d < dimension; ++d) want[d * size + p] *= xx / before[p];
+      for (std::size_t q = 0; q < want.size(); ++q) ASSERT_NEAR(after[q], want[q], 1e-14) << q;  // the edges too
+      body.phase.fraction[0](2, 2, k) = 0.4;
+      for (int d = 0; d < dimension; ++d) body.phase.tensor[d](2, 2, k) = 9;
+      EXPECT_EQ(body.forget(evolve_above_half), 0);
+    }
 }
 
 TEST(Unresolved, TheTraceTellsWhereToLook) {
