@@ -116,6 +116,9 @@ public:
       if (modulus > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate / modulus);
+      if (spec.surface_tension > 0 && spec.radius > 0 && speed > 0)
+        report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate x radius / surface tension)",
+                    config_.fluid.viscosity * scale.shear_rate * spec.radius / spec.surface_tension);
     }
   }
 
@@ -137,6 +140,10 @@ public:
     report.limit("elastic wave", limits.elastic);
     report.limit("viscous and elastic", limits.combined);
     report.limit("Kelvin-Voigt", limits.kelvin_voigt);
+    if (contrast.surface_tension > 0) {
+      report.limit("capillary wave", limits.capillary);
+      report.limit("viscous surface", limits.capillary_viscous);
+    }
     report.limit("advective", limits.advective);
     if (!limits.scheme.staggered) report.limit("Euler 2 nu/U^2", limits.inertial);
     const char *name = "-time_step";

@@ -76,6 +76,11 @@ void add_viscosity(Rows &rows, SpeciesSpec &spec) {
   row.text = [&spec] { return spec.viscosity ? to_text(*spec.viscosity) : std::string(); };
 }
 
+void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
+  rows.real("surface_tension", spec.surface_tension, not_negative, "force/length",
+            "surface tension; a drop is a body with -NAME_shear_modulus 0");
+}
+
 void add_contact(Rows &rows, SpeciesSpec &spec) {
   Option &row = rows.add("contact", "",
                          "bodies of this species that touch stay separate, each in memory of its own "
@@ -172,6 +177,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
   add_viscosity(rows, spec);
+  add_surface_tension(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
             "the shape is "

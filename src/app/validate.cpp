@@ -107,6 +107,8 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
+    return "-" + spec.name + "_surface_tension: needs a sharp interface; accepted: -interface_scheme plic, or 0";
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   const bool random = spec.placement == Placement::random;

@@ -11,6 +11,7 @@ enum class Verb {
   wall_ghosts,
   momentum,
   viscous,
+  surface_tension,
   divergence,
   acm,
   smac,

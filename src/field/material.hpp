@@ -14,6 +14,7 @@ struct Material {
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
+  double surface_tension = 0;     ///< force per length
 
   /// false: a marked part of the fluid.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }

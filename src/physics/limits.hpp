@@ -43,6 +43,8 @@ struct TimeStepLimits {
   double kelvin_voigt;  ///< 2 mu/stiffness
   double advective;     ///< sum (|u_i| + |f_i| dt) dt/h_i = share, the share of the scheme included; walls count
   double inertial;      ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
+  double capillary;     ///< sqrt(rho h^3/(2 pi sigma)), the shortest capillary wave
+  double capillary_viscous;  ///< h mu/sigma, of surfaces that follow their tension as viscosity lets them
   double forcing;       ///< the shortest period of walls and body force
   /// The automatic step and the name of what sets it.
   double automatic(const char **name = nullptr) const;

@@ -83,6 +83,9 @@ void ViscosityContrast::add(const Material &material, double stiffness) {
   const double own = material.viscosity > 0 ? material.viscosity : fluid;
   least = std::min(least, own);
   most = std::max(most, own);
+  surface_tension = std::max(surface_tension, material.surface_tension);
+  if (material.surface_tension > 0)
+    capillary_speed = std::max(capillary_speed, 2 * material.surface_tension / (own + fluid));
   if (!(stiffness > 0)) return;
   const double weakest = own > 2 * fluid ? 4 * fluid * (1 - fluid / own) : own;
   kelvin_voigt = std::min(kelvin_voigt, 2 * weakest / stiffness);

@@ -16,11 +16,12 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies) {
+int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
-  const int momentum = method.explicit_predictor() ? 0 : 2 * dimension;
+  const int tension = surface_tension ? SurfaceTension::work_fields : 0;
+  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + tension;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -49,7 +50,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, false)));
+  PetscCall(work_->reserve(work_fields(spec, dim, false, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -70,7 +71,9 @@ PetscErrorCode Solver::prepare() {
     velocity_star_ = flow.part(2 * dim, dim);
     flow_ = std::move(flow);
   }
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
+  if (SurfaceTension::exists(now_.phases))
+    surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::plic)
@@ -159,8 +162,11 @@ PetscErrorCode Solver::step(double dt) {
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (spec_.linear_force())
-    PetscCall(compute_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, slope_));
+  if (spec_.linear_force()) {
+    const double scale = -1 / (dt * spec_.fluid.density);
+    PetscCall(compute_elastic_force(*grid_, scale, now_.phases, slope_));
+    if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
+  }
   PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
 }
@@ -179,6 +185,8 @@ PetscErrorCode Solver::predict(double dt) {
   }
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+    if (surface_tension_)
+      PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
     ++stages_;
     PetscFunctionReturn(0);
@@ -191,6 +199,8 @@ PetscErrorCode Solver::predict(double dt) {
   PetscCall(work_->take("viscous stage before", dim, &before));
   PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, rate.fields(),
                           slope));
+  if (surface_tension_)
+    PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
