@@ -116,9 +116,11 @@ public:
       if (modulus > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate / modulus);
-      if (spec.surface_tension > 0 && spec.radius > 0 && speed > 0)
+      const Real3 &axes = spec.semi_axes;
+      const double radius = spec.shape == Shape::ellipsoid ? std::cbrt(axes[0] * axes[1] * axes[2]) : spec.radius;
+      if (spec.surface_tension > 0 && radius > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate x radius / surface tension)",
-                    config_.fluid.viscosity * scale.shear_rate * spec.radius / spec.surface_tension);
+                    config_.fluid.viscosity * scale.shear_rate * radius / spec.surface_tension);
     }
   }
 

@@ -25,7 +25,7 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "-NAME_attached holds what touches a wall"},
       {{"membrane", "bending", "shell", "capsule"},
        "bodies are elastic all through, with -NAME_surface_tension if wanted: no membrane, no bending stiffness"},
-      {{"marangoni", "surfactant", "wetting", "tension"},
+      {{"marangoni", "surfactant", "wetting"},
        "-NAME_surface_tension is one number for a species, and surfaces meet walls at 90 degrees"},
       {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
        "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},

@@ -19,7 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double combined_share = 0.8, inertial_share = 0.1;
 constexpr double advective_euler = 0.25, advective_staggered = 0.3;
 constexpr double elastic_share = 0.5, kelvin_voigt_share = 0.05, forcing_share = 1. / 40;
-constexpr double capillary_share = 0.5, capillary_viscous_share = 0.1;
+constexpr double capillary_share = 0.5, capillary_viscous_share = 0.4;
 constexpr double pi = 3.14159265358979323846;
 
 double over(double a, double b) { return b > 0 ? a / b : infinite; }

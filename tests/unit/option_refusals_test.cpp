@@ -53,10 +53,11 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-inflow 1", {"\"inflow\" is not supported", read}},
        {"-cell_rigid true", {"\"rigid\" is not supported", "elastic", read}},
        {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "no membrane", read}},
-       {"-surface_tension 1", {"\"tension\" is not supported", read}},
+       {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
        {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not supported", "one of periodic, wall"}},
        {"-cell_law rigid", {"-cell_law", "\"rigid\" is not supported", "mooney_rivlin"}},
        {"-density 1", {"nearest known: -fluid_density"}},
+       {"-surface_tension 1", {"nearest known: -cell_surface_tension"}},
        {"-fluid_viscosty 1", {"nearest known: -fluid_viscosity"}},
        {"-wall_top_velocity 1,0,0", {"nearest known: -wall_"}}});
 }
