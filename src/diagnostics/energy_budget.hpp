@@ -11,7 +11,7 @@ namespace eulastic {
 struct EnergyState {
   double kinetic = 0, elastic = 0;
   double surface = 0, surface_power = 0;  ///< of surface tension: its energy, what the flow gives to it
-  double dissipation = 0;  ///< by viscosity
+  double dissipation = 0;                 ///< by viscosity
   EnergyRates rates;
 };
 

@@ -17,9 +17,9 @@ inline constexpr double height_curvature_flops_2d = 3 * 24 + 12, height_curvatur
 
 /// Where columns stand and what their neighbours are. `along` points, with its sign, to where phi grows.
 struct ColumnFrame {
-  std::ptrdiff_t along, b, c;          ///< strides
-  double height;                       ///< spacing along
-  double inverse_b, inverse_c;         ///< of the spacings across; 2-D ignores c
+  std::ptrdiff_t along, b, c;   ///< strides
+  double height;                ///< spacing along
+  double inverse_b, inverse_c;  ///< of the spacings across; 2-D ignores c
 };
 
 /// Solid in a column, in cells, beyond its lowest cell. Away from the middle phi may only grow on one side and fall on
@@ -51,8 +51,7 @@ template <int Dim>
 EULASTIC_INLINE HeightCurvature height_curvature(const double *q, const ColumnFrame &f) noexcept {
   const Column middle = column_at(q, f.along), lower = column_at(q - f.b, f.along), upper = column_at(q + f.b, f.along);
   const double slope_b = 0.5 * f.height * f.inverse_b * (upper.solid - lower.solid);
-  const double bend_b =
-      f.height * f.inverse_b * f.inverse_b * ((upper.solid + lower.solid) - 2 * middle.solid);
+  const double bend_b = f.height * f.inverse_b * f.inverse_b * ((upper.solid + lower.solid) - 2 * middle.solid);
   bool whole = middle.whole && lower.whole && upper.whole;
   if constexpr (Dim == 2) {
     const double square = fma(slope_b, slope_b, 1);
@@ -61,8 +60,8 @@ EULASTIC_INLINE HeightCurvature height_curvature(const double *q, const ColumnFr
   const Column front = column_at(q - f.c, f.along), back = column_at(q + f.c, f.along);
   const Column low_front = column_at(q - f.b - f.c, f.along), low_back = column_at(q - f.b + f.c, f.along);
   const Column high_front = column_at(q + f.b - f.c, f.along), high_back = column_at(q + f.b + f.c, f.along);
-  whole = whole && front.whole && back.whole && low_front.whole && low_back.whole && high_front.whole &&
-          high_back.whole;
+  whole =
+      whole && front.whole && back.whole && low_front.whole && low_back.whole && high_front.whole && high_back.whole;
   const double slope_c = 0.5 * f.height * f.inverse_c * (back.solid - front.solid);
   const double bend_c = f.height * f.inverse_c * f.inverse_c * ((back.solid + front.solid) - 2 * middle.solid);
   const double twist = 0.25 * f.height * f.inverse_b * f.inverse_c *

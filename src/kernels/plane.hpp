@@ -78,8 +78,8 @@ EULASTIC_INLINE double plane_constant(double phi, double a, double b, double c) 
   return phi > 0.5 ? 1 - t : t;
 }
 
-/// How fast the volume below the plane grows with alpha; times m of each direction it is the plane's area seen along it,
-/// in faces of the cell. Sum of m = 1. 2-D ignores c.
+/// How fast the volume below the plane grows with alpha; times m of each direction it is the plane's area seen along
+/// it, in faces of the cell. Sum of m = 1. 2-D ignores c.
 template <int Dim>
 EULASTIC_INLINE double volume_slope(double alpha, double a, double b, double c) noexcept {
   const auto [m1, m2, m3] = ascending<Dim>(a, b, c);

@@ -39,8 +39,7 @@ struct Curvature {
   EULASTIC_INLINE bool cut(const double *q) const {
     if (*q > 0 && *q < 1) return true;
     bool jump = false;
-    for (int d = 0; d < grid.dimension(); ++d)
-      jump = jump || q[stride[d]] == 1 - *q || q[-stride[d]] == 1 - *q;
+    for (int d = 0; d < grid.dimension(); ++d) jump = jump || q[stride[d]] == 1 - *q || q[-stride[d]] == 1 - *q;
     return jump;
   }
   EULASTIC_INLINE static double weight_of(double q) { return q * (1 - q) + least_weight; }

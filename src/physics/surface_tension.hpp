@@ -23,9 +23,9 @@ public:
       : grid_(&grid), exchange_(&exchange), work_(&work), drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
-  /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi. `balanced`:
-  /// less the mean over the box of what is added to `force`, in periodic directions where all drifts: surfaces exert no
-  /// net force, their discretisation does.
+  /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
+  /// `balanced`: less the mean over the box of what is added to `force`, in periodic directions where all drifts:
+  /// surfaces exert no net force, their discretisation does.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
                            const ForceSlope &slope = {});
   PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured);

@@ -185,8 +185,7 @@ PetscErrorCode Solver::predict(double dt) {
   }
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
-    if (surface_tension_)
-      PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
+    if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
     ++stages_;
     PetscFunctionReturn(0);

@@ -118,7 +118,7 @@ private:
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
-  std::vector<Phase> phases_now_;  ///< copies for phases_now(), the first one's B an idle_tensor()
+  std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };

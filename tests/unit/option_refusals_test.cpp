@@ -230,6 +230,10 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus -1", {"-a_shear_modulus", "out of range"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 0", {"-a_viscosity", "> 0"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity -2", {"-a_viscosity", "> 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_surface_tension -1",
+        {"-a_surface_tension", ">= 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_surface_tension 1 -interface_scheme weno5",
+        {"-a_surface_tension", "-interface_scheme plic"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 2 -fluid_viscosity 0",
         {"-a_viscosity", "-fluid_viscosity > 0"}}},
       periodic);

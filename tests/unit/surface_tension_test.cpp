@@ -1,7 +1,7 @@
 // Heights and curvature of exact surfaces, the area of planes, and the force of surface tension.
+#include "physics/surface_tension.hpp"
 #include "field/exact_sum.hpp"
 #include "kernels/height_curvature.hpp"
-#include "physics/surface_tension.hpp"
 #include "support/interface_scene.hpp"
 #include "support/scene.hpp"
 
@@ -17,12 +17,14 @@ TEST(PlaneArea, IsTheDerivativeOfTheVolume) {
   for (const auto &[a, b, c] : m)
     for (double alpha = 0.0371; alpha < 1; alpha += 0.0613) {
       constexpr double step = 1e-6;
-      const double slope = (kernels::volume_below<3>(alpha + step, a, b, c) -
-                            kernels::volume_below<3>(alpha - step, a, b, c)) / (2 * step);
+      const double slope =
+          (kernels::volume_below<3>(alpha + step, a, b, c) - kernels::volume_below<3>(alpha - step, a, b, c)) /
+          (2 * step);
       EXPECT_NEAR((kernels::volume_slope<3>(alpha, a, b, c)), slope, 1e-4);
       const double sum = a + b;
       const double flat = (kernels::volume_below<2>(alpha + step, a / sum, b / sum, 0) -
-                           kernels::volume_below<2>(alpha - step, a / sum, b / sum, 0)) / (2 * step);
+                           kernels::volume_below<2>(alpha - step, a / sum, b / sum, 0)) /
+                          (2 * step);
       EXPECT_NEAR((kernels::volume_slope<2>(alpha, a / sum, b / sum, 0)), flat, 1e-4);
     }
 }
@@ -100,10 +102,10 @@ TEST(HeightCurvature, OfCirclesAndSpheresIsOfSecondOrder) {
     round[n] = curvatures<3>(box, 8, 0.25);
     EXPECT_LT(round[n].missed, (n == 0 ? 0.3 : 0.07) * round[n].found);  // where a cell is cut at its corner only
   }
-  std::printf("  curvature times radius: largest error, circle of 10, 20, 40 cells %.4f %.4f %.4f; mean, sphere of 7, 14 "
-              "%.4f %.4f (largest %.3f %.3f)\n",
-              flat[0].worst, flat[1].worst, flat[2].worst, round[0].mean(), round[1].mean(), round[0].worst,
-              round[1].worst);
+  std::printf(
+      "  curvature times radius: largest error, circle of 10, 20, 40 cells %.4f %.4f %.4f; mean, sphere of 7, 14 "
+      "%.4f %.4f (largest %.3f %.3f)\n",
+      flat[0].worst, flat[1].worst, flat[2].worst, round[0].mean(), round[1].mean(), round[0].worst, round[1].worst);
   EXPECT_LT(flat[0].worst, 0.01);
   EXPECT_GT(order(flat[0].worst, flat[2].worst) / 2, 1.8);
   EXPECT_LT(round[0].worst, 0.05);
