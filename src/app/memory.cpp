@@ -32,7 +32,9 @@ double fields(const Config &config) {
   const double tensor = dimension == 2 ? 3 : 6, phases = expected_phases(config);
   const bool tension = std::any_of(config.species.begin(), config.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, phases > 0, tension);
+  const bool membranes = std::any_of(config.species.begin(), config.species.end(),
+                                     [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, phases > 0, tension, membranes);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {

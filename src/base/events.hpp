@@ -12,6 +12,7 @@ enum class Verb {
   momentum,
   viscous,
   surface_tension,
+  membrane,
   divergence,
   acm,
   smac,

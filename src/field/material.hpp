@@ -1,9 +1,12 @@
 // What a body is made of.
 #pragma once
 
+#include "kernels/membrane_law.hpp"
+
 namespace eulastic {
 
-enum class Law { neo_hookean, mooney_rivlin };
+enum class Law { neo_hookean, mooney_rivlin, membrane };
+using kernels::Membrane;
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I
 /// and II the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
@@ -15,8 +18,10 @@ struct Material {
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
   double surface_tension = 0;     ///< force per length
+  Membrane membrane;              ///< Law::membrane: B is B_s, all of it at centres
 
   /// false: a marked part of the fluid.
+  bool is_membrane() const { return law == Law::membrane; }
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }
 };
 

@@ -15,6 +15,11 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
   const OccupiedRows before = phase.rows;
   PetscCall(find_rows(phase));
+  if (phase.material.is_membrane()) {
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    PetscCall(membranes_->extend(&phase));
+    PetscFunctionReturn(0);
+  }
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));

@@ -16,12 +16,13 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension) {
+int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
-  const int tension = surface_tension ? SurfaceTension::work_fields : 0;
-  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + tension;
+  int forces = surface_tension ? SurfaceTension::work_fields : 0;
+  if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
+  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + forces;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -50,7 +51,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, false, false)));
+  PetscCall(work_->reserve(work_fields(spec, dim, false, false, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -73,7 +74,10 @@ PetscErrorCode Solver::prepare() {
   }
   if (SurfaceTension::exists(now_.phases))
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr)));
+  if (MembraneTransport::exists(now_.phases))
+    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
+  PetscCall(
+      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered()) next_tensor_ = tensor_at_rest(*grid_);
   if (spec_.interface == InterfaceScheme::plic)
@@ -84,6 +88,7 @@ PetscErrorCode Solver::prepare() {
     phase.material.linear =
         phase.material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, phase.material);
     PetscCall(settle(phase));
+    if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
@@ -100,12 +105,16 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
+    if (phase.material.is_membrane())
+      PetscCall(membranes_->extend(&phase));
+    else
+      PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
 
 EvolveRule Solver::evolve_rule(const Phase &phase) const {
+  if (phase.material.is_membrane()) return around_membranes;
   const bool reset = spec_.exterior == SolidExterior::identity;
   EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
@@ -166,6 +175,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
     const double scale = -1 / (dt * spec_.fluid.density);
     PetscCall(compute_elastic_force(*grid_, scale, now_.phases, slope_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
+    if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, slope_));
   }
   PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
@@ -200,6 +210,7 @@ PetscErrorCode Solver::predict(double dt) {
                           slope));
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
+  if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);

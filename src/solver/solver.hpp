@@ -8,6 +8,7 @@
 #include "physics/fluid.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
+#include "physics/membrane.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
@@ -27,7 +28,7 @@ struct SolverSpec : Method {
 class Solver {
 public:
   /// Fields of the work space that the method needs, in a scene with bodies or without.
-  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension);
+  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -118,6 +119,7 @@ private:
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
+  std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart

@@ -25,6 +25,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionBeginUser;
   const int ghosts = grid_->spec().ghosts;
   std::vector<MovedRows> rows(phases.size());
+  if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     rows[p].swapped_in = std::exchange(next_rows_, phase.rows);
@@ -46,6 +47,10 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
     const ActiveSegments before = std::move(phase.strained);
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    if (phase.material.is_membrane()) {
+      PetscCall(membranes_->advance(dt, now_.velocity, &phase));
+      continue;
+    }
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
     tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});

@@ -38,10 +38,11 @@ bool Solver::drifts() const {
 PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured) {
   PetscFunctionBeginUser;
   *measured = {};
-  if (!surface_tension_) PetscFunctionReturn(0);
+  if (!surface_tension_ && !membranes_) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
-  PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
+  if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
+  if (membranes_) PetscCall(membranes_->measure(*phases, now_.velocity, measured));
   PetscFunctionReturn(0);
 }
 
