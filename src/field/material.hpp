@@ -18,7 +18,7 @@ struct Material {
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
   double surface_tension = 0;     ///< force per length
-  Membrane membrane;              ///< Law::membrane: B is B_s, all of it at centres
+  Membrane membrane{};            ///< Law::membrane: B is B_s, all of it at centres
 
   /// false: a marked part of the fluid.
   bool is_membrane() const { return law == Law::membrane; }

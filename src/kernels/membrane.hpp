@@ -41,6 +41,26 @@ EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) 
   return out;
 }
 
+/// A tangential tensor of the plane normal to `from`, turned with it into the plane normal to n by the smallest
+/// rotation.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> turn(const Tensor<Dim> &B, const Vector<Dim> &from, const Vector<Dim> &n) noexcept {
+  Vector<Dim> Bn{}, w;
+  double nBn = 0, cosine = 0;
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b) Bn[a] = fma(B[a][b], n[b], Bn[a]);
+    nBn = fma(n[a], Bn[a], nBn);
+    cosine = fma(n[a], from[a], cosine);
+  }
+  const double scale = 1 / (1 + (cosine > -0.5 ? cosine : -0.5));
+  for (int a = 0; a < Dim; ++a) w[a] = scale * (n[a] + from[a]);
+  Tensor<Dim> out;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b)
+      out[a][b] = out[b][a] = (B[a][b] - (w[a] * Bn[b] + Bn[a] * w[b])) + nBn * (w[a] * w[b]);
+  return out;
+}
+
 /// J^2 and tr B_s, those of the third direction in 2-D included.
 struct SurfaceStrain {
   double trace, area_squared;

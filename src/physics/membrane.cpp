@@ -106,8 +106,10 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
   WorkSpace::Lease psi;
   PetscCall(work_->take("smoothed solid fraction", 1, &psi));
   PetscCall(surface_.find(*phase, psi.fields()));
-  const double stretch = phase->material.membrane.initial_area_stretch;
-  for (const SurfaceCells::Cell &cell : surface_.nearest()) {
+  const double area = phase->material.membrane.initial_area_stretch;
+  const double stretch = grid_->dimension() == 2 ? area * area : area;  // squared, of lengths
+  for (std::size_t c = 0; c < surface_.nearest(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
     const auto set = [&](auto P) {
       for (auto &row : P)
@@ -139,9 +141,9 @@ void MembraneTransport::stage(double dt, const FieldBlock &velocity, bool second
   const Local<Dim> local(*grid_, velocity[0]);
   const int parts = row_parts(*grid_);
   in_parallel(parts, parts, [&](int part) {
-    const Piece piece(surface_.nearest().size(), part, parts);
+    const Piece piece(surface_.nearest(), part, parts);
     for (std::size_t c = piece.begin; c < piece.end; ++c) {
-      const SurfaceCells::Cell &cell = surface_.nearest()[c];
+      const SurfaceCells::Cell &cell = surface_.all()[c];
       if (!cell.owned) continue;
       const Vector<Dim> n = normal_of<Dim>(cell.normal);
       const Flow<Dim> flow = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
@@ -175,7 +177,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
         stage<2>(dt, velocity, second, phase->tensor, next);
       else
         stage<3>(dt, velocity, second, phase->tensor, next);
-      scope.flops(double(surface_.nearest().size()) * (dim == 2 ? 700 : 3200));
+      scope.flops(double(surface_.nearest()) * (dim == 2 ? 700 : 3200));
     }
     PetscCall(surface_.extend(*phase, second ? phase->tensor : next));
   }

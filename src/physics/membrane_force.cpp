@@ -63,23 +63,17 @@ void MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) cons
         B[a][b] = cell.delta * kernels::fma(state.alpha, B[a][b], state.beta * P[a][b]);
     return B;
   };
-  const auto add = [&](const std::vector<SurfaceCells::Cell> &cells) {
-    for (const SurfaceCells::Cell &cell : cells) {
-      bool near = true;
-      for (int d = 0; d < dim; ++d) near = near && cell.place[d] >= -1 && cell.place[d] <= n[d];
-      if (!near) continue;
-      if (dim == 2)
-        set_tensor<2>(
-            stress, cell.at,
-            set(cell, tensor_at<2>(phase.tensor, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
-      else
-        set_tensor<3>(
-            stress, cell.at,
-            set(cell, tensor_at<3>(phase.tensor, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
-    }
-  };
-  add(surface_.nearest());
-  for (int l = 0; l < SurfaceCells::layers; ++l) add(surface_.layer(l));
+  for (const SurfaceCells::Cell &cell : surface_.all()) {
+    bool near = true;
+    for (int d = 0; d < dim; ++d) near = near && cell.place[d] >= -1 && cell.place[d] <= n[d];
+    if (!near) continue;
+    if (dim == 2)
+      set_tensor<2>(stress, cell.at,
+                    set(cell, tensor_at<2>(phase.tensor, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
+    else
+      set_tensor<3>(stress, cell.at,
+                    set(cell, tensor_at<3>(phase.tensor, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
+  }
 }
 
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, FieldBlock &force,
@@ -132,18 +126,13 @@ PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, cons
     const View energy = psi.fields()[0];  // in place of psi
     for (const Segment &row : grid_->rows())
       if (!phase.rows.idle(row.j, row.k)) std::fill_n(energy.row(row.j, row.k), n, 0.0);
-    const auto set = [&](const std::vector<SurfaceCells::Cell> &cells) {
-      for (const SurfaceCells::Cell &cell : cells) {
-        if (!cell.owned) continue;
-        const kernels::SurfaceStrain strain = dim == 2
-                                                  ? kernels::surface_strain<2>(tensor_at<2>(phase.tensor, cell.at))
-                                                  : kernels::surface_strain<3>(tensor_at<3>(phase.tensor, cell.at));
-        const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
-        energy.origin[cell.at] = cell.delta * state.energy / state.area;
-      }
-    };
-    set(surface_.nearest());
-    for (int l = 0; l < SurfaceCells::layers; ++l) set(surface_.layer(l));
+    for (const SurfaceCells::Cell &cell : surface_.all()) {
+      if (!cell.owned) continue;
+      const kernels::SurfaceStrain strain = dim == 2 ? kernels::surface_strain<2>(tensor_at<2>(phase.tensor, cell.at))
+                                                     : kernels::surface_strain<3>(tensor_at<3>(phase.tensor, cell.at));
+      const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
+      energy.origin[cell.at] = cell.delta * state.energy / state.area;
+    }
     const auto add = [&](const RowPart &part, ExactSums &sums) {
       std::vector<double> power(n), force(n);
       for (const Segment &row : part.rows(*grid_)) {

@@ -4,7 +4,8 @@
 #include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
-#include "kernels/isa.hpp"
+#include "kernels/tensor.hpp"
+#include "physics/membrane_tensor.hpp"
 
 #include <algorithm>
 
@@ -51,32 +52,35 @@ EULASTIC_INLINE double nested_sum(const double *v) {
 }
 
 // One point of a layer from those of its neighbours that are nearer to the surface, weighted by how far they lie
-// towards it.
+// towards it, and turned into its plane.
 template <int Dim>
-EULASTIC_INLINE void fill_point(const std::ptrdiff_t *stride, const unsigned char *mask, int layer, const Real3 &normal,
-                                bool outside, double *q, std::ptrdiff_t size) {
+void fill_point(const std::vector<SurfaceCells::Cell> &cells, const int *number, const SurfaceCells::Cell &cell,
+                const std::ptrdiff_t *stride, FieldBlock &tensor) {
   constexpr int count = Dim == 3 ? 27 : 9, fields = Dim == 3 ? 6 : 3;
-  double weight[count], plain[count], values[count];
-  std::ptrdiff_t step[count];
+  double weight[count], plain[count], values[fields][count] = {};
+  const SurfaceCells::Cell *from[count];
+  const kernels::Vector<Dim> normal = normal_of<Dim>(cell.normal);
   int n = 0;
   for (int z = Dim == 3 ? -1 : 0; z <= (Dim == 3 ? 1 : 0); ++z)
     for (int y = -1; y <= 1; ++y)
       for (int x = -1; x <= 1; ++x, ++n) {
-        step[n] = x + y * stride[1] + z * stride[2];
-        const unsigned char of = mask[step[n]];
-        plain[n] = of > 0 && of <= layer;
-        double along = (x * normal[0] + y * normal[1]) + z * normal[2];
-        if (outside) along = -along;
-        weight[n] = plain[n] > 0 && along > 0 ? along / __builtin_sqrt(double(x * x + y * y + z * z)) : 0;
+        const int at = number[cell.at + x + y * stride[1] + z * stride[2]];
+        from[n] = at >= 0 && cells[at].layer < cell.layer ? &cells[at] : nullptr;
+        plain[n] = from[n] ? 1 : 0;
+        double along = (x * cell.normal[0] + y * cell.normal[1]) + z * cell.normal[2];
+        if (cell.distance > 0) along = -along;
+        weight[n] = from[n] && along > 0 ? along / __builtin_sqrt(double(x * x + y * y + z * z)) : 0;
       }
   const double towards = nested_sum<Dim>(weight);
   const double *w = towards > 0 ? weight : plain, sum = towards > 0 ? towards : nested_sum<Dim>(plain);
-  double found[fields];
-  for (int f = 0; f < fields; ++f) {
-    for (int m = 0; m < count; ++m) values[m] = w[m] > 0 ? w[m] * q[f * size + step[m]] : 0;
-    found[f] = nested_sum<Dim>(values) / sum;
+  for (int m = 0; m < count; ++m) {
+    if (!(w[m] > 0)) continue;
+    const kernels::Tensor<Dim> turned =
+        kernels::turn<Dim>(tensor_at<Dim>(tensor, from[m]->at), normal_of<Dim>(from[m]->normal), normal);
+    for (int a = 0; a < Dim; ++a)
+      for (int b = a; b < Dim; ++b) values[kernels::position<Dim>(a, b)][m] = w[m] * turned[a][b];
   }
-  for (int f = 0; f < fields; ++f) q[f * size] = found[f];
+  for (int f = 0; f < fields; ++f) tensor[f].origin[cell.at] = nested_sum<Dim>(values[f]) / sum;
 }
 
 // Within .9 of a cell across the surface.
@@ -136,7 +140,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
   });
   PetscCall(exchange_->update(psi, ghosts, &phase.rows));
   fill_wall_ghosts_even(*grid_, at_centre, psi[0], ghosts, &phase.rows);
-  nearest_.clear();
+  cells_.clear();
   const int near = phase.rows.inside() ? 0 : layers + 1;
   const auto range = [&](int d) { return grid_->points_near(d, false, d < dim ? near : 0); };
   const ConstView p = psi[0];
@@ -147,7 +151,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
         const double value = p(i, j, k);
         if (!(value > negligible && value < 1 - negligible && phi(i, j, k) > solid)) continue;
         const Cell cell = cell_at(p, {i, j, k});
-        if (is_nearest(cell, grid_->spacing())) nearest_.push_back(cell);
+        if (is_nearest(cell, grid_->spacing())) cells_.push_back(cell);
       }
     }
   find_layers(phase, psi[0]);
@@ -159,29 +163,32 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
 void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
   const Layout &layout = grid_->layout();
   const int dim = grid_->dimension();
-  layer_of_.assign(layout.size, 0);
-  unsigned char *mask = layer_of_.data() + layout.origin;
-  for (const Cell &cell : nearest_) mask[cell.at] = 1;
-  const std::vector<Cell> *front = &nearest_;
-  for (int l = 0; l < layers; ++l) {
-    layer_[l].clear();
-    const int near = phase.rows.inside() ? 0 : layers - l;
+  number_.assign(layout.size, -1);
+  int *number = number_.data() + layout.origin;
+  for (std::size_t n = 0; n < cells_.size(); ++n) number[cells_[n].at] = static_cast<int>(n);
+  first_[0] = 0;
+  first_[1] = cells_.size();
+  for (int l = 1; l <= layers; ++l) {
+    const int near = phase.rows.inside() ? 0 : layers + 1 - l;
     Grid::Range range[3];
     for (int d = 0; d < 3; ++d) range[d] = grid_->points_near(d, false, d < dim ? near : 0);
-    for (const Cell &cell : *front)
+    for (std::size_t n = first_[l - 1]; n < first_[l]; ++n) {
+      const Int3 middle = cells_[n].place;
       for (int z = dim == 3 ? -1 : 0; z <= (dim == 3 ? 1 : 0); ++z)
         for (int y = -1; y <= 1; ++y)
           for (int x = -1; x <= 1; ++x) {
-            const Int3 place{cell.place[0] + x, cell.place[1] + y, cell.place[2] + z};
+            const Int3 place{middle[0] + x, middle[1] + y, middle[2] + z};
             bool inside = true;
             for (int d = 0; d < 3; ++d) inside = inside && place[d] >= range[d].begin && place[d] < range[d].end;
             if (!inside) continue;
-            unsigned char &of = mask[cell.at + x + y * layout.sy + z * layout.sz];
-            if (of != 0) continue;
-            of = static_cast<unsigned char>(l + 2);
-            layer_[l].push_back(cell_at(psi, place));
+            int &at = number[place[0] + place[1] * layout.sy + place[2] * layout.sz];
+            if (at >= 0) continue;
+            at = static_cast<int>(cells_.size());
+            cells_.push_back(cell_at(psi, place));
+            cells_.back().layer = l;
           }
-    front = &layer_[l];
+    }
+    first_[l + 1] = cells_.size();
   }
 }
 
@@ -197,17 +204,13 @@ PetscErrorCode SurfaceCells::extend(const Phase &phase, FieldBlock &tensor) cons
   PetscCall(exchange(phase, tensor, layers + 1));
   const Layout &layout = grid_->layout();
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
-  const unsigned char *mask = layer_of_.data() + layout.origin;
   const int parts = row_parts(*grid_);
-  for (int l = 0; l < layers; ++l)
+  for (int l = 1; l <= layers; ++l)
     in_parallel(parts, parts, [&](int part) {
-      const Piece piece(layer_[l].size(), part, parts);
-      for (std::size_t c = piece.begin; c < piece.end; ++c) {
-        const Cell &cell = layer_[l][c];
-        double *q = tensor[0].origin + cell.at;
-        (grid_->dimension() == 2 ? fill_point<2> : fill_point<3>)(stride, mask + cell.at, l + 1, cell.normal,
-                                                                  cell.distance > 0, q, layout.size);
-      }
+      const Piece piece(first_[l + 1] - first_[l], part, parts);
+      for (std::size_t c = first_[l] + piece.begin; c < first_[l] + piece.end; ++c)
+        (grid_->dimension() == 2 ? fill_point<2> : fill_point<3>)(cells_, number_.data() + layout.origin, cells_[c],
+                                                                  stride, tensor);
     });
   PetscCall(exchange(phase, tensor, Grid::stencil_width));
   PetscFunctionReturn(0);

@@ -17,16 +17,17 @@ public:
     Real3 normal;       ///< outward, unit
     double distance;    ///< from the surface, positive outside
     double delta;       ///< of the surface, 1/length
+    int layer;          ///< 0: nearest
     bool owned;
   };
 
   SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
   /// `smooth`: a field of work space. Five ghosts of phi.
   PetscErrorCode find(const Phase &phase, FieldBlock &smooth);
-  /// Those at the surface, and the layers around them; up to four layers of ghosts of the former, one less with every
-  /// layer.
-  const std::vector<Cell> &nearest() const { return nearest_; }
-  const std::vector<Cell> &layer(int l) const { return layer_[l]; }
+  /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
+  /// every layer.
+  const std::vector<Cell> &all() const { return cells_; }
+  std::size_t nearest() const { return first_[1]; }  ///< how many
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
   PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
 
@@ -37,9 +38,9 @@ private:
 
   const Grid *grid_;
   GhostExchange *exchange_;
-  std::vector<Cell> nearest_;
-  std::array<std::vector<Cell>, layers> layer_;
-  std::vector<unsigned char> layer_of_;  ///< 0: none, 1: nearest, 2 ...: layers; by offset from the memory's start
+  std::vector<Cell> cells_;
+  std::array<std::size_t, layers + 2> first_{};  ///< of every layer
+  std::vector<int> number_;                      ///< of the cells, -1: none; by offset from the memory's start
 };
 
 }  // namespace eulastic
