@@ -96,7 +96,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::membrane) return {};
   const std::string law = "-" + spec.name + "_law: membrane needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
-    return law + "-method fast with -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin";
+    return law + "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin";
   if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)

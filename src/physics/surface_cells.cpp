@@ -93,30 +93,35 @@ bool is_nearest(const SurfaceCells::Cell &cell, const Real3 &spacing) {
 
 }  // namespace
 
-// With erf for the profile of psi: q = (1/2 - psi)/(s |grad psi|) = u + u^3/3 + u^5/15 ..., u s the distance.
+// psi is (1 - erf)/2 of the distance over its width s: with y = sqrt(2 pi) (1/2 - psi) that is y + y^3/6 + 7/120 y^5 +
+// ... times s. Central differences are too small by (n_d h_d/s)^2 (1 - (distance/s)^2)/6, which turns normals towards
+// the axes.
 SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const {
+  constexpr double root_two_pi = 2.5066282746310002;
   Cell cell{};
   cell.place = place;
   cell.at = place[0] + place[1] * psi.sy + place[2] * psi.sz;
   const double *p = psi.origin + cell.at;
-  double square = 0;
-  const int dim = grid_->dimension();
-  for (int d = 0; d < dim; ++d) {
-    const std::ptrdiff_t s = psi.stride(d);
-    cell.normal[d] = -(p[s] - p[-s]) / (2 * grid_->spacing()[d]);
-    square = kernels::fma(cell.normal[d], cell.normal[d], square);
-  }
-  cell.delta = __builtin_sqrt(square);
+  const Real3 &h = grid_->spacing();
+  const double y = root_two_pi * (0.5 - *p), yy = y * y;
+  const double u = y * kernels::fma(yy, kernels::fma(yy, kernels::fma(yy, 127. / 5040, 7. / 120), 1. / 6), 1);
+  Real3 gradient{};
   double width = 0;
-  for (int d = 0; d < dim; ++d) {
-    cell.normal[d] = cell.delta > 0 ? cell.normal[d] / cell.delta : 0;
-    const double across = cell.normal[d] * grid_->spacing()[d];
-    width = kernels::fma(across, across, width);
-  }
-  const double s = __builtin_sqrt(variance * width);
-  const double q = cell.delta > 0 ? (0.5 - *p) / (s * cell.delta) : 0, qq = q * q;
-  const double u = __builtin_fabs(q) < 1 ? q * (1 - qq * (1. / 3 - qq * (4. / 15))) : q;
-  cell.distance = s * u;
+  for (int d = 0; d < grid_->dimension(); ++d) gradient[d] = (p[-psi.stride(d)] - p[psi.stride(d)]) / (2 * h[d]);
+  const auto normalise = [&](const Real3 &g) {
+    const double square = (g[0] * g[0] + g[1] * g[1]) + g[2] * g[2];
+    cell.delta = __builtin_sqrt(square);
+    width = 0;
+    for (int d = 0; d < 3; ++d) {
+      cell.normal[d] = cell.delta > 0 ? g[d] / cell.delta : 0;
+      width += variance * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+    }
+  };
+  normalise(gradient);
+  const double slope = width > 0 ? (u * u < 3 ? 1 - u * u : -2) / (6 * width) : 0;
+  for (int d = 0; d < 3; ++d) gradient[d] /= 1 - slope * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+  normalise(gradient);
+  cell.distance = u * __builtin_sqrt(width);
   cell.owned = true;
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];
   return cell;

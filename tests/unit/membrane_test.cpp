@@ -113,6 +113,8 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
     SurfaceCells cells(ball.grid, *ball.exchange);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     const double h = 1. / Ball::cells;
+    const double inward =
+        1.15 * h * h * (dim - 1) / (2 * Ball::radius);  // smoothing moves the level 1/2 by s^2/2 kappa
     double area = 0;
     int near = 0;
     for (std::size_t c = 0; c < cells.all().size(); ++c) {
@@ -124,7 +126,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
       const double r = std::hypot(x[0], x[1], x[2]);
       ++near;
       EXPECT_LE(std::fabs(cell.distance), 0.9 * h);
-      EXPECT_NEAR(cell.distance, r - Ball::radius, 0.17 * h);
+      EXPECT_NEAR(cell.distance, r - Ball::radius + inward, 0.1 * h);
       for (int d = 0; d < dim; ++d) EXPECT_NEAR(cell.normal[d], x[d] / r, 0.04);
     }
     EXPECT_GT(near, dim == 2 ? 50 : 1000);
@@ -150,7 +152,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
     std::map<std::ptrdiff_t, int> known;
     for (const SurfaceCells::Cell &cell : cells.all()) {
       known[cell.at] = 1;
-      for (int f = 0; f < tensor.count() && cell.owned; ++f)
+      for (int f = 0; f < tensor.count() && cell.owned && cell.delta > 0; ++f)  // beyond there is no normal
         EXPECT_NEAR(tensor[f].origin[cell.at], tangential(cell, f), 1e-12);
     }
     for (std::size_t c = 0; c < cells.nearest(); ++c)
