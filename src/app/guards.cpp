@@ -91,7 +91,7 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
 PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop) {
   PetscFunctionBeginUser;
   const State &state = solver.state();
-  const double energy = m.flow.kinetic_energy + m.flow.elastic_energy;
+  const double energy = m.flow.kinetic_energy + m.flow.elastic_energy + m.surface.energy;
   if (energy_.first < 0) {
     energy_.first = energy_.lowest = std::max(energy, 0.0);
     PetscFunctionReturn(0);

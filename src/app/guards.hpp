@@ -22,6 +22,7 @@ struct Stop {
 struct Measured {
   double time = -1;  ///< of the state; negative: not yet
   FlowMeasures flow;
+  SurfaceEnergy surface;
   std::vector<BodyMeasure> bodies;
   double volume_drift = 0;    ///< of the body that has changed most
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start

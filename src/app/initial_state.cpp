@@ -203,7 +203,7 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
     stretch_phase(*grid_, species, phase);
     PetscCall(read_bodies(species, first_label, phase, places));
   }
-  if (phase->material.elastic()) PetscCall(read_tensor(species, phase));
+  if (phase->material.carries_tensor()) PetscCall(read_tensor(species, phase));
   PetscFunctionReturn(0);
 }
 

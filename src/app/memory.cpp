@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
-/// Doubles per cell of a phase: fraction, label and, with a modulus, B; of the staggered method again at the time of
+/// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
 /// the output.
-double phase_fields(const Config &config, bool elastic = true) {
-  const int tensor = !elastic ? 0 : dimension_of(config) == 2 ? 3 : 6;
+double phase_fields(const Config &config, bool carries_tensor = true) {
+  const int tensor = !carries_tensor ? 0 : dimension_of(config) == 2 ? 3 : 6;
   return (1 + config.body_series + tensor) * (config.method.staggered() ? 2 : 1);
 }
 
@@ -36,7 +36,11 @@ int phases_of(const Config &config, std::size_t species) {
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, !config.species.empty());
+  const bool tension = std::any_of(config.species.begin(), config.species.end(),
+                                   [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
+  const bool membranes = std::any_of(config.species.begin(), config.species.end(),
+                                     [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, !config.species.empty(), tension, membranes);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
@@ -47,9 +51,9 @@ double fields(const Config &config) {
   if (config.species.empty()) return sum;
   double tensor = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
-    const bool elastic = config.species[s].material().elastic();
-    if (elastic) tensor = dimension == 2 ? 3 : 6;
-    sum += phases_of(config, s) * phase_fields(config, elastic);
+    const bool carries = config.species[s].material().carries_tensor();
+    if (carries) tensor = dimension == 2 ? 3 : 6;
+    sum += phases_of(config, s) * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;

@@ -23,8 +23,10 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"rigid", "prescribed", "torque"},
        "bodies are elastic and go with the flow; a stiff -NAME_shear_modulus comes near a rigid one, and "
        "-NAME_attached holds what touches a wall"},
-      {{"membrane", "bending", "tension", "shell", "capsule"},
-       "bodies are elastic all through: no membrane, no bending stiffness, no surface tension"},
+      {{"bending", "shell", "curvature"},
+       "membranes (-NAME_law membrane) resist shear and change of area and have no bending stiffness"},
+      {{"marangoni", "surfactant", "wetting"},
+       "-NAME_surface_tension is one number for a species, and surfaces meet walls at 90 degrees"},
       {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
        "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
       {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",

@@ -29,7 +29,9 @@ const std::vector<std::string> series_columns{"time",
                                               "elastic_power",
                                               "energy_lost",
                                               "energy_lost_elastic",
-                                              "energy_lost_extended"};
+                                              "energy_lost_extended",
+                                              "surface_energy",
+                                              "surface_power"};
 
 bool wants(const OutputControl &output, const char *name) {
   const auto &fields = output.snapshot_fields;
@@ -117,6 +119,7 @@ PetscErrorCode Outputs::measure() {
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
+  PetscCall(solver_->surface_energy(&m.surface));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
@@ -152,6 +155,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   PetscCall(solver_->phases_now(&phases));
   energy->kinetic = measured_.flow.kinetic_energy;
   energy->elastic = measured_.flow.elastic_energy;
+  energy->surface = measured_.surface.energy;
+  energy->surface_power = measured_.surface.power;
   energy->dissipation = measured_.flow.viscous_dissipation;
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
@@ -226,7 +231,9 @@ PetscErrorCode Outputs::write_due(bool last) {
                              energy.rates.elastic_power,
                              energy_.lost(),
                              energy_.lost_elastic(),
-                             energy_.lost_extended()}));
+                             energy_.lost_extended(),
+                             energy.surface,
+                             energy.surface_power}));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));
       ++bodies_rows_;
@@ -307,6 +314,8 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.energy_lost = budget.lost();
   summary.energy_lost_elastic = budget.lost_elastic();
   summary.energy_lost_extended = budget.lost_extended();
+  summary.surface_energy = energy.surface;
+  summary.surface_power = energy.surface_power;
   summary.bulk_velocity = measured_.flow.bulk_velocity[0];
   summary.bodies = records();
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved

@@ -22,7 +22,8 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
     fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
     for (int c = 0; c < phase.tensor.count(); ++c) {
       const std::string name{"xyz"[components[c].a], "xyz"[components[c].b]};
-      fields.push_back({"left_cauchy_green_" + name + species, components[c].staggering(), phase.tensor[c]});
+      fields.push_back({"left_cauchy_green_" + name + species,
+                        staggering_of(components[c], phase.material.is_membrane()), phase.tensor[c]});
     }
     if (phase.label) fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
   }

@@ -7,7 +7,8 @@ namespace {
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
                         "tube",   "constricted_tube", "voxels",    "state"};
-const Names law_names{"neo_hookean", "mooney_rivlin"};
+const Names law_names{"neo_hookean", "mooney_rivlin", "membrane"};
+const Names membrane_names{"neo_hookean", "skalak"};
 const Names placement_names{"one", "list", "lattice", "random"};
 const Names contact_names{"separate", "merge"};
 
@@ -61,6 +62,15 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
   rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
   for_law(3, Law::mooney_rivlin);
+  rows.choice("membrane", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
+  rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
+            "shear modulus G_s of a membrane")
+      .required = true;
+  rows.real("area_modulus", spec.membrane.area_modulus, not_negative, "",
+            "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; neo_hookean: unused, it is 3 G_s");
+  rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
+            "area of a membrane at the start over that at rest");
+  for_law(4, Law::membrane);
 }
 
 void add_viscosity(Rows &rows, SpeciesSpec &spec) {
@@ -74,6 +84,11 @@ void add_viscosity(Rows &rows, SpeciesSpec &spec) {
     return wrong;
   };
   row.text = [&spec] { return spec.viscosity ? to_text(*spec.viscosity) : std::string(); };
+}
+
+void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
+  rows.real("surface_tension", spec.surface_tension, not_negative, "force/length",
+            "surface tension; a drop is a body with -NAME_shear_modulus 0");
 }
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {
@@ -172,6 +187,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
   add_viscosity(rows, spec);
+  add_surface_tension(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
             "the shape is "

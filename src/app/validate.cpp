@@ -96,6 +96,21 @@ std::string check_flow(const Config &config) {
   return {};
 }
 
+std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
+  if (spec.law != Law::membrane) return {};
+  const std::string law = "-" + spec.name + "_law: membrane needs ";
+  if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
+    return law + "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin";
+  if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
+    return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
+  if (!config.initial_state.empty() || spec.shape == Shape::state)
+    return law + "a shape to start from, and cannot be read from -initial_state";
+  if (spec.initial_stretch != Real3{1, 1, 1})
+    return "-" + spec.name + "_initial_stretch: has no meaning for a membrane; accepted: -" + spec.name +
+           "_initial_area_stretch";
+  return {};
+}
+
 std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (spec.shape == Shape::state && config.initial_state.empty())
     return "-" + spec.name + "_shape: state needs -initial_state";
@@ -111,9 +126,12 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (const std::string wrong = check_membrane(config, spec); !wrong.empty()) return wrong;
   if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().elastic())
     return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
            spec.name + "_shear_modulus > 0";
+  if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
+    return "-" + spec.name + "_surface_tension: needs a sharp interface; accepted: -interface_scheme plic, or 0";
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   const bool random = spec.placement == Placement::random;

@@ -11,6 +11,8 @@ enum class Verb {
   wall_ghosts,
   momentum,
   viscous,
+  surface_tension,
+  membrane,
   divergence,
   acm,
   smac,

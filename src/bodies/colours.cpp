@@ -30,9 +30,9 @@ private:
 
 // `tensor`: the component in the phase that `ways` lead away from, before any body has moved.
 void copy_component(const Grid &grid, const Ways &ways, const BodyCells &cells, const TensorComponent &c, int f,
-                    ConstView tensor, std::vector<Phase> *phases) {
-  const Staggering at = c.staggering();
-  const bool edge = c.a != c.b;
+                    bool membrane, ConstView tensor, std::vector<Phase> *phases) {
+  const Staggering at = staggering_of(c, membrane);
+  const bool edge = c.a != c.b && !membrane;
   const std::ptrdiff_t a = edge ? cells.label.stride(c.a) : 0, b = edge ? cells.label.stride(c.b) : 0;
   for (int k = 0; k < grid.points_end(2, at[2]); ++k)
     for (int j = 0; j < grid.points_end(1, at[1]); ++j)
@@ -101,8 +101,8 @@ void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vect
     const auto tensor = copies(ways, phases, [c](Phase &phase) { return phase.tensor.part(c, 1); });
     for (int from = 0; from < count; ++from)
       if (!ways[from].empty())
-        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, components[c], c, tensor[from][0],
-                       phases);
+        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, components[c], c,
+                       (*phases)[from].material.is_membrane(), tensor[from][0], phases);
   }
   for (const bool arrive : {false, true})
     for (int from = 0; from < count; ++from) {

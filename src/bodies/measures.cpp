@@ -273,7 +273,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       some.add(b, second_moment + 3, phi * x[1] * x[2]);
       some.add(b, second_moment + 4, phi * x[0] * x[2]);
       some.add(b, second_moment + 5, phi * x[0] * x[1]);
-      if (!(phi > full_cell)) return;
+      if (!(phi > full_cell) || phase.material.is_membrane()) return;  // B_s says nothing of the inside
       some.add(b, full_cells, 1);
       for (int f = 0; f < phase.tensor.count(); ++f) {
         const auto [p, q] = tensor_components(dimension)[f];

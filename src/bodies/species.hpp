@@ -45,6 +45,8 @@ struct SpeciesSpec {
   double shear_modulus = 0;         ///< neo-Hookean; pressure units
   double c1 = 0, c2 = 0, c3 = 0;    ///< Mooney-Rivlin; pressure units
   std::optional<double> viscosity;  ///< dynamic; default: the fluid's
+  double surface_tension = 0;       ///< force per length
+  Membrane membrane{};              ///< Law::membrane
   std::optional<bool> attached;     ///< default by shape: is_attached()
   std::optional<Contact> contact;   ///< default by method: Config::separates()
   Real3 initial_stretch{1, 1, 1};   ///< B = diag(l^2), turned with the body; the shape is given in the stretched state
@@ -64,7 +66,9 @@ struct SpeciesSpec {
 
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
-    return {at_rest, attached.value_or(is_attached(shape)), false, law, c1, c2, c3, viscosity.value_or(0)};
+    return {
+        at_rest, attached.value_or(is_attached(shape)), false, law, c1, c2, c3, viscosity.value_or(0), surface_tension,
+        membrane};
   }
 };
 

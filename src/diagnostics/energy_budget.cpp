@@ -6,9 +6,9 @@ namespace eulastic {
 
 void EnergyBudget::advance(double time, const EnergyState &state) {
   const EnergyRates &r = state.rates;
-  const std::array<double, works> rate{r.force_power + r.wall_power, state.dissipation, r.elastic_power,
-                                       r.extended_power};
-  last_ = {state.kinetic, state.elastic, r.extended_energy};
+  const std::array<double, works> rate{r.force_power + r.wall_power, state.dissipation,
+                                       r.elastic_power + state.surface_power, r.extended_power};
+  last_ = {state.kinetic, state.elastic + state.surface, r.extended_energy};
   if (time_ < 0) first_ = last_;
   for (int w = 0; w < works && time_ >= 0; ++w) work_[w] += 0.5 * (time - time_) * (rate_[w] + rate[w]);
   rate_ = rate;

@@ -10,7 +10,8 @@ namespace eulastic {
 /// One state: its energies and the rates at which they change.
 struct EnergyState {
   double kinetic = 0, elastic = 0;
-  double dissipation = 0;  ///< by viscosity
+  double surface = 0, surface_power = 0;  ///< of surface tension: its energy, what the flow gives to it
+  double dissipation = 0;                 ///< by viscosity
   EnergyRates rates;
 };
 
@@ -23,7 +24,8 @@ public:
   double dissipated() const { return work_[1]; }  ///< by viscosity
   /// supplied - dissipated - change of kinetic and elastic energy: what the numerics took; negative: made.
   double lost() const;
-  /// The part of it between elastic stress and elastic energy: work of the stress - change of elastic energy.
+  /// The part of it between elastic stress and elastic energy, surface tension's included: work of the stress - change
+  /// of that energy.
   double lost_elastic() const;
   /// The part of that in cells where B is extended instead of evolved.
   double lost_extended() const;

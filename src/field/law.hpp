@@ -12,6 +12,7 @@ EULASTIC_INLINE auto with_law(const Material &m, const Use &use) {
   switch (m.law) {
     case Law::mooney_rivlin:
       return use(kernels::MooneyRivlin{2 * m.c1, 2 * m.c2, 4 * m.c3});
+    case Law::membrane:  // a fluid inside
     case Law::neo_hookean:
       break;
   }

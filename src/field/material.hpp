@@ -1,9 +1,12 @@
 // What a body is made of.
 #pragma once
 
+#include "kernels/membrane_law.hpp"
+
 namespace eulastic {
 
-enum class Law { neo_hookean, mooney_rivlin };
+enum class Law { neo_hookean, mooney_rivlin, membrane };
+using kernels::Membrane;
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I
 /// and II the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
@@ -14,9 +17,14 @@ struct Material {
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
+  double surface_tension = 0;     ///< force per length
+  Membrane membrane{};            ///< Law::membrane: B is B_s, all of it at centres
 
+  bool is_membrane() const { return law == Law::membrane; }
   /// false: a marked part of the fluid, or a drop; its B is I.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }
+  /// Whether anything is remembered beside phi: B, or B_s of a membrane.
+  bool carries_tensor() const { return elastic() || is_membrane(); }
 };
 
 }  // namespace eulastic

@@ -149,6 +149,15 @@ void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock
   }
 }
 
+void fill_wall_ghosts_centred_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
+  const auto &components = tensor_components(grid.dimension());
+  for (int c = 0; c < tensor.count(); ++c)
+    for (int d = 0; d < grid.dimension(); ++d)
+      for (const bool high : {false, true})
+        if (grid.is_wall(d))
+          reflect(grid, tensor[c], d, high, false, {components[c].staggering()[d] ? -1.0 : 1.0, 0.0}, width, rows);
+}
+
 void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor) {
   const auto &components = tensor_components(grid.dimension());
   for (int d = 0; d < grid.dimension(); ++d)

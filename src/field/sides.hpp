@@ -48,6 +48,10 @@ struct TensorComponent {
   }
 };
 const std::vector<TensorComponent> &tensor_components(int dimension);
+/// Where a component of the B of a phase lives: all of a membrane's at centres.
+inline Staggering staggering_of(const TensorComponent &component, bool membrane) {
+  return membrane ? at_centre : component.staggering();
+}
 /// I everywhere.
 FieldBlock tensor_at_rest(const Grid &grid);
 
@@ -64,6 +68,8 @@ void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View 
 /// All components of a left Cauchy-Green block.
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows = nullptr);
+/// The same where all components live at centres: the mirror image.
+void fill_wall_ghosts_centred_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows);
 /// Components of a left Cauchy-Green block on planes of symmetry: 0, ghosts of the other directions included.
 void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor);
 

@@ -13,10 +13,10 @@ void for_each_point(const Grid &grid, Body body) {
     for (int i = row.i_begin; i < row.i_end; ++i) body(i, row.j, row.k);
 }
 
-// A centred field where component (a, b) of a tensor lives.
-double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) {
+// A centred field where component (a, b) of the tensor of a phase lives.
+double at_component(ConstView q, const TensorComponent &c, bool membrane, int i, int j, int k) {
   const double *p = &q.row(j, k)[i];
-  if (c.a == c.b) return p[0];
+  if (c.a == c.b || membrane) return p[0];
   const std::ptrdiff_t a = q.stride(c.a), b = q.stride(c.b);
   return 0.25 * ((p[0] + p[-a - b]) + (p[-a] + p[-b]));
 }
@@ -57,6 +57,7 @@ SnapshotFields::Phases SnapshotFields::by_species(const SnapshotSelection &selec
 // phi is the sum; B and the label are those of the colour that fills most of the point, the first of equals.
 void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &colours, Phase *merged) {
   merged->species = colours[0]->species;
+  merged->material = colours[0]->material;
   merged->fraction.copy_from(colours[0]->fraction);
   for (std::size_t c = 1; c < colours.size(); ++c) {
     const double *more = colours[c]->fraction.data();
@@ -65,7 +66,8 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
   }
   const auto fullest = [&](const TensorComponent &at, int i, int j, int k) {
     return *std::max_element(colours.begin(), colours.end(), [&](const Phase *p, const Phase *q) {
-      return at_component(p->fraction[0], at, i, j, k) < at_component(q->fraction[0], at, i, j, k);
+      const bool membrane = p->material.is_membrane();
+      return at_component(p->fraction[0], at, membrane, i, j, k) < at_component(q->fraction[0], at, membrane, i, j, k);
     });
   };
   if (selection.body) {
@@ -103,7 +105,7 @@ void SnapshotFields::mix_labels(const Phases &phases) {
   });
 }
 
-// I + sum of phi (B - I) over the phases, phi averaged to where the component lives.
+// I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
 void SnapshotFields::mix_tensors(const Phases &phases) {
   const auto &components = tensor_components(grid_->dimension());
   if (!tensor_) tensor_ = FieldBlock(*grid_, static_cast<int>(components.size()));
@@ -112,7 +114,9 @@ void SnapshotFields::mix_tensors(const Phases &phases) {
     for_each_point(*grid_, [&](int i, int j, int k) {
       double sum = identity;
       for (const Phase *phase : phases)
-        sum += at_component(phase->fraction[0], components[c], i, j, k) * (phase->tensor[c](i, j, k) - identity);
+        if (!phase->material.is_membrane())
+          sum +=
+              at_component(phase->fraction[0], components[c], false, i, j, k) * (phase->tensor[c](i, j, k) - identity);
       tensor_[c](i, j, k) = sum;
     });
   }
@@ -126,11 +130,11 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     field.format = {name, staggering, stored};
     field.components = {view};
   };
-  const auto add_tensor = [&](const FieldBlock &tensor, const std::string &suffix) {
+  const auto add_tensor = [&](const FieldBlock &tensor, bool membrane, const std::string &suffix) {
     const auto &components = tensor_components(grid_->dimension());
     for (int c = 0; c < tensor.count(); ++c)
       add(std::string("left_cauchy_green_") + axes[components[c].a] + axes[components[c].b] + suffix, tensor[c],
-          components[c].staggering(), selection.precision);
+          staggering_of(components[c], membrane), selection.precision);
   };
   const FieldBlock &flow = velocity_;
   if (selection.velocity) {
@@ -150,14 +154,15 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     if (selection.body) mix_labels(species);
   }
   const auto add_phase = [&](const FieldBlock &fraction, const FieldBlock &tensor, const FieldBlock &label,
-                             const std::string &suffix) {
+                             bool membrane, const std::string &suffix) {
     if (selection.solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, selection.precision);
-    if (selection.left_cauchy_green) add_tensor(tensor, suffix);
+    if (selection.left_cauchy_green) add_tensor(tensor, membrane, suffix);
     if (selection.body) add("body" + suffix, label[0], at_centre, Stored::int32);
   };
-  if (several) add_phase(fraction_, tensor_, label_, "");
+  if (several) add_phase(fraction_, tensor_, label_, false, "");
   for (const Phase *phase : species)
-    add_phase(phase->fraction, phase->tensor, phase->label, several ? "_" + phase->species : "");
+    add_phase(phase->fraction, phase->tensor, phase->label, phase->material.is_membrane(),
+              several ? "_" + phase->species : "");
   return fields;
 }
 

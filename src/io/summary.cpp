@@ -59,6 +59,8 @@ std::string summary_text(const Summary &s) {
       .add("energy_lost", s.energy_lost)
       .add("energy_lost_elastic", s.energy_lost_elastic)
       .add("energy_lost_extended", s.energy_lost_extended)
+      .add("surface_energy", s.surface_energy)
+      .add("surface_power", s.surface_power)
       .add("bulk_velocity", s.bulk_velocity)
       .add("state_hash", checksum_text(s.state_hash))
       .add("bodies", bodies)

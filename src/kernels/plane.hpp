@@ -78,6 +78,18 @@ EULASTIC_INLINE double plane_constant(double phi, double a, double b, double c) 
   return phi > 0.5 ? 1 - t : t;
 }
 
+/// How fast the volume below the plane grows with alpha; times m of each direction it is the plane's area seen along
+/// it, in faces of the cell. Sum of m = 1. 2-D ignores c.
+template <int Dim>
+EULASTIC_INLINE double volume_slope(double alpha, double a, double b, double c) noexcept {
+  const auto [m1, m2, m3] = ascending<Dim>(a, b, c);
+  const double t = smaller(alpha, 1 - alpha);
+  if constexpr (Dim == 2) return t < m1 ? t / (m1 * m3) : 1 / m3;
+  const double m12 = m1 + m2, past2 = larger(t - m2, 0), past3 = larger(t - m3, 0), twice = 2 * (m1 * m2) * m3;
+  const double middle = fma(m1, fma(2, t, -m1), -fma(past2, past2, past3 * past3)) / twice;
+  return t < m1 ? t * t / twice : t < m12 ? middle : 1 / m3;
+}
+
 /// Volume that leaves the cell through one face, in cells, 0 <= courant <= 1 of which lie before it. `towards` is the
 /// component of the normal towards that face, positive where phi grows, `across1` and `across2` the sizes of the
 /// others, all 0 where there is no normal: then it is courant phi.

@@ -9,18 +9,18 @@
 
 namespace eulastic::kernels {
 
-struct Vector {
+struct Direction {
   double x, y, z;
 };
 /// Symmetric, all components at one point; in 2-D xz = yz = 0.
-struct Tensor {
+struct SymmetricTensor {
   double xx, yy, zz, yz, xz, xy;
 };
 
 /// Multiply-adds and the like: of the gradient and the strain rate at a centre, and of K and F at a point.
 inline constexpr double gradient_flops_2d = 35, gradient_flops_3d = 115, surface_flops_2d = 165, surface_flops_3d = 225;
 
-EULASTIC_INLINE double determinant(const Tensor &t) noexcept {
+EULASTIC_INLINE double determinant(const SymmetricTensor &t) noexcept {
   return t.xx * (t.yy * t.zz - t.yz * t.yz) - t.xy * (t.xy * t.zz - t.yz * t.xz) + t.xz * (t.xy * t.yz - t.yy * t.xz);
 }
 
@@ -62,7 +62,7 @@ EULASTIC_INLINE double strain_rate(const double *const *v, std::ptrdiff_t o, con
 }
 
 /// Of unit length; 0 where the gradient is.
-EULASTIC_INLINE Vector unit(const Vector &g) noexcept {
+EULASTIC_INLINE Direction unit(const Direction &g) noexcept {
   const double square = fma(g.x, g.x, fma(g.y, g.y, g.z * g.z));
   const double scale = square > 0 ? 1 / __builtin_sqrt(square) : 0;
   return {scale * g.x, scale * g.y, scale * g.z};
@@ -72,7 +72,7 @@ EULASTIC_INLINE Vector unit(const Vector &g) noexcept {
 EULASTIC_INLINE double decay(double x) noexcept { return exp(x < 700 ? -x : -700.0); }
 
 /// K at a point: S B S^T, whose determinant is that of B. `strength` = (1 - phi) k dt.
-EULASTIC_INLINE Tensor relax_traction(const Tensor &B, const Vector &n, double strength) noexcept {
+EULASTIC_INLINE SymmetricTensor relax_traction(const SymmetricTensor &B, const Direction &n, double strength) noexcept {
   const double x = fma(B.xx, n.x, fma(B.xy, n.y, B.xz * n.z)), y = fma(B.xy, n.x, fma(B.yy, n.y, B.yz * n.z)),
                z = fma(B.xz, n.x, fma(B.yz, n.y, B.zz * n.z));  // Bn
   const double across = fma(n.x, x, fma(n.y, y, n.z * z));

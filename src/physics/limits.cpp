@@ -19,6 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double combined_share = 0.8, inertial_share = 0.1;
 constexpr double advective_euler = 0.25, advective_staggered = 0.3;
 constexpr double elastic_share = 0.5, kelvin_voigt_share = 0.05, forcing_share = 1. / 40;
+constexpr double capillary_share = 0.5, capillary_viscous_share = 0.4;
 constexpr double pi = 3.14159265358979323846;
 
 double over(double a, double b) { return b > 0 ? a / b : infinite; }
@@ -185,6 +186,9 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
   limits.kelvin_voigt = varies ? contrast.kelvin_voigt : over(2 * fluid.viscosity, extremes.stiffness);
   limits.advective = over(2 * share, crossing + std::sqrt(crossing * crossing + 4 * gain * share));
   limits.inertial = fluid.inertia && least > 0 ? over(2 * least, speed_squared) : infinite;
+  const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
+  limits.capillary = std::sqrt(over(fluid.density * shortest * shortest * shortest, 2 * pi * contrast.surface_tension));
+  limits.capillary_viscous = over(shortest, contrast.capillary_speed);
   limits.forcing = over(2 * pi, frequency);
   return limits;
 }
@@ -203,6 +207,8 @@ double TimeStepLimits::automatic(const char **name) const {
     bounds.push_back(combined_share * combined < elastic_share * elastic
                          ? Bound{combined_share * combined, elastic < viscous ? "elastic wave" : "viscous"}
                          : Bound{elastic_share * elastic, "elastic wave"});
+  const double wave = capillary_share * capillary, viscous_surface = capillary_viscous_share * capillary_viscous;
+  bounds.push_back({scheme.rkl ? std::max(wave, viscous_surface) : wave, "capillary wave"});
   if (!scheme.staggered) bounds.push_back({inertial_share * inertial, "Euler 2 nu/U^2"});
   const auto least =
       std::min_element(bounds.begin(), bounds.end(), [](const Bound &a, const Bound &b) { return a.dt < b.dt; });
@@ -217,6 +223,7 @@ const char *TimeStepLimits::broken(double dt) const {
   } else if (dt >= combined) {
     return dt >= viscous ? "viscous" : "viscous + elastic wave";
   }
+  if (dt >= (scheme.rkl ? std::max(capillary, capillary_viscous) : capillary)) return "capillary wave";
   if (dt >= advective / share) return "advective";
   if (!scheme.staggered && dt >= inertial) return "Euler 2 nu/U^2";
   return nullptr;

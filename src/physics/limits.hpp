@@ -37,13 +37,15 @@ struct StepScheme {
 /// Upper bounds on dt; infinite where the term is absent.
 struct TimeStepLimits {
   StepScheme scheme;
-  double viscous;       ///< 1/(2 nu S), S = sum 1/h^2, nu the largest; what a plain explicit step bears
-  double elastic;       ///< 1/(c sqrt(S))
-  double combined;      ///< dt^2 c^2 S + 2 nu dt S = 1
-  double kelvin_voigt;  ///< 2 mu/stiffness
-  double advective;     ///< sum (|u_i| + |f_i| dt) dt/h_i = share, the share of the scheme included; walls count
-  double inertial;      ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
-  double forcing;       ///< the shortest period of walls and body force
+  double viscous;            ///< 1/(2 nu S), S = sum 1/h^2, nu the largest; what a plain explicit step bears
+  double elastic;            ///< 1/(c sqrt(S))
+  double combined;           ///< dt^2 c^2 S + 2 nu dt S = 1
+  double kelvin_voigt;       ///< 2 mu/stiffness
+  double advective;          ///< sum (|u_i| + |f_i| dt) dt/h_i = share, the share of the scheme included; walls count
+  double inertial;           ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
+  double capillary;          ///< sqrt(rho h^3/(2 pi sigma)), the shortest capillary wave
+  double capillary_viscous;  ///< h mu/sigma, of surfaces that follow their tension as viscosity lets them
+  double forcing;            ///< the shortest period of walls and body force
   /// The automatic step and the name of what sets it.
   double automatic(const char **name = nullptr) const;
   /// Name of the first stability limit that dt breaks, or null.

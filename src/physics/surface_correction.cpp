@@ -101,10 +101,10 @@ EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
   for (int n = 0; n < c.count; ++n) {
     const std::ptrdiff_t p = c.at[n];
     const std::uint64_t evolving = c.evolving[n];
-    kernels::Tensor T{
+    kernels::SymmetricTensor T{
         component_at<Dim, A, B, 0, 0>(t, p, evolving), component_at<Dim, A, B, 1, 1>(t, p, evolving), 1, 0, 0,
         component_at<Dim, A, B, 0, 1>(t, p, evolving)};
-    kernels::Vector gradient{centred_at<A, B>(t, t.gradient[0] + p), centred_at<A, B>(t, t.gradient[1] + p), 0};
+    kernels::Direction gradient{centred_at<A, B>(t, t.gradient[0] + p), centred_at<A, B>(t, t.gradient[1] + p), 0};
     if constexpr (Dim == 3) {
       T.zz = component_at<Dim, A, B, 2, 2>(t, p, evolving);
       T.yz = component_at<Dim, A, B, 1, 2>(t, p, evolving);
@@ -114,18 +114,18 @@ EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
     const double excess = (T.xx - 1) + (T.yy - 1) + (T.zz - 1), G = kernels::fma(t.stiffening, excess, t.G);
     const double limited = kernels::fma(t.wave, __builtin_sqrt(G > 0 ? G : 0), t.mu), k = G > 0 ? G / limited : 0;
     const double missing = 1 - centred_at<A, B>(t, t.phi + p);
-    const kernels::Tensor K = kernels::relax_traction(T, kernels::unit(gradient), missing * t.kink * k);
+    const kernels::SymmetricTensor K = kernels::relax_traction(T, kernels::unit(gradient), missing * t.kink * k);
     const double keep = kernels::decay(t.fading * centred_at<A, B>(t, t.rate + p));
     const auto faded = [=](bool here, double now, double mean)
                            EULASTIC_BODY { return here ? kernels::fma(keep, now, (1 - keep) * mean) : now; };
     const double mean[3] = {c.mean[0][n], A == B ? c.mean[1][n] : 0, A == B && Dim == 3 ? c.mean[2][n] : 0};
     constexpr bool centre = A == B;
-    const kernels::Tensor F{faded(centre, K.xx, mean[0]),
-                            faded(centre, K.yy, mean[1]),
-                            faded(centre && Dim == 3, K.zz, mean[2]),
-                            faded(A == 1 && B == 2, K.yz, mean[0]),
-                            faded(A == 0 && B == 2, K.xz, mean[0]),
-                            faded(A == 0 && B == 1, K.xy, mean[0])};
+    const kernels::SymmetricTensor F{faded(centre, K.xx, mean[0]),
+                                     faded(centre, K.yy, mean[1]),
+                                     faded(centre && Dim == 3, K.zz, mean[2]),
+                                     faded(A == 1 && B == 2, K.yz, mean[0]),
+                                     faded(A == 0 && B == 2, K.xz, mean[0]),
+                                     faded(A == 0 && B == 1, K.xy, mean[0])};
     const double before = kernels::determinant(K), after = kernels::determinant(F);
     const bool fades = (c.heard[n] != 0) & ((after >= least_determinant) | (after >= before));
     const auto chosen = [=](double yes, double no) EULASTIC_BODY { return fades ? yes : no; };

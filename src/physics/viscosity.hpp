@@ -18,6 +18,8 @@ inline double viscosity_of(const Material &material, const Fluid &fluid) {
 struct ViscosityContrast {
   double fluid, least, most;                                      ///< dynamic viscosities
   double kelvin_voigt = std::numeric_limits<double>::infinity();  ///< least 2 mu/(rho c^2) of any cell with solid
+  double surface_tension = 0;                                     ///< the largest
+  double capillary_speed = 0;  ///< the largest sigma over the mean viscosity on both sides of a surface
 
   explicit ViscosityContrast(const Fluid &f) : fluid(f.viscosity), least(f.viscosity), most(f.viscosity) {}
   /// A body, with the largest rho c^2 in it.

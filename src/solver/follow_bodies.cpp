@@ -15,6 +15,11 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
   const OccupiedRows before = phase.rows;
   PetscCall(find_rows(phase));
+  if (phase.material.is_membrane()) {
+    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    PetscCall(membranes_->extend(&phase));
+    PetscFunctionReturn(0);
+  }
   PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
   PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
   if (!phase.material.elastic()) PetscFunctionReturn(0);
@@ -37,7 +42,7 @@ PetscErrorCode Solver::find_rows(Phase &phase) {
   const Int3 &n = grid_->owned();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
     for (FieldBlock *block : {&phase.fraction, &phase.tensor, &next_fraction_, &next_tensor_})
-      if (block != &phase.tensor || phase.material.elastic()) block->leave_rest();
+      if (block != &phase.tensor || phase.material.carries_tensor()) block->leave_rest();
   PetscFunctionReturn(0);
 }
 
@@ -45,6 +50,7 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < now_.phases.size(); ++p) {
     long count = 0;
+    if (!now_.phases[p].material.elastic()) continue;
     PetscCall(find_and_forget(*grid_, evolve_rule(now_.phases[p]), extremes.trace[p], now_.phases[p], &count));
     now_.forgotten += count;
     if (count > 0) PetscCall(settle(now_.phases[p]));
@@ -65,7 +71,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
   phases_now_.resize(now_.phases.size());
   for (std::size_t p = 0; flow_ && p < phases_now_.size(); ++p)
-    if (now_.phases[p].material.elastic()) {
+    if (now_.phases[p].material.carries_tensor()) {
       phases_now_[p].tensor = idle_tensor(now_.phases[p].tensor.count());
       break;
     }

@@ -16,11 +16,13 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies) {
+int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
-  const int momentum = method.explicit_predictor() ? 0 : 2 * dimension;
+  int forces = surface_tension ? SurfaceTension::work_fields : 0;
+  if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
+  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + forces;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -49,7 +51,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, false)));
+  PetscCall(work_->reserve(work_fields(spec, dim, false, false, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -70,7 +72,12 @@ PetscErrorCode Solver::prepare() {
     velocity_star_ = flow.part(2 * dim, dim);
     flow_ = std::move(flow);
   }
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true)));
+  if (SurfaceTension::exists(now_.phases))
+    surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
+  if (MembraneTransport::exists(now_.phases))
+    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
+  PetscCall(
+      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
@@ -83,6 +90,7 @@ PetscErrorCode Solver::prepare() {
     phase.material.linear =
         phase.material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, phase.material);
     PetscCall(settle(phase));
+    if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
@@ -99,12 +107,16 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    if (phase.material.elastic()) PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
+    if (phase.material.is_membrane())
+      PetscCall(membranes_->extend(&phase));
+    else if (phase.material.elastic())
+      PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
 
 EvolveRule Solver::evolve_rule(const Phase &phase) const {
+  if (phase.material.is_membrane()) return around_membranes;
   if (!phase.material.elastic()) return evolve_nowhere;
   const bool reset = spec_.exterior == SolidExterior::identity;
   EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
@@ -140,7 +152,7 @@ std::size_t Solver::bytes() const {
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
-      if (phase.material.elastic()) sum += phase.tensor.bytes();  // else nobody writes there
+      if (phase.material.carries_tensor()) sum += phase.tensor.bytes();  // else nobody writes there
     }
   return sum;
 }
@@ -165,8 +177,12 @@ PetscErrorCode Solver::step(double dt) {
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (spec_.linear_force())
-    PetscCall(compute_elastic_force(*grid_, -1 / (dt * spec_.fluid.density), now_.phases, slope_));
+  if (spec_.linear_force()) {
+    const double scale = -1 / (dt * spec_.fluid.density);
+    PetscCall(compute_elastic_force(*grid_, scale, now_.phases, slope_));
+    if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
+    if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, slope_));
+  }
   PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
 }
@@ -185,6 +201,7 @@ PetscErrorCode Solver::predict(double dt) {
   }
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+    if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
     ++stages_;
     PetscFunctionReturn(0);
@@ -197,6 +214,9 @@ PetscErrorCode Solver::predict(double dt) {
   PetscCall(work_->take("viscous stage before", dim, &before));
   PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, rate.fields(),
                           slope));
+  if (surface_tension_)
+    PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
+  if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);

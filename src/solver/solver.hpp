@@ -8,8 +8,10 @@
 #include "physics/fluid.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
+#include "physics/membrane.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
+#include "physics/surface_tension.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "solver/method.hpp"
 #include "solver/state.hpp"
@@ -26,7 +28,7 @@ struct SolverSpec : Method {
 class Solver {
 public:
   /// Fields of the work space that the method needs, in a scene with bodies or without.
-  static int work_fields(const Method &method, int dimension, bool bodies);
+  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -48,6 +50,8 @@ public:
   /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
+  /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension.
+  PetscErrorCode surface_energy(SurfaceEnergy *measured);
   /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
@@ -82,6 +86,7 @@ private:
   };
   Rotation rotation() const;
   EvolveRule evolve_rule(const Phase &phase) const;
+  bool drifts() const;  ///< no wall holds the fluid
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
@@ -113,7 +118,9 @@ private:
   ExteriorLayers layers_;
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;
-  std::vector<Phase> phases_now_;  ///< copies for phases_now(), the first one's B an idle_tensor()
+  std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
+  std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
+  std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };

@@ -13,7 +13,7 @@ PetscErrorCode state_hash(const Grid &grid, const State &state, std::uint64_t *h
   for (const Phase &phase : state.phases) {
     sum += hash_points(grid, phase.fraction[0], at_centre, ++salt);
     for (int c = 0; c < phase.tensor.count(); ++c)
-      sum += hash_points(grid, phase.tensor[c], components[c].staggering(), ++salt);
+      sum += hash_points(grid, phase.tensor[c], staggering_of(components[c], phase.material.is_membrane()), ++salt);
     if (phase.label) sum += hash_points(grid, phase.label[0], at_centre, ++salt);
   }
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm()));

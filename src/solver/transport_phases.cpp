@@ -25,6 +25,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionBeginUser;
   const int ghosts = grid_->spec().ghosts;
   std::vector<MovedRows> rows(phases.size());
+  if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     rows[p].swapped_in = next_rows_;
@@ -48,9 +49,13 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
-    if (!phase.material.elastic()) continue;
+    if (!phase.material.carries_tensor()) continue;
     const ActiveSegments before = std::move(phase.strained);
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    if (phase.material.is_membrane()) {
+      PetscCall(membranes_->advance(dt, now_.velocity, &phase));
+      continue;
+    }
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
     tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});

@@ -28,6 +28,24 @@ PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
   PetscFunctionReturn(0);
 }
 
+bool Solver::drifts() const {
+  for (int d = 0; d < grid_->dimension(); ++d)
+    for (const Side &side : spec_.sides[d])
+      if (grid_->is_wall(d) && side.kind == SideKind::wall) return false;
+  return true;
+}
+
+PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured) {
+  PetscFunctionBeginUser;
+  *measured = {};
+  if (!surface_tension_ && !membranes_) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(phases_now(&phases));
+  if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
+  if (membranes_) PetscCall(membranes_->measure(*phases, now_.velocity, measured));
+  PetscFunctionReturn(0);
+}
+
 // Half of what the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3
 // of it. With the viscosity of the place p turns into noise where bodies are 20 or 100 times as viscous; with the least
 // one it does not at any contrast.

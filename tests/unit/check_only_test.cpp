@@ -49,6 +49,11 @@ TEST(CheckOnly, NumbersOfAChannel) {
   for (const char *line :
        {"viscosity of cell: 4, 4 times the fluid's\n", "dt limit, viscous: 0.0078125\n", "dt limit, Kelvin-Voigt: 6\n"})
     EXPECT_NE(viscous.find(line), std::string::npos) << line << viscous;
+  // sqrt(.5^3/(2 pi 8)), and .5 over 8/((4 + 1)/2).
+  const std::string drop = check_report(parse_line(two + "-cell_viscosity 4 -cell_surface_tension 8").config, 1);
+  for (const char *line : {"dt limit, capillary wave: 0.0498678\n", "dt limit, viscous surface: 0.15625\n"})
+    EXPECT_NE(drop.find(line), std::string::npos) << line << drop;
+  EXPECT_EQ(viscous.find("capillary"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
   EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");

@@ -151,6 +151,8 @@ TEST(Summary, HasEveryKey) {
                                           "energy_lost",
                                           "energy_lost_elastic",
                                           "energy_lost_extended",
+                                          "surface_energy",
+                                          "surface_power",
                                           "bulk_velocity",
                                           "state_hash",
                                           "bodies",

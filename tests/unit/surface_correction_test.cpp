@@ -19,7 +19,7 @@ template <int Dim>
 using Tensor = std::array<Vector<Dim>, Dim>;
 
 template <int Dim>
-kernels::Tensor kernel_tensor(const Tensor<Dim> &t) {
+kernels::SymmetricTensor kernel_tensor(const Tensor<Dim> &t) {
   if constexpr (Dim == 2)
     return {t[0][0], t[1][1], 1, 0, 0, t[0][1]};
   else
@@ -31,8 +31,8 @@ double determinant(const Tensor<Dim> &t) {
 }
 template <int Dim>
 Tensor<Dim> relax_traction(const Tensor<Dim> &B, const Vector<Dim> &n, double strength) {
-  const kernels::Vector normal{n[0], n[1], Dim == 3 ? n[Dim - 1] : 0};
-  const kernels::Tensor k = kernels::relax_traction(kernel_tensor<Dim>(B), normal, strength);
+  const kernels::Direction normal{n[0], n[1], Dim == 3 ? n[Dim - 1] : 0};
+  const kernels::SymmetricTensor k = kernels::relax_traction(kernel_tensor<Dim>(B), normal, strength);
   const double all[3][3] = {{k.xx, k.xy, k.xz}, {k.xy, k.yy, k.yz}, {k.xz, k.yz, k.zz}};
   EXPECT_TRUE(Dim == 3 || (k.zz == 1 && k.xz == 0 && k.yz == 0));
   Tensor<Dim> t;
@@ -221,7 +221,7 @@ TEST(SurfaceCorrection, GradientAndStrainRateOfLinearFieldsAreExact) {
     const double norm = Dim == 3 ? 1.3 : 0.5;
     double g[3] = {};
     for (int d = 0; d < Dim; ++d) g[d] = kernels::fraction_slope<Dim>(&phi[middle], d, stride, inverse);
-    const kernels::Vector n = kernels::unit({g[0], g[1], g[2]});
+    const kernels::Direction n = kernels::unit({g[0], g[1], g[2]});
     EXPECT_NEAR(n.x, slope[0] / norm, 1e-14);
     EXPECT_NEAR(n.y, slope[1] / norm, 1e-14);
     EXPECT_NEAR(n.z, Dim == 3 ? slope[2] / norm : 0, 1e-14);

@@ -1,0 +1,103 @@
+"""V2: drops, surface tension alone. Taylor (1934) for small deformation; docs/method.md, section 17."""
+import numpy
+
+from .bodies import body_line, fast_at, last
+from .case import Case, Measure
+
+TENSION, VISCOSITY = 20, 1  # of shear rate and radius 1: Ca = .05
+
+STILL = {"wall_ymin_velocity": "0,0,0", "wall_ymax_velocity": "0,0,0", "initial_velocity": "zero"}
+
+
+def taylor(ratio, box):
+    """D/Ca between walls `box` radii apart: Taylor's, and Shapira and Haber's (1990) first order of the walls' image, summed up
+    as in S8 (5.6996 (1 + 5/2 l)/(1 + l) is 14.249 times the strength of the drop's stresslet over that of a rigid sphere)."""
+    return (19 * ratio + 16) / (16 * ratio + 16) / (1 - 5.6996 * (1 + 2.5 * ratio) / (1 + ratio) / box**3)
+
+
+def relaxation_rate(ratio):
+    """Of the second mode, in sigma/(mu R)."""
+    return 40 * (ratio + 1) / ((2 * ratio + 3) * (19 * ratio + 16))
+
+
+def cube(n, box):
+    return {"grid_cells": ",".join([str(n * box)] * 3), "grid_length": ",".join([str(box)] * 3), "snapshot_interval": 0}
+
+
+# At rest: off the grid's symmetry; no flow should be there
+def largest_capillary(begin, end):
+    """Largest mu |u|/sigma within parts of the run's time."""
+    def value(run):
+        t = run.series.time / run.series.time[-1]
+        return float(run.series.speed_max[(t >= begin) & (t <= end)].max()) * VISCOSITY / TENSION
+    return value
+
+
+def at_rest(name, title, cells, settings, quick, early):
+    asked = "asked for: 1e-4 at 16 cells per radius"
+    options = {"drop_centre": "2.019,2.006,2.013", **STILL, "drop_viscosity": 1, "time_end": 6 / TENSION, "series_interval": .1 / TENSION}
+    return Case("V2", title, "drop_in_shear", lambda n, _: {**options, **cells(n), "snapshot_interval": 0}, settings, quick,
+                (Measure(f"{name} at rest: largest mu u/sigma", largest_capillary(0, 1), {"fast": lambda n: early * (16 / n)**2},
+                         "curvature from heights is of second order; 1e-4 is asked for of what remains"),
+                 Measure(f"{name} at rest: that of the last third", largest_capillary(.67, 1), {"fast": lambda n: 1e-4 * max(1, (16 / n)**3)}, asked),
+                 Measure(f"{name} at rest: area, of the exact", lambda run: float(
+                     run.series.surface_energy[-1] / TENSION / (2 * numpy.pi if run.cells[2] == 1 else 4 * numpy.pi)),
+                     {"fast": lambda n: .005 * (16 / n)**2}, "of planes: (h/R)^2", 1, True)),
+                lambda run: ((run.series.time, run.series.speed_max * VISCOSITY / TENSION), None), ("t", "mu u/sigma"))
+
+
+# In shear
+def in_shear(ratio, time, keys, quick=()):
+    def options(key, _):
+        n, box = key
+        return {**cube(n, box), "wall_ymin_velocity": f"{-box / 2},0,0", "wall_ymax_velocity": f"{box / 2},0,0",
+                "drop_viscosity": ratio, "drop_surface_tension": TENSION, "time_end": time}
+
+    def excess(run):
+        box = run.length[1]
+        return float(last("taylor_deformation")(run) * TENSION / taylor(ratio, box))
+    return Case("V2", f"Drop in shear flow, viscosity ratio {ratio}", "drop_in_shear", options,
+                fast_at(*keys), fast_at(*quick),
+                (Measure(f"ratio {ratio}: D/Ca over Taylor's between these walls", excess,
+                         {"fast": lambda key: .02 * max(1, (16 / key[0])**2)},
+                         "asked for: 2 % at 16 cells per radius; second order", 1, True),),
+                body_line("taylor_deformation"), ("t", f"D, ratio {ratio}"))
+
+
+# Let go
+def relaxing(ratio, keys, quick=()):
+    """Unbounded and h -> 0: least squares of the rate over (R/L)^3 and (h/R)^2; from .5 to 1.5 times the time of decay."""
+    rate = relaxation_rate(ratio)
+
+    def options(key, _):
+        n, box = key
+        return {**cube(n, box), **STILL, "drop_semi_axes": "1.05,0.975900073,0.975900073", "drop_viscosity": ratio, "time_end": 1.5 / rate / TENSION,
+                "series_interval": .05 / rate / TENSION}
+
+    def observed(run):
+        t, d = run.bodies.time, run.bodies.taylor_deformation[:, 0]
+        late = t > t[-1] / 3
+        return float(-numpy.polyfit(t[late], numpy.log(d[late]), 1)[0] / TENSION)
+
+    def unbounded(runs):
+        terms = numpy.array([[1, box**-3., n**-2.] for n, box in runs])
+        return float(numpy.linalg.lstsq(terms, numpy.array([observed(run) for run in runs.values()]), rcond=None)[0][0])
+    return Case("V2", f"Drop let go, viscosity ratio {ratio}", "drop_in_shear", options, fast_at(keys),
+                fast_at(quick) if quick else (),
+                (Measure(f"ratio {ratio}: rate of relaxation, extrapolated", unbounded, {"fast": .02},
+                         "asked for: 2 %; the shape is .03 from a sphere", rate, True, whole=True),
+                 Measure(f"ratio {ratio}: in this box", observed, {}, "walls and images slow it down", rate, True)),
+                body_line("taylor_deformation"), ("t", f"D, ratio {ratio}"))
+
+
+def flat(n):
+    return {"grid_cells": f"{4 * n},{4 * n},1", "grid_length": "4,4,1"}
+
+
+CASES = (
+    at_rest("disc", "Drop at rest, 2-D", flat, fast_at((8, 16, 32)), fast_at((8, 16)), 1e-4),
+    at_rest("ball", "Drop at rest, 3-D", lambda n: cube(n, 4), fast_at((8, 16)), fast_at((8,)), 1e-3),
+    in_shear(.2, 1.2, (((8, 6), (12, 6), (16, 6)),)), in_shear(1, 1.6, (((8, 6), (12, 6), (16, 6)), ((8, 8),)), (((8, 6),),)),
+    in_shear(5, 2.4, (((8, 6), (12, 6), (16, 6)),)),
+    relaxing(.2, ((8, 6), (8, 8), (12, 6))), relaxing(1, ((8, 6), (8, 8), (12, 6))), relaxing(5, ((8, 6), (8, 8), (12, 6))),
+)

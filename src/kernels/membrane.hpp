@@ -1,0 +1,97 @@
+// A membrane at one point: its surface deformation B_s = F P_0 F^T, tension and energy of its laws.
+//
+// B_s has the normal as eigenvector of 0; J^2 = ((tr B_s)^2 - tr B_s^2)/2 is the stretch of area squared. In 2-D the
+// third direction is not stretched. docs/method.md, section 18; Barthes-Biesel, Annu. Rev. Fluid Mech. 48 (2016).
+#pragma once
+
+#include "kernels/membrane_law.hpp"
+#include "kernels/stencils.hpp"
+
+#include <array>
+
+namespace eulastic::kernels {
+
+template <int Dim>
+using Vector = std::array<double, Dim>;
+template <int Dim>
+using Tensor = std::array<Vector<Dim>, Dim>;
+
+template <int Dim>
+EULASTIC_INLINE double trace_of(const Tensor<Dim> &t) noexcept {
+  double sum = t[0][0] + t[1][1];
+  if constexpr (Dim == 3) sum += t[2][2];
+  return sum;
+}
+
+/// 1 - n n.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> tangential(const Vector<Dim> &n) noexcept {
+  Tensor<Dim> P;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) P[a][b] = (a == b ? 1 : 0) - n[a] * n[b];
+  return P;
+}
+
+/// P B P.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
+  Vector<Dim> Bn{};
+  double nBn = 0;
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b) Bn[a] = fma(B[a][b], n[b], Bn[a]);
+    nBn = fma(n[a], Bn[a], nBn);
+  }
+  Tensor<Dim> out;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b)
+      out[a][b] = out[b][a] = (B[a][b] - (n[a] * Bn[b] + Bn[a] * n[b])) + nBn * (n[a] * n[b]);
+  return out;
+}
+
+/// A tangential tensor of the plane normal to `from`, turned with it into the plane normal to n by the smallest
+/// rotation.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> turn(const Tensor<Dim> &B, const Vector<Dim> &from, const Vector<Dim> &n) noexcept {
+  Vector<Dim> Bn{}, w;
+  double nBn = 0, cosine = 0;
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b) Bn[a] = fma(B[a][b], n[b], Bn[a]);
+    nBn = fma(n[a], Bn[a], nBn);
+    cosine = fma(n[a], from[a], cosine);
+  }
+  const double scale = 1 / (1 + (cosine > -0.5 ? cosine : -0.5));
+  for (int a = 0; a < Dim; ++a) w[a] = scale * (n[a] + from[a]);
+  Tensor<Dim> out;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b)
+      out[a][b] = out[b][a] = (B[a][b] - (w[a] * Bn[b] + Bn[a] * w[b])) + nBn * (w[a] * w[b]);
+  return out;
+}
+
+/// J^2 and tr B_s, those of the third direction in 2-D included.
+struct SurfaceStrain {
+  double trace, area_squared;
+};
+template <int Dim>
+EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
+  constexpr double third = Dim == 2 ? 1 : 0, least = 1e-4;
+  double square = third;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) square = fma(B[a][b], B[a][b], square);
+  const double sum = trace_of<Dim>(B) + third, twice = fma(sum, sum, -square);
+  return {sum, 0.5 * twice > least ? 0.5 * twice : least};
+}
+
+/// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one.
+struct MembraneState {
+  double alpha, beta, energy, area;
+};
+EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStrain &s) noexcept {
+  const double J = __builtin_sqrt(s.area_squared), G = m.shear_modulus;
+  if (m.law == MembraneLaw::neo_hookean)
+    return {G / J, -G / (J * s.area_squared), 0.5 * G * (s.trace + 1 / s.area_squared - 3), J};
+  const double I1 = s.trace - 2, I2 = s.area_squared - 1, C = m.area_modulus;
+  return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
+}
+
+}  // namespace eulastic::kernels

@@ -1,0 +1,19 @@
+// The numbers of an elastic surface around a fluid.
+#pragma once
+
+namespace eulastic::kernels {
+
+enum class MembraneLaw { neo_hookean, skalak };
+
+/// Shear modulus G_s (force per length) and, of Skalak's law, C: the modulus of area is 3 G_s of a neo-Hookean membrane
+/// and (1 + 2 C) G_s of Skalak's.
+struct Membrane {
+  MembraneLaw law = MembraneLaw::neo_hookean;
+  double shear_modulus = 0, area_modulus = 1;
+  double initial_area_stretch = 1;
+  double largest_modulus() const {
+    return shear_modulus * (1 + (law == MembraneLaw::neo_hookean ? 3 : 1 + 2 * area_modulus));
+  }
+};
+
+}  // namespace eulastic::kernels

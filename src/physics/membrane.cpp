@@ -1,0 +1,187 @@
+#include "physics/membrane.hpp"
+
+#include "base/events.hpp"
+#include "grid/threads.hpp"
+#include "kernels/weno5.hpp"
+#include "physics/membrane_tensor.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+using kernels::Tensor;
+using kernels::Vector;
+
+constexpr double epsilon = 1e-6;  // WENO5: B_s is of order 1
+
+template <int Dim>
+struct Local {
+  std::ptrdiff_t stride[3];
+  Real3 h, inverse;
+  explicit Local(const Grid &grid, ConstView q) {
+    for (int d = 0; d < 3; ++d) {
+      stride[d] = q.stride(d);
+      h[d] = grid.spacing()[d];
+      inverse[d] = 1 / h[d];
+    }
+  }
+};
+
+// v and its gradient at the point of the surface nearest to a cell.
+template <int Dim>
+struct Flow {
+  Vector<Dim> v{};
+  Tensor<Dim> L{};
+};
+
+template <int Dim>
+EULASTIC_INLINE double centre_velocity(const double *v, std::ptrdiff_t s) {
+  return 0.5 * (v[0] + v[s]);
+}
+
+template <int Dim>
+EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const FieldBlock &velocity, std::ptrdiff_t at,
+                                          const Vector<Dim> &n, double distance) {
+  Flow<Dim> flow;
+  std::ptrdiff_t step[Dim];
+  double part[Dim];
+  for (int d = 0; d < Dim; ++d) {
+    const double away = -distance * n[d] * local.inverse[d];
+    step[d] = away > 0 ? local.stride[d] : -local.stride[d];
+    part[d] = std::min(__builtin_fabs(away), 1.0);
+  }
+  for (int corner = 0; corner < 1 << Dim; ++corner) {
+    double w = 1;
+    std::ptrdiff_t o = at;
+    for (int d = 0; d < Dim; ++d) {
+      const bool far = corner >> d & 1;
+      w *= far ? part[d] : 1 - part[d];
+      o += far ? step[d] : 0;
+    }
+    if (w == 0) continue;
+    for (int a = 0; a < Dim; ++a) {
+      const double *v = velocity[a].origin + o;
+      const std::ptrdiff_t s = local.stride[a];
+      flow.v[a] = kernels::fma(w, centre_velocity<Dim>(v, s), flow.v[a]);
+      for (int d = 0; d < Dim; ++d) {
+        const std::ptrdiff_t t = local.stride[d];
+        const double near = centre_velocity<Dim>(v + t, s) - centre_velocity<Dim>(v - t, s);
+        const double far = centre_velocity<Dim>(v + 2 * t, s) - centre_velocity<Dim>(v - 2 * t, s);
+        flow.L[a][d] = kernels::fma(w * local.inverse[d], (8 * near - far) / 12, flow.L[a][d]);
+      }
+    }
+  }
+  return flow;
+}
+
+// -v.grad B + L B + B L^T.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const FieldBlock &B, std::ptrdiff_t at,
+                                    const Flow<Dim> &flow) {
+  const Tensor<Dim> b = tensor_at<Dim>(B, at);
+  Tensor<Dim> rate;
+  for (int x = 0; x < Dim; ++x)
+    for (int y = x; y < Dim; ++y) {
+      const double *q = B[x == y ? x : Dim == 2 ? 2 : 6 - x - y].origin + at;
+      double carried = 0, stretched = 0;
+      for (int d = 0; d < Dim; ++d) {
+        carried = kernels::fma(flow.v[d] * local.inverse[d],
+                               kernels::weno5_difference(q, local.stride[d], flow.v[d], epsilon), carried);
+        stretched += flow.L[x][d] * b[d][y] + b[x][d] * flow.L[y][d];
+      }
+      rate[x][y] = rate[y][x] = stretched - carried;
+    }
+  return rate;
+}
+
+}  // namespace
+
+bool MembraneTransport::exists(const std::vector<Phase> &phases) {
+  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.is_membrane(); });
+}
+
+PetscErrorCode MembraneTransport::start(Phase *phase) {
+  PetscFunctionBeginUser;
+  WorkSpace::Lease psi;
+  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+  PetscCall(surface_.find(*phase, psi.fields()));
+  const double area = phase->material.membrane.initial_area_stretch;
+  const double stretch = grid_->dimension() == 2 ? area * area : area;  // squared, of lengths
+  for (std::size_t c = 0; c < surface_.nearest(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) continue;
+    const auto set = [&](auto P) {
+      for (auto &row : P)
+        for (double &value : row) value *= stretch;
+      return P;
+    };
+    if (grid_->dimension() == 2)
+      set_tensor<2>(phase->tensor, cell.at, set(kernels::tangential<2>(normal_of<2>(cell.normal))));
+    else
+      set_tensor<3>(phase->tensor, cell.at, set(kernels::tangential<3>(normal_of<3>(cell.normal))));
+  }
+  PetscCall(surface_.extend(*phase, phase->tensor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::extend(Phase *phase) {
+  PetscFunctionBeginUser;
+  WorkSpace::Lease psi;
+  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+  PetscCall(surface_.find(*phase, psi.fields()));
+  PetscCall(surface_.extend(*phase, phase->tensor));
+  PetscFunctionReturn(0);
+}
+
+// Heun. First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2.
+template <int Dim>
+void MembraneTransport::stage(double dt, const FieldBlock &velocity, bool second, FieldBlock &tensor,
+                              FieldBlock &next) const {
+  const Local<Dim> local(*grid_, velocity[0]);
+  const int parts = row_parts(*grid_);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece piece(surface_.nearest(), part, parts);
+    for (std::size_t c = piece.begin; c < piece.end; ++c) {
+      const SurfaceCells::Cell &cell = surface_.all()[c];
+      if (!cell.owned) continue;
+      const Vector<Dim> n = normal_of<Dim>(cell.normal);
+      const Flow<Dim> flow = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
+      const FieldBlock &from = second ? next : tensor;
+      Tensor<Dim> rate = rate_of<Dim>(local, from, cell.at, flow), value = tensor_at<Dim>(from, cell.at);
+      for (int a = 0; a < Dim; ++a)
+        for (int b = 0; b < Dim; ++b) value[a][b] = kernels::fma(dt, rate[a][b], value[a][b]);
+      if (second) {
+        const Tensor<Dim> old = tensor_at<Dim>(tensor, cell.at);
+        for (int a = 0; a < Dim; ++a)
+          for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
+        value = kernels::project<Dim>(value, n);
+      }
+      set_tensor<Dim>(second ? tensor : next, cell.at, value);
+    }
+  });
+}
+
+PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, Phase *phase) {
+  PetscFunctionBeginUser;
+  const int dim = grid_->dimension();
+  WorkSpace::Lease psi, lease;
+  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+  PetscCall(work_->take("first stage of B_s", phase->tensor.count(), &lease));
+  PetscCall(surface_.find(*phase, psi.fields()));
+  FieldBlock &next = lease.fields();
+  for (const bool second : {false, true}) {
+    {
+      VerbScope scope(Verb::membrane);
+      if (dim == 2)
+        stage<2>(dt, velocity, second, phase->tensor, next);
+      else
+        stage<3>(dt, velocity, second, phase->tensor, next);
+      scope.flops(double(surface_.nearest()) * (dim == 2 ? 700 : 3200));
+    }
+    PetscCall(surface_.extend(*phase, second ? phase->tensor : next));
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,158 @@
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+#include "grid/row_scratch.hpp"
+#include "physics/membrane.hpp"
+#include "physics/membrane_tensor.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+// div T on faces of component a, of a row.
+template <int Dim>
+EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
+                                    double *out) {
+  const ConstView q = T[a];
+  const double *aa = q.row(j, k);
+  const std::ptrdiff_t sa = q.stride(a);
+  for (int i = 0; i < n; ++i) out[i] = scale * inverse[a] * (aa[i] - aa[i - sa]);
+  for (int e = 1; e < Dim; ++e) {
+    const int b = (a + e) % Dim;
+    const double *ab = T[Dim == 2 ? 2 : 6 - a - b].row(j, k);
+    const double ib = scale * inverse[b];
+    const std::ptrdiff_t sb = q.stride(b);
+#pragma omp simd
+    for (int i = 0; i < n; ++i)
+      out[i] = kernels::fma(ib, kernels::average4(ab + i, -sa, sb) - kernels::average4(ab + i, -sa, -sb), out[i]);
+  }
+}
+EULASTIC_CLONES void divergence_2d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
+                                   double *out) {
+  divergence_row<2>(T, a, inverse, n, j, k, scale, out);
+}
+EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
+                                   double *out) {
+  divergence_row<3>(T, a, inverse, n, j, k, scale, out);
+}
+
+// Rows in which faces feel a stress that lives in rows that are not idle, or the next ones.
+bool feels(const OccupiedRows &rows, int j, int k) {
+  for (int m = -1; m <= 1; ++m)
+    for (int n = -1; n <= 1; ++n)
+      if (!rows.idle(j + n, k + m)) return true;
+  return false;
+}
+
+}  // namespace
+
+// delta tau in owned cells and one layer of ghosts; 0 elsewhere on rows that feel it.
+void MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) const {
+  const int dim = grid_->dimension();
+  const Int3 &n = grid_->owned();
+  for (int k = dim == 3 ? -1 : 0; k < n[2] + (dim == 3); ++k)
+    for (int j = -1; j <= n[1]; ++j)
+      if (feels(phase.rows, j, k))
+        for (int f = 0; f < stress.count(); ++f) std::fill_n(stress[f].row(j, k) - 1, n[0] + 2, 0.0);
+  const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
+    auto B = zero;
+    const kernels::MembraneState state = kernels::membrane_state(
+        phase.material.membrane, kernels::surface_strain<int(std::tuple_size_v<decltype(B)>)>(B));
+    for (std::size_t a = 0; a < B.size(); ++a)
+      for (std::size_t b = 0; b < B.size(); ++b)
+        B[a][b] = cell.delta * kernels::fma(state.alpha, B[a][b], state.beta * P[a][b]);
+    return B;
+  };
+  for (const SurfaceCells::Cell &cell : surface_.all()) {
+    bool near = true;
+    for (int d = 0; d < dim; ++d) near = near && cell.place[d] >= -1 && cell.place[d] <= n[d];
+    if (!near) continue;
+    if (dim == 2)
+      set_tensor<2>(stress, cell.at,
+                    set(cell, tensor_at<2>(phase.tensor, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
+    else
+      set_tensor<3>(stress, cell.at,
+                    set(cell, tensor_at<3>(phase.tensor, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
+  }
+}
+
+PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, FieldBlock &force,
+                                            const ForceSlope &slope) {
+  PetscFunctionBeginUser;
+  const int dim = grid_->dimension(), n = grid_->owned()[0];
+  const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  for (const Phase &phase : phases) {
+    if (!phase.material.is_membrane()) continue;
+    WorkSpace::Lease psi, lease;
+    PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+    PetscCall(work_->take("stress of a membrane", phase.tensor.count(), &lease));
+    PetscCall(surface_.find(phase, psi.fields()));
+    VerbScope scope(Verb::membrane);
+    find_stress(phase, lease.fields());
+    in_row_parts(*grid_, [&](const RowPart &part) {
+      RowScratch scratch(*grid_, 1);
+      double *added = scratch.row(0);
+      for (int k = part.k_begin; k < part.k_end; ++k)
+        for (int j = part.j_begin; j < part.j_end; ++j) {
+          if (phase.rows.idle(j, k)) continue;
+          for (int a = 0; a < dim; ++a) {
+            (dim == 2 ? divergence_2d : divergence_3d)(lease.fields(), a, inverse, n, j, k, scale, added);
+            double *f = force[a].row(j, k), *change = slope.field ? (*slope.field)[a].row(j, k) : nullptr;
+            for (int i = 0; i < n; ++i) {
+              f[i] += added[i];
+              if (change) change[i] = kernels::fma(slope.factor, added[i], change[i]);
+            }
+          }
+        }
+    });
+    scope.flops(double(phase.rows.cells()) * dim * 12 * dim);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const FieldBlock &velocity,
+                                          SurfaceEnergy *measured) {
+  PetscFunctionBeginUser;
+  const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
+  const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  for (const Phase &phase : phases) {
+    if (!phase.material.is_membrane()) continue;
+    WorkSpace::Lease psi, lease;
+    PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+    PetscCall(work_->take("stress of a membrane", phase.tensor.count(), &lease));
+    PetscCall(surface_.find(phase, psi.fields()));
+    VerbScope scope(Verb::sums);
+    find_stress(phase, lease.fields());
+    const View energy = psi.fields()[0];  // in place of psi
+    for (const Segment &row : grid_->rows())
+      if (!phase.rows.idle(row.j, row.k)) std::fill_n(energy.row(row.j, row.k), n, 0.0);
+    for (const SurfaceCells::Cell &cell : surface_.all()) {
+      if (!cell.owned) continue;
+      const kernels::SurfaceStrain strain = dim == 2 ? kernels::surface_strain<2>(tensor_at<2>(phase.tensor, cell.at))
+                                                     : kernels::surface_strain<3>(tensor_at<3>(phase.tensor, cell.at));
+      const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
+      energy.origin[cell.at] = cell.delta * state.energy / state.area;
+    }
+    const auto add = [&](const RowPart &part, ExactSums &sums) {
+      std::vector<double> power(n), force(n);
+      for (const Segment &row : part.rows(*grid_)) {
+        if (phase.rows.idle(row.j, row.k)) continue;
+        std::fill(power.begin(), power.end(), 0.0);
+        for (int a = 0; a < dim; ++a) {
+          (dim == 2 ? divergence_2d : divergence_3d)(lease.fields(), a, inverse, n, row.j, row.k, 1, force.data());
+          const double *v = velocity[a].row(row.j, row.k);
+          for (int i = 0; i < n; ++i) power[i] = kernels::fma(-force[i], v[i], power[i]);
+        }
+        sums.add_row(0, power.data(), n, first);
+        sums.add_row(1, energy.row(row.j, row.k), n, first);
+      }
+    };
+    double sum[2];
+    PetscCall(sum_row_parts(*grid_, 2, add, sum));
+    measured->power += sum[0] * grid_->cell_volume();
+    measured->energy += sum[1] * grid_->cell_volume();
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

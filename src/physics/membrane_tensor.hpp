@@ -1,0 +1,32 @@
+// B_s of one cell out of its block, and back.
+#pragma once
+
+#include "field/field_block.hpp"
+#include "kernels/membrane.hpp"
+
+namespace eulastic {
+
+template <int Dim>
+kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff_t at) {
+  const auto value = [&](int f) { return B[f].origin[at]; };
+  if constexpr (Dim == 2) {
+    return {{{value(0), value(2)}, {value(2), value(1)}}};
+  } else {
+    return {{{value(0), value(5), value(4)}, {value(5), value(1), value(3)}, {value(4), value(3), value(2)}}};
+  }
+}
+
+template <int Dim>
+void set_tensor(FieldBlock &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b) B[a == b ? a : Dim == 2 ? 2 : 6 - a - b].origin[at] = t[a][b];
+}
+
+template <int Dim>
+kernels::Vector<Dim> normal_of(const Real3 &n) {
+  kernels::Vector<Dim> v;
+  for (int d = 0; d < Dim; ++d) v[d] = n[d];
+  return v;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,224 @@
+#include "physics/surface_cells.hpp"
+
+#include "base/events.hpp"
+#include "field/sides.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
+#include "kernels/tensor.hpp"
+#include "physics/membrane_tensor.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+constexpr int half = 2;  // of the filter, in cells
+constexpr double weights[half + 1] = {6. / 16, 4. / 16, 1. / 16};
+constexpr double variance = 1.15;    // of filter and cell, in h^2
+constexpr double solid = 1e-5;       // a body's own cells have more, as labels do
+constexpr double negligible = 1e-6;  // of psi and 1 - psi
+
+// The mean of phi with binomial weights, of a row; pairs first, so that mirrored rows give the mirrored bits.
+EULASTIC_CLONES void smooth_row(int dim, ConstView phi, int j, int k, int begin, int end, double *across, double *out) {
+  const int first = begin - half, last = end + half;
+  std::fill(across + first, across + last, 0.0);
+  for (int m = 0; m <= (dim == 3 ? half : 0); ++m)
+    for (int n = 0; n <= half; ++n) {
+      const double w = (dim == 3 ? weights[m] : 1) * weights[n];
+      const double *low = phi.row(j - n, k - m), *high = phi.row(j + n, k - m);
+      const double *low2 = phi.row(j - n, k + m), *high2 = phi.row(j + n, k + m);
+      const double share = (m == 0 ? 0.5 : 1) * (n == 0 ? 0.5 : 1) * w;
+#pragma omp simd
+      for (int i = first; i < last; ++i)
+        across[i] = kernels::fma(share, (low[i] + high2[i]) + (high[i] + low2[i]), across[i]);
+    }
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    double sum = weights[0] * across[i];
+    for (int n = 1; n <= half; ++n) sum = kernels::fma(weights[n], across[i - n] + across[i + n], sum);
+    out[i] = sum;
+  }
+}
+
+// Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
+template <int Dim>
+EULASTIC_INLINE double nested_sum(const double *v) {
+  const auto along = [](const double *q, int s) { return (q[0] + q[2 * s]) + q[s]; };
+  double rows[9], planes[3];
+  for (int r = 0; r < (Dim == 3 ? 9 : 3); ++r) rows[r] = along(v + 3 * r, 1);
+  if constexpr (Dim == 2) return along(rows, 1);
+  for (int p = 0; p < 3; ++p) planes[p] = along(rows + 3 * p, 1);
+  return along(planes, 1);
+}
+
+// One point of a layer from those of its neighbours that are nearer to the surface, weighted by how far they lie
+// towards it, and turned into its plane.
+template <int Dim>
+void fill_point(const std::vector<SurfaceCells::Cell> &cells, const int *number, const SurfaceCells::Cell &cell,
+                const std::ptrdiff_t *stride, FieldBlock &tensor) {
+  constexpr int count = Dim == 3 ? 27 : 9, fields = Dim == 3 ? 6 : 3;
+  double weight[count], plain[count], values[fields][count] = {};
+  const SurfaceCells::Cell *from[count];
+  const kernels::Vector<Dim> normal = normal_of<Dim>(cell.normal);
+  int n = 0;
+  for (int z = Dim == 3 ? -1 : 0; z <= (Dim == 3 ? 1 : 0); ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x, ++n) {
+        const int at = number[cell.at + x + y * stride[1] + z * stride[2]];
+        from[n] = at >= 0 && cells[at].layer < cell.layer ? &cells[at] : nullptr;
+        plain[n] = from[n] ? 1 : 0;
+        double along = (x * cell.normal[0] + y * cell.normal[1]) + z * cell.normal[2];
+        if (cell.distance > 0) along = -along;
+        weight[n] = from[n] && along > 0 ? along / __builtin_sqrt(double(x * x + y * y + z * z)) : 0;
+      }
+  const double towards = nested_sum<Dim>(weight);
+  const double *w = towards > 0 ? weight : plain, sum = towards > 0 ? towards : nested_sum<Dim>(plain);
+  for (int m = 0; m < count; ++m) {
+    if (!(w[m] > 0)) continue;
+    const kernels::Tensor<Dim> turned =
+        kernels::turn<Dim>(tensor_at<Dim>(tensor, from[m]->at), normal_of<Dim>(from[m]->normal), normal);
+    for (int a = 0; a < Dim; ++a)
+      for (int b = a; b < Dim; ++b) values[kernels::position<Dim>(a, b)][m] = w[m] * turned[a][b];
+  }
+  for (int f = 0; f < fields; ++f) tensor[f].origin[cell.at] = nested_sum<Dim>(values[f]) / sum;
+}
+
+// Within .9 of a cell across the surface.
+bool is_nearest(const SurfaceCells::Cell &cell, const Real3 &spacing) {
+  constexpr double reach = 0.9;
+  double width = 0;
+  for (int d = 0; d < 3; ++d) width = kernels::fma(cell.normal[d] * spacing[d], cell.normal[d] * spacing[d], width);
+  return cell.delta > 0 && cell.distance * cell.distance <= reach * reach * width;
+}
+
+}  // namespace
+
+// psi is (1 - erf)/2 of the distance over its width s: with y = sqrt(2 pi) (1/2 - psi) that is y + y^3/6 + 7/120 y^5 +
+// ... times s. Central differences are too small by (n_d h_d/s)^2 (1 - (distance/s)^2)/6, which turns normals towards
+// the axes.
+SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const {
+  constexpr double root_two_pi = 2.5066282746310002;
+  Cell cell{};
+  cell.place = place;
+  cell.at = place[0] + place[1] * psi.sy + place[2] * psi.sz;
+  const double *p = psi.origin + cell.at;
+  const Real3 &h = grid_->spacing();
+  const double y = root_two_pi * (0.5 - *p), yy = y * y;
+  const double u = y * kernels::fma(yy, kernels::fma(yy, kernels::fma(yy, 127. / 5040, 7. / 120), 1. / 6), 1);
+  Real3 gradient{};
+  double width = 0;
+  for (int d = 0; d < grid_->dimension(); ++d) gradient[d] = (p[-psi.stride(d)] - p[psi.stride(d)]) / (2 * h[d]);
+  const auto normalise = [&](const Real3 &g) {
+    const double square = (g[0] * g[0] + g[1] * g[1]) + g[2] * g[2];
+    cell.delta = __builtin_sqrt(square);
+    width = 0;
+    for (int d = 0; d < 3; ++d) {
+      cell.normal[d] = cell.delta > 0 ? g[d] / cell.delta : 0;
+      width += variance * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+    }
+  };
+  normalise(gradient);
+  const double slope = width > 0 ? (u * u < 3 ? 1 - u * u : -2) / (6 * width) : 0;
+  for (int d = 0; d < 3; ++d) gradient[d] /= 1 - slope * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+  normalise(gradient);
+  cell.distance = u * __builtin_sqrt(width);
+  cell.owned = true;
+  for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];
+  return cell;
+}
+
+// psi, and the cells within reach of the surface.
+PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::membrane);
+  const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
+  const Int3 &n = grid_->owned();
+  const ConstView phi = phase.fraction[0];
+  in_row_parts(*grid_, [&](const RowPart &part) {
+    RowScratch scratch(*grid_, 1);
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j) {
+        const OccupiedRows::Span s = phase.rows.span(j, k);
+        const int begin = std::max(s.begin, 0), end = std::min(s.end, n[0]);
+        if (begin < end) smooth_row(dim, phi, j, k, begin, end, scratch.row(0), psi[0].row(j, k));
+      }
+  });
+  PetscCall(exchange_->update(psi, ghosts, &phase.rows));
+  fill_wall_ghosts_even(*grid_, at_centre, psi[0], ghosts, &phase.rows);
+  cells_.clear();
+  const int near = phase.rows.inside() ? 0 : layers + 1;
+  const auto range = [&](int d) { return grid_->points_near(d, false, d < dim ? near : 0); };
+  const ConstView p = psi[0];
+  for (int k = range(2).begin; k < range(2).end; ++k)
+    for (int j = range(1).begin; j < range(1).end; ++j) {
+      const OccupiedRows::Span s = phase.rows.span(j, k);
+      for (int i = std::max(s.begin, range(0).begin); i < std::min(s.end, range(0).end); ++i) {
+        const double value = p(i, j, k);
+        if (!(value > negligible && value < 1 - negligible && phi(i, j, k) > solid)) continue;
+        const Cell cell = cell_at(p, {i, j, k});
+        if (is_nearest(cell, grid_->spacing())) cells_.push_back(cell);
+      }
+    }
+  find_layers(phase, psi[0]);
+  scope.flops(double(phase.rows.cells()) * (dim == 2 ? 30 : 120));
+  PetscFunctionReturn(0);
+}
+
+// Synchronous: layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1.
+void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
+  const Layout &layout = grid_->layout();
+  const int dim = grid_->dimension();
+  number_.assign(layout.size, -1);
+  int *number = number_.data() + layout.origin;
+  for (std::size_t n = 0; n < cells_.size(); ++n) number[cells_[n].at] = static_cast<int>(n);
+  first_[0] = 0;
+  first_[1] = cells_.size();
+  for (int l = 1; l <= layers; ++l) {
+    const int near = phase.rows.inside() ? 0 : layers + 1 - l;
+    Grid::Range range[3];
+    for (int d = 0; d < 3; ++d) range[d] = grid_->points_near(d, false, d < dim ? near : 0);
+    for (std::size_t n = first_[l - 1]; n < first_[l]; ++n) {
+      const Int3 middle = cells_[n].place;
+      for (int z = dim == 3 ? -1 : 0; z <= (dim == 3 ? 1 : 0); ++z)
+        for (int y = -1; y <= 1; ++y)
+          for (int x = -1; x <= 1; ++x) {
+            const Int3 place{middle[0] + x, middle[1] + y, middle[2] + z};
+            bool inside = true;
+            for (int d = 0; d < 3; ++d) inside = inside && place[d] >= range[d].begin && place[d] < range[d].end;
+            if (!inside) continue;
+            int &at = number[place[0] + place[1] * layout.sy + place[2] * layout.sz];
+            if (at >= 0) continue;
+            at = static_cast<int>(cells_.size());
+            cells_.push_back(cell_at(psi, place));
+            cells_.back().layer = l;
+          }
+    }
+    first_[l + 1] = cells_.size();
+  }
+}
+
+PetscErrorCode SurfaceCells::exchange(const Phase &phase, FieldBlock &tensor, int width) const {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_->update(tensor, width, &phase.rows));
+  fill_wall_ghosts_centred_tensor(*grid_, tensor, width, &phase.rows);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SurfaceCells::extend(const Phase &phase, FieldBlock &tensor) const {
+  PetscFunctionBeginUser;
+  PetscCall(exchange(phase, tensor, layers + 1));
+  const Layout &layout = grid_->layout();
+  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+  const int parts = row_parts(*grid_);
+  for (int l = 1; l <= layers; ++l)
+    in_parallel(parts, parts, [&](int part) {
+      const Piece piece(first_[l + 1] - first_[l], part, parts);
+      for (std::size_t c = first_[l] + piece.begin; c < first_[l] + piece.end; ++c)
+        (grid_->dimension() == 2 ? fill_point<2> : fill_point<3>)(cells_, number_.data() + layout.origin, cells_[c],
+                                                                  stride, tensor);
+    });
+  PetscCall(exchange(phase, tensor, Grid::stencil_width));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,46 @@
+// The cells around the surface of a phase: normal, distance and delta of the surface from a smoothed solid fraction,
+// and what lives on the surface extended from the cells nearest to it; docs/method.md, section 18.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+class SurfaceCells {
+public:
+  /// Around the cells at the surface, neighbours at corners included: as far as WENO5 reads and delta reaches.
+  static constexpr int layers = 3;
+  struct Cell {
+    Int3 place;
+    std::ptrdiff_t at;  ///< offset from the origin
+    Real3 normal;       ///< outward, unit
+    double distance;    ///< from the surface, positive outside
+    double delta;       ///< of the surface, 1/length
+    int layer;          ///< 0: nearest
+    bool owned;
+  };
+
+  SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
+  /// `smooth`: a field of work space. Five ghosts of phi.
+  PetscErrorCode find(const Phase &phase, FieldBlock &smooth);
+  /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
+  /// every layer.
+  const std::vector<Cell> &all() const { return cells_; }
+  std::size_t nearest() const { return first_[1]; }  ///< how many
+  /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
+  PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
+
+private:
+  Cell cell_at(ConstView smooth, const Int3 &place) const;
+  void find_layers(const Phase &phase, ConstView smooth);
+  PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
+
+  const Grid *grid_;
+  GhostExchange *exchange_;
+  std::vector<Cell> cells_;
+  std::array<std::size_t, layers + 2> first_{};  ///< of every layer
+  std::vector<int> number_;                      ///< of the cells, -1: none; by offset from the memory's start
+};
+
+}  // namespace eulastic

@@ -1,0 +1,43 @@
+// Surface tension: the force sigma kappa grad(phi) on faces, which a pressure balances exactly where the curvature is
+// uniform; docs/method.md, section 17.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/work_space.hpp"
+#include "physics/elastic_force.hpp"
+
+namespace eulastic {
+
+/// Of all phases together; 2-D: per unit depth.
+struct SurfaceEnergy {
+  double energy = 0;  ///< sum of sigma times the area of the planes that transport cuts cells with
+  double power = 0;   ///< minus that of the force: flow to surfaces
+};
+
+class SurfaceTension {
+public:
+  static constexpr int work_fields = 2;  ///< of the work space, during each call
+
+  /// `drifts`: whether no wall holds the fluid, so that any net force would move all of it for ever.
+  SurfaceTension(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
+      : grid_(&grid), exchange_(&exchange), work_(&work), drifts_(drifts) {}
+  static bool exists(const std::vector<Phase> &phases);
+
+  /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
+  /// `balanced`: less the mean over the box of what is added to `force`, in periodic directions where all drifts:
+  /// surfaces exert no net force, their discretisation does.
+  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
+                           const ForceSlope &slope = {});
+  PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured);
+
+private:
+  PetscErrorCode find_curvature(const Phase &phase, FieldBlock &curvature);
+
+  const Grid *grid_;
+  GhostExchange *exchange_;
+  WorkSpace *work_;
+  bool drifts_;
+  ActiveSegments band_;  ///< of the phase that is worked on, with a layer of ghosts
+};
+
+}  // namespace eulastic

@@ -1,0 +1,95 @@
+// Capsules that reach across ranks and walls of the split, and that have to be kept apart: the same bits on any number
+// of ranks.
+#include "bodies/fill_phase.hpp"
+#include "support/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+struct Case {
+  const char *name;
+  Int3 cells;
+  kernels::MembraneLaw law;
+  double viscosity = 0;
+  bool split_x = false;
+};
+
+void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
+
+struct End {
+  std::uint64_t hash = 0;
+  SurfaceEnergy surface;
+  long phases = 0;
+};
+
+// Two capsules near each other, one across the periodic x, and one that is stretched, in shear.
+End run(MPI_Comm comm, const Case &c) {
+  int size = 0;
+  MPI_Comm_size(comm, &size);
+  Scene scene;
+  GridSpec grid;
+  grid.cells = c.cells;
+  const bool flat = c.cells[2] == 1;
+  for (int d = 0; d < 3; ++d) grid.length[d] = 0.25 * c.cells[d];
+  grid.boundary[1] = Boundary::wall;
+  if (c.split_x) grid.processors = {size, 1, 1};
+  SolverSpec spec;
+  static_cast<Method &>(spec) = method_preset(MethodKind::fast);
+  spec.pressure = PressureKind::smac;
+  spec.fluid.density = 0.1;
+  spec.sides[1][1].motion.velocity = {1.5, 0, 0};
+  EXPECT_EQ(scene.create(comm, grid, spec), 0);
+  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+      [&](double, double y, double) { return 1.5 * y / grid.length[1]; });
+  SpeciesSpec capsule;
+  capsule.name = "capsule";
+  capsule.law = Law::membrane;
+  capsule.radius = 1.1;
+  if (c.viscosity > 0) capsule.viscosity = c.viscosity;
+  capsule.membrane = {c.law, 2, 1.5, 1.1};
+  const double z = flat ? 0.125 : grid.length[2] / 2;
+  const std::vector<BodyPlace> places{{{0.6, 1.7, z}, {}}, {{3.2, 2.2, z}, {}}};
+  Phase phase;
+  EXPECT_EQ(fill_phase(scene.grid, capsule, places, 1, &phase), 0);
+  phase.separate = true;
+  scene.solver.state().phases.push_back(std::move(phase));
+  scene.solver.bodies().add_phase(scene.grid, places);
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  for (int n = 0; n < 12; ++n) {
+    FlowExtremes extremes;
+    EXPECT_EQ(scene.solver.measure(&extremes), 0);
+    EXPECT_EQ(extremes.first_bad, -1);
+    EXPECT_EQ(scene.solver.step(2 * scene.solver.limits(extremes).automatic()), 0);
+  }
+  End end;
+  end.phases = static_cast<long>(scene.solver.state().phases.size());
+  EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
+  EXPECT_EQ(scene.solver.surface_energy(&end.surface), 0);
+  EXPECT_GT(end.surface.energy, 0.01);
+  return end;
+}
+
+class Capsules : public testing::TestWithParam<Case> {};
+
+TEST_P(Capsules, SameBitsAsOnOneRank) {
+  const End all = run(PETSC_COMM_WORLD, GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
+  EXPECT_EQ(all.hash, alone.hash);
+  EXPECT_EQ(std::memcmp(&all.surface, &alone.surface, sizeof all.surface), 0);
+  EXPECT_EQ(all.phases, 2);  // near each other
+}
+
+constexpr kernels::MembraneLaw neo_hookean = kernels::MembraneLaw::neo_hookean, skalak = kernels::MembraneLaw::skalak;
+INSTANTIATE_TEST_SUITE_P(Scenes, Capsules,
+                         testing::Values(Case{"neo_hookean", {22, 17, 14}, neo_hookean},
+                                         Case{"skalak_viscous", {22, 17, 14}, skalak, 4},
+                                         Case{"flat", {23, 17, 1}, neo_hookean},
+                                         Case{"split_x", {1030, 16, 1}, skalak, 0, true}),
+                         [](const auto &test) { return test.param.name; });
+
+}  // namespace

@@ -1,0 +1,208 @@
+// Laws of membranes, and the surface cells they live in.
+#include "kernels/membrane.hpp"
+#include "physics/membrane.hpp"
+#include "support/interface_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+namespace {
+
+using kernels::Membrane;
+using kernels::MembraneLaw;
+
+// B_s of the principal stretches a and b in the plane normal to n, a along t.
+kernels::Tensor<3> strained(double a, double b, const kernels::Vector<3> &n, const kernels::Vector<3> &t) {
+  const kernels::Vector<3> s{n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
+  kernels::Tensor<3> B;
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y) B[x][y] = a * a * t[x] * t[y] + b * b * s[x] * s[y];
+  return B;
+}
+
+const kernels::Vector<3> normal{2. / 3, -1. / 3, 2. / 3}, along{1 / std::sqrt(2.), 0, -1 / std::sqrt(2.)};
+const Membrane laws[] = {{MembraneLaw::neo_hookean, 1.7, 0, 1}, {MembraneLaw::skalak, 1.7, 2.5, 1}};
+
+// Tension along a over the length of b: dW/da.
+TEST(Membrane, TensionIsTheDerivativeOfTheEnergy) {
+  for (const Membrane &law : laws)
+    for (const auto &[a, b] : {std::pair{1.0, 1.0}, {1.3, 0.8}, {0.9, 1.5}}) {
+      const auto energy = [&, b = b](double stretch) {
+        return kernels::membrane_state(law, kernels::surface_strain<3>(strained(stretch, b, normal, along))).energy;
+      };
+      const kernels::MembraneState state =
+          kernels::membrane_state(law, kernels::surface_strain<3>(strained(a, b, normal, along)));
+      constexpr double step = 1e-6;
+      EXPECT_NEAR((state.alpha * a * a + state.beta) * b, (energy(a + step) - energy(a - step)) / (2 * step), 1e-8);
+      EXPECT_NEAR(state.area, a * b, 1e-14);
+    }
+}
+
+TEST(Membrane, SmallStrainsHaveTheModuliOfTheLaw) {
+  constexpr double e = 1e-5;
+  for (const Membrane &law : laws) {
+    const auto tension = [&](double a, double b) {
+      const kernels::MembraneState s =
+          kernels::membrane_state(law, kernels::surface_strain<3>(strained(a, b, normal, along)));
+      return s.alpha * a * a + s.beta;
+    };
+    EXPECT_NEAR(tension(1, 1), 0, 1e-14);
+    const double area = law.largest_modulus() - law.shear_modulus;  // T = K (J - 1) without shear
+    EXPECT_NEAR(tension(1 + e, 1 + e) / (2 * e), area, 2e-4 * area);
+    EXPECT_NEAR(tension(1 + e, 1 - e) / (2 * e), law.shear_modulus, 1e-3);  // T = 2 G_s e
+  }
+}
+
+TEST(Membrane, InThePlaneTheThirdDirectionIsNotStretched) {
+  const kernels::Vector<2> t{0.6, 0.8};
+  const kernels::Tensor<2> B{{{1.44 * t[0] * t[0], 1.44 * t[0] * t[1]}, {1.44 * t[0] * t[1], 1.44 * t[1] * t[1]}}};
+  const kernels::SurfaceStrain strain = kernels::surface_strain<2>(B);
+  EXPECT_NEAR(strain.trace, 2.44, 1e-14);
+  EXPECT_NEAR(strain.area_squared, 1.44, 1e-14);
+}
+
+TEST(Membrane, ProjectionTakesOffTheNormalAndNoMore) {
+  const kernels::Tensor<3> B = strained(1.3, 0.8, normal, along);
+  kernels::Tensor<3> more = B;
+  const kernels::Vector<3> q{0.1, -0.2, 0.05};
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y) more[x][y] += q[x] * normal[y] + normal[x] * q[y];
+  const kernels::Tensor<3> projected = kernels::project<3>(more, normal);
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y) EXPECT_NEAR(projected[x][y], B[x][y], 1e-14);
+}
+
+// A ball in the middle of a periodic box.
+struct Ball : InterfaceScene {
+  static constexpr int cells = 24;
+  static constexpr double radius = 0.3;
+  const Real3 centre{0.51, 0.49, 0.505};
+  std::vector<Phase> phases{1};
+  std::unique_ptr<GhostExchange> exchange;
+  FieldBlock smooth;
+  int dim;
+
+  explicit Ball(int dimension) : dim(dimension) {
+    GridSpec spec;
+    spec.cells = {cells, cells, dim == 2 ? 1 : cells};
+    spec.length = {1, 1, dim == 2 ? 1. / cells : 1};
+    spec.ghosts = 5;
+    EXPECT_EQ(create(PETSC_COMM_SELF, spec), 0);
+    set_fraction(ball(centre, radius, dim));
+    exchange = std::make_unique<GhostExchange>(grid);
+    phases[0].fraction = std::move(fraction);
+    phases[0].tensor = tensor_at_rest(grid);
+    EXPECT_EQ(exchange->update(phases[0].fraction, 5), 0);
+    EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
+    smooth = FieldBlock(grid, 1);
+  }
+  Real3 from_centre(const SurfaceCells::Cell &cell) const {
+    Real3 x = position(cell.place, {true, true, true});
+    for (int d = 0; d < 3; ++d) x[d] = d < dim ? x[d] - centre[d] : 0;
+    return x;
+  }
+};
+
+TEST(SurfaceCells, KnowNormalDistanceAndArea) {
+  for (const int dim : {2, 3}) {
+    Ball ball(dim);
+    SurfaceCells cells(ball.grid, *ball.exchange);
+    ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
+    const double h = 1. / Ball::cells;
+    const double inward =
+        1.15 * h * h * (dim - 1) / (2 * Ball::radius);  // smoothing moves the level 1/2 by s^2/2 kappa
+    double area = 0;
+    int near = 0;
+    for (std::size_t c = 0; c < cells.all().size(); ++c) {
+      const SurfaceCells::Cell &cell = cells.all()[c];
+      if (!cell.owned) continue;
+      area += cell.delta * std::pow(h, dim);
+      if (c >= cells.nearest()) continue;
+      const Real3 x = ball.from_centre(cell);
+      const double r = std::hypot(x[0], x[1], x[2]);
+      ++near;
+      EXPECT_LE(std::fabs(cell.distance), 0.9 * h);
+      EXPECT_NEAR(cell.distance, r - Ball::radius + inward, 0.1 * h);
+      for (int d = 0; d < dim; ++d) EXPECT_NEAR(cell.normal[d], x[d] / r, 0.04);
+    }
+    EXPECT_GT(near, dim == 2 ? 50 : 1000);
+    EXPECT_NEAR(area / (dim == 2 ? 2 * M_PI * Ball::radius : 4 * M_PI * Ball::radius * Ball::radius), 1, 0.025);
+  }
+}
+
+// What is isotropic on the surface is so in the layers, around their own normals, and is there as far as WENO5 reads.
+TEST(SurfaceCells, ExtendWhatIsIsotropic) {
+  for (const int dim : {2, 3}) {
+    Ball ball(dim);
+    SurfaceCells cells(ball.grid, *ball.exchange);
+    ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
+    FieldBlock tensor(ball.grid, dim == 2 ? 3 : 6);
+    const auto &components = tensor_components(dim);
+    const auto tangential = [&](const SurfaceCells::Cell &cell, int f) {
+      const auto [a, b] = components[f];
+      return (a == b) - cell.normal[a] * cell.normal[b];
+    };
+    for (std::size_t c = 0; c < cells.nearest(); ++c)
+      for (int f = 0; f < tensor.count(); ++f) tensor[f].origin[cells.all()[c].at] = tangential(cells.all()[c], f);
+    ASSERT_EQ(cells.extend(ball.phases[0], tensor), 0);
+    std::map<std::ptrdiff_t, int> known;
+    for (const SurfaceCells::Cell &cell : cells.all()) {
+      known[cell.at] = 1;
+      for (int f = 0; f < tensor.count() && cell.owned && cell.delta > 0; ++f)  // beyond there is no normal
+        EXPECT_NEAR(tensor[f].origin[cell.at], tangential(cell, f), 1e-12);
+    }
+    for (std::size_t c = 0; c < cells.nearest(); ++c)
+      for (int d = 0; d < dim; ++d)
+        for (int n = -3; n <= 3; ++n) {
+          const SurfaceCells::Cell &cell = cells.all()[c];
+          EXPECT_EQ(!cell.owned || known.count(cell.at + n * tensor[0].stride(d)) == 1, true);
+        }
+  }
+}
+
+TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
+  for (const int dim : {2, 3}) {
+    Ball ball(dim);
+    WorkSpace work(ball.grid);
+    ASSERT_EQ(work.reserve(MembraneTransport::work_fields(dim)), 0);
+    MembraneTransport membrane(ball.grid, *ball.exchange, work);
+    ball.phases[0].material.law = Law::membrane;
+    ball.phases[0].material.membrane.shear_modulus = 2;
+    FieldBlock velocity(ball.grid, dim);
+    for (const double stretch : {1.0, 1.2}) {
+      ball.phases[0].material.membrane.initial_area_stretch = stretch;
+      ASSERT_EQ(membrane.start(&ball.phases[0]), 0);
+      SurfaceEnergy seen;
+      ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
+      const double area = dim == 2 ? 2 * M_PI * Ball::radius : 4 * M_PI * Ball::radius * Ball::radius;
+      // Stretch of area J: in the plane lengths are J, in space J^(1/2).
+      const double J = stretch, trace = dim == 2 ? J * J + 1 : 2 * J;
+      const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
+      EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
+      FieldBlock force(ball.grid, dim);
+      ASSERT_EQ(membrane.add_force(ball.phases, 1, force), 0);
+      // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
+      double virial = 0, largest = 0;
+      ball.each_owned([&](int i, int j, int k) {
+        for (int d = 0; d < dim; ++d) {
+          std::array<bool, 3> at{true, true, true};
+          at[d] = false;
+          const double x = ball.position({i, j, k}, at)[d] - ball.centre[d];
+          virial += x * force[d](i, j, k) * std::pow(1. / Ball::cells, dim);
+          largest = std::max(largest, std::fabs(force[d](i, j, k)));
+        }
+      });
+      const double tension = dim == 2 ? 2 / J * (J * J - 1 / (J * J)) : 2 / J * (J - 1 / (J * J));
+      EXPECT_NEAR(virial, -tension * (dim - 1) * area, 0.03 * tension * (dim - 1) * area + 1e-12);
+      if (stretch == 1) {
+        EXPECT_LT(largest, 1e-11);
+      }
+    }
+  }
+}
+
+}  // namespace
