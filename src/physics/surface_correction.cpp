@@ -40,7 +40,7 @@ struct Terms {
       stiffening = law.stiffening();
     });
     mu = step.fluid.viscosity;
-    wave = 0.25 * shortest * std::sqrt(rho);
+    wave = 0.0625 * shortest * std::sqrt(rho);
     kink = step.dt * (mu > across ? across / mu : 1);
     fading = forgetting * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
   }

@@ -278,7 +278,7 @@ TEST(SurfaceCorrection, ShearOfACutColumnRelaxesAtTheRateOfTheMissingFluid) {
       wall.phase.tensor[2](i, j, 0) = shear;
     }
   wall.apply(dt);
-  const double h = 1. / 16, k = h / (1 + h / 4);  // mu = G = rho = 1; viscosity damps waves of a cell: a share of h
+  const double h = 1. / 16, k = h / (1 + h / 16);  // mu = G = rho = 1; viscosity damps waves of a cell: a share of h
   const double edge = (1 + share) / 2;            // solid fraction of the edges left of the column
   const double across = std::sqrt(1 + shear * shear);  // n.Bn
   EXPECT_NEAR(wall.phase.tensor[2](Wall::column, 8, 0), shear * std::exp(-(1 - edge) * k * across * dt), 1e-14);
