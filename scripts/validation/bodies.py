@@ -218,9 +218,9 @@ CASES = (
     sphere(.2, .227328, 32.193, 4, ((8, 6), (8, 8), (12, 6))),
     *(ring(viscosity, limits, kept, fast_at((80,), (160,), (320,)) + more, fast_at((80,), (160,)))
       for viscosity, limits, kept, more in (
-          (0.01, (.01, .003, .0015), (.01, .0035, .003), every((160,), methods=("fast",), solvers=("smac",))
+          (0.01, (.01, .003, .0015), (.01, .003, .003), every((160,), methods=("fast",), solvers=("smac",))
            + every((160,), methods=("classic",), solvers=("acm",))),
-          (0.001, (.04, .013, .005), (.12, .036, .015), ()))),
+          (0.001, (.04, .013, .005), (.1, .02, .005), ()))),
     Case("S10", "Soft disc in the lid-driven cavity", "lid_cavity_disc", lambda n, _: {**square(n), "snapshot_interval": 0},
          every((64, 128, 256), solvers=("acm",)) + every((64, 128), methods=("fast",), solvers=("smac",)),
          every((64, 128), methods=("fast",), solvers=("acm",)),

@@ -17,12 +17,12 @@ std::vector<std::string> attachment_warnings(const Config &config) {
     const Material material = spec.material();
     if (!material.attached || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
-        "viscosity %g, so that its surface is first order, as of a free body; a spacing of at most %.3g would do",
-        spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
-        damping_spacing(config.fluid, material));
+    std::snprintf(text, sizeof text,
+                  "%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
+                  "viscosity %g, so that its strain at the surface is first order, as of a free body; a spacing of at "
+                  "most %.3g would do",
+                  spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
+                  damping_spacing(config.fluid, material));
     warnings.emplace_back(text);
   }
   return warnings;
