@@ -82,6 +82,18 @@ EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
   return {sum, 0.5 * twice > least ? 0.5 * twice : least};
 }
 
+/// P B P times what keeps J: where the normal of B differs by an angle from n, P B P alone loses its square in area, in
+/// every step anew.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> project_surface(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
+  Tensor<Dim> out = project<Dim>(B, n);
+  const double ratio = surface_strain<Dim>(B).area_squared / surface_strain<Dim>(out).area_squared;
+  const double scale = Dim == 2 ? ratio : __builtin_sqrt(ratio);
+  for (auto &row : out)
+    for (double &value : row) value *= scale;
+  return out;
+}
+
 /// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one.
 struct MembraneState {
   double alpha, beta, energy, area;

@@ -155,7 +155,7 @@ void MembraneTransport::stage(double dt, const FieldBlock &velocity, bool second
         const Tensor<Dim> old = tensor_at<Dim>(tensor, cell.at);
         for (int a = 0; a < Dim; ++a)
           for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
-        value = kernels::project<Dim>(value, n);
+        value = kernels::project_surface<Dim>(value, n);
       }
       set_tensor<Dim>(second ? tensor : next, cell.at, value);
     }

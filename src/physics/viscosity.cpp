@@ -83,10 +83,10 @@ void ViscosityContrast::add(const Material &material, double stiffness) {
   const double own = material.viscosity > 0 ? material.viscosity : fluid;
   least = std::min(least, own);
   most = std::max(most, own);
-  // Membranes bear their modulus; that grows where they are stretched.
-  constexpr double stretched = 1.5;
+  // Membranes bear more than ten times the step of a tension as large as their moduli.
+  constexpr double share = 0.25;
   const double tension =
-      std::max(material.surface_tension, material.is_membrane() ? stretched * material.membrane.largest_modulus() : 0);
+      std::max(material.surface_tension, material.is_membrane() ? share * material.membrane.largest_modulus() : 0);
   surface_tension = std::max(surface_tension, tension);
   if (tension > 0) capillary_speed = std::max(capillary_speed, 2 * tension / (own + fluid));
   if (!(stiffness > 0)) return;

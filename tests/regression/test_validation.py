@@ -12,9 +12,9 @@ sys.dont_write_bytecode = True
 from validation import bodies, drops, exact, fluid, properties, report, solid  # noqa: E402
 from validation.case import Measure, Setting  # noqa: E402
 from validation.runner import Runner  # noqa: E402
-from validation import long_runs, surfaces  # noqa: E402
+from validation import long_runs, membranes, surfaces  # noqa: E402
 
-CASES = fluid.CASES + solid.CASES + bodies.CASES + drops.CASES + long_runs.CASES + surfaces.CASES + properties.CASES
+CASES = fluid.CASES + solid.CASES + bodies.CASES + drops.CASES + membranes.CASES + long_runs.CASES + surfaces.CASES + properties.CASES
 
 
 class Validation(unittest.TestCase):
