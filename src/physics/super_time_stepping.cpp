@@ -15,7 +15,10 @@ namespace {
 std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phases) {
   std::vector<char> stressed;
   for (const Segment &row : grid.rows()) {
-    const auto stresses = [&](const Phase &phase) { return !phase.stressed.idle(row.j, row.k); };
+    const auto stresses = [&](const Phase &phase) {
+      return !phase.stressed.idle(row.j, row.k) ||
+             (phase.material.surface_tension > 0 && !phase.rows.idle(row.j, row.k));
+    };
     stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
   }
   return stressed;
