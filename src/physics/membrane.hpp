@@ -37,7 +37,8 @@ public:
   PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured);
 
 private:
-  void find_stress(const Phase &phase, FieldBlock &stress) const;
+  /// delta tau at centres into `stress`, psi into `smooth`.
+  PetscErrorCode find_stress(const Phase &phase, WorkSpace::Lease *smooth, WorkSpace::Lease *stress);
   template <int Dim>
   void stage(double dt, const FieldBlock &velocity, bool second, FieldBlock &tensor, FieldBlock &next) const;
 

@@ -47,7 +47,13 @@ bool feels(const OccupiedRows &rows, int j, int k) {
 }  // namespace
 
 // delta tau in owned cells and one layer of ghosts; 0 elsewhere on rows that feel it.
-void MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) const {
+PetscErrorCode MembraneTransport::find_stress(const Phase &phase, WorkSpace::Lease *psi, WorkSpace::Lease *lease) {
+  PetscFunctionBeginUser;
+  PetscCall(work_->take("smoothed solid fraction", 1, psi));
+  PetscCall(work_->take("stress of a membrane", phase.tensor.count(), lease));
+  PetscCall(surface_.find(phase, psi->fields()));
+  VerbScope scope(Verb::membrane);
+  FieldBlock &stress = lease->fields();
   const int dim = grid_->dimension();
   const Int3 &n = grid_->owned();
   for (int k = dim == 3 ? -1 : 0; k < n[2] + (dim == 3); ++k)
@@ -74,6 +80,7 @@ void MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) cons
       set_tensor<3>(stress, cell.at,
                     set(cell, tensor_at<3>(phase.tensor, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
   }
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, FieldBlock &force,
@@ -84,11 +91,8 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
   for (const Phase &phase : phases) {
     if (!phase.material.is_membrane()) continue;
     WorkSpace::Lease psi, lease;
-    PetscCall(work_->take("smoothed solid fraction", 1, &psi));
-    PetscCall(work_->take("stress of a membrane", phase.tensor.count(), &lease));
-    PetscCall(surface_.find(phase, psi.fields()));
+    PetscCall(find_stress(phase, &psi, &lease));
     VerbScope scope(Verb::membrane);
-    find_stress(phase, lease.fields());
     in_row_parts(*grid_, [&](const RowPart &part) {
       RowScratch scratch(*grid_, 1);
       double *added = scratch.row(0);
@@ -118,11 +122,8 @@ PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, cons
   for (const Phase &phase : phases) {
     if (!phase.material.is_membrane()) continue;
     WorkSpace::Lease psi, lease;
-    PetscCall(work_->take("smoothed solid fraction", 1, &psi));
-    PetscCall(work_->take("stress of a membrane", phase.tensor.count(), &lease));
-    PetscCall(surface_.find(phase, psi.fields()));
+    PetscCall(find_stress(phase, &psi, &lease));
     VerbScope scope(Verb::sums);
-    find_stress(phase, lease.fields());
     const View energy = psi.fields()[0];  // in place of psi
     for (const Segment &row : grid_->rows())
       if (!phase.rows.idle(row.j, row.k)) std::fill_n(energy.row(row.j, row.k), n, 0.0);

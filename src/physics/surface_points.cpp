@@ -10,9 +10,9 @@ namespace {
 
 constexpr EvolveRule evolves = evolve_above_half, is_full = evolve_where_full;
 
-// phi at their centres or low edges. In the order of Kind.
+// phi at their centres or low edges.
 EULASTIC_INLINE unsigned char kind_of(bool is_full_point, bool evolving) {
-  return is_full_point ? 0 : evolving ? 1 : 2;
+  return is_full_point ? SurfaceCorrection::full : evolving ? SurfaceCorrection::surface : SurfaceCorrection::outside;
 }
 
 EULASTIC_CLONES void flag_edges(int n, const double *phi, std::ptrdiff_t a, std::ptrdiff_t b, unsigned char *row) {
@@ -37,8 +37,9 @@ EULASTIC_CLONES void flag_centres(int n, const double *phi, const Edges *edges, 
     const std::ptrdiff_t a = edges[l].a, b = edges[l].b;
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
+      static_assert(SurfaceCorrection::full == 0);
       const bool all_full = !(e[i] | e[i + a] | e[i + b] | e[i + a + b]);
-      row[i] = row[i] == 0 && !all_full ? 1 : row[i];
+      if (row[i] == SurfaceCorrection::full && !all_full) row[i] = SurfaceCorrection::surface;
     }
   }
 }
