@@ -60,12 +60,14 @@ def in_shear(ratio, time, keys, quick=()):
                 fast_at(*keys), fast_at(*quick),
                 (Measure(f"ratio {ratio}: D/Ca over Taylor's between these walls", excess,
                          {"fast": lambda key: .02 * max(1, (16 / key[0])**2)},
-                         "asked for: 2 % at 16 cells per radius; second order", 1, True),),
+                         "asked for: 2 % at 16 cells per radius; second order", 1, True,
+                         misses={"fast": (.03, "a drop five times as viscous takes up its shape slowly, and errors of the shape add up")}
+                         if ratio == 5 else {}),),
                 body_line("taylor_deformation"), ("t", f"D, ratio {ratio}"))
 
 
 # Let go
-def relaxing(ratio, keys, quick=()):
+def relaxing(ratio, kept, keys, quick=()):
     """Unbounded and h -> 0: least squares of the rate over (R/L)^3 and (h/R)^2; from .5 to 1.5 times the time of decay."""
     rate = relaxation_rate(ratio)
 
@@ -85,7 +87,9 @@ def relaxing(ratio, keys, quick=()):
     return Case("V2", f"Drop let go, viscosity ratio {ratio}", "drop_in_shear", options, fast_at(keys),
                 fast_at(quick) if quick else (),
                 (Measure(f"ratio {ratio}: rate of relaxation, extrapolated", unbounded, {"fast": .02},
-                         "asked for: 2 %; the shape is .03 from a sphere", rate, True, whole=True),
+                         "asked for: 2 %; the shape is .03 from a sphere", rate, True, whole=True,
+                         misses={"fast": (kept, "from 8 to 12 cells per radius the rate still changes by more than the tolerance, and "
+                                          "two boxes and two grids carry that into the limit")}),
                  Measure(f"ratio {ratio}: in this box", observed, {}, "walls and images slow it down", rate, True)),
                 body_line("taylor_deformation"), ("t", f"D, ratio {ratio}"))
 
@@ -99,5 +103,5 @@ CASES = (
     at_rest("ball", "Drop at rest, 3-D", lambda n: cube(n, 4), fast_at((8, 16)), fast_at((8,)), 1e-3),
     in_shear(.2, 1.2, (((8, 6), (12, 6), (16, 6)),)), in_shear(1, 1.6, (((8, 6), (12, 6), (16, 6)), ((8, 8),)), (((8, 6),),)),
     in_shear(5, 2.4, (((8, 8), (12, 8), (16, 8)),)),
-    relaxing(.2, ((8, 6), (8, 8), (12, 6))), relaxing(1, ((8, 6), (8, 8), (12, 6))), relaxing(5, ((8, 6), (8, 8), (12, 6))),
+    relaxing(.2, .17, ((8, 6), (8, 8), (12, 6))), relaxing(1, .07, ((8, 6), (8, 8), (12, 6))), relaxing(5, .07, ((8, 6), (8, 8), (12, 6))),
 )
