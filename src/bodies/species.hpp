@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/law.hpp"
+#include "field/rigid_faces.hpp"
 #include "grid/grid.hpp"
 
 #include <array>
@@ -47,6 +48,7 @@ struct SpeciesSpec {
   std::optional<double> viscosity;  ///< dynamic; default: the fluid's
   double surface_tension = 0;       ///< force per length
   Membrane membrane{};              ///< Law::membrane
+  RigidMotion motion;               ///< Law::rigid
   std::optional<bool> attached;     ///< default by shape: is_attached()
   std::optional<Contact> contact;   ///< default by method: Config::separates()
   Real3 initial_stretch{1, 1, 1};   ///< B = diag(l^2), turned with the body; the shape is given in the stretched state

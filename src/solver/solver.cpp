@@ -58,6 +58,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
 
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time, now_.velocity);
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
@@ -136,6 +137,7 @@ std::vector<double> Solver::evolved_fraction() const {
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
+  for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
   now_.speed_scale = scale;
@@ -148,7 +150,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
-                    viscosity_.bytes() + pressure_solver_->bytes();
+                    viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
@@ -190,6 +192,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
 PetscErrorCode Solver::predict(double dt) {
   PetscFunctionBeginUser;
   Fluid fluid = spec_.fluid;
+  const double nu = fluid.kinematic_viscosity();
   if (viscosity_) {
     PetscCall(compute_viscosity(*grid_, fluid, now_.phases, viscosity_));
     fluid.viscosity = 0;  // the stress of the varying one is added
@@ -202,7 +205,17 @@ PetscErrorCode Solver::predict(double dt) {
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
+    std::vector<double> cut;
+    if (rigid_) {
+      see_rigid_surfaces_at_once(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
+                                 velocity_star_);
+      cut = cut_face_values(*grid_, *rigid_, velocity_star_);
+    }
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
+    if (rigid_) {
+      set_cut_face_values(*grid_, *rigid_, cut, velocity_star_);
+      impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
+    }
     ++stages_;
     PetscFunctionReturn(0);
   }
@@ -217,17 +230,25 @@ PetscErrorCode Solver::predict(double dt) {
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
+  std::vector<double> cut;
+  if (rigid_) {
+    see_rigid_surfaces(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, now_.velocity, rate.fields(),
+                       slope_ ? &slope_ : nullptr);
+    cut = cut_face_values(*grid_, *rigid_, rate.fields());
+  }
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
+  if (rigid_) set_cut_face_values(*grid_, *rigid_, cut, rate.fields());
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   if (viscosity_)
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, viscosity_, now_.time, dt, stages, now_.velocity,
-                              viscous, velocity_star_));
+                              viscous, velocity_star_, rigid_.get(), nu));
   else
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                              now_.phases, now_.velocity, viscous, velocity_star_));
+                              now_.phases, now_.velocity, viscous, velocity_star_, rigid_.get()));
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   stages_ += stages;
   PetscFunctionReturn(0);
 }
