@@ -72,7 +72,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
   }
   std::unique_ptr<RigidFaces> faces;
   PetscCall(rigid.finish(&faces));
-  solver->set_rigid(std::move(faces));
+  PetscCall(solver->set_rigid(std::move(faces)));
   for (Phase &phase : more) state.phases.push_back(std::move(phase));
   if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
   PetscFunctionReturn(0);

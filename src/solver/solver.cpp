@@ -9,6 +9,7 @@
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
+#include "pressure/obstacles.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -16,13 +17,15 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes) {
+int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
+                        bool rigid) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
-  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
+  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
+                       (rigid && !formula ? ObstacleSolver::work_fields : 0);
   int forces = surface_tension ? SurfaceTension::work_fields : 0;
   if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
-  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + forces;
+  const int momentum = (method.explicit_predictor() ? (rigid ? dimension : 0) : 2 * dimension) + forces;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -56,6 +59,23 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   PetscFunctionReturn(0);
 }
 
+// Artificial compressibility needs no more than the velocity of the bodies; what solves for the increment has to know
+// which faces are closed. Increments of steps before are of no use to it.
+PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidFaces> faces) {
+  PetscFunctionBeginUser;
+  rigid_ = std::move(faces);
+  if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
+  if (spec_.pressure == PressureKind::acm) {
+    auto sweeps = std::make_unique<AcmSweepSolver>();
+    PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
+    pressure_solver_ = std::move(sweeps);
+  }
+  const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
+  pressure_solver_ = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, *rigid_, accuracy,
+                                                      std::move(pressure_solver_));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
   if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time, now_.velocity);
@@ -78,7 +98,8 @@ PetscErrorCode Solver::prepare() {
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
   PetscCall(
-      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr)));
+      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr,
+                                  rigid_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
@@ -280,6 +301,7 @@ PetscErrorCode Solver::project(double dt) {
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);

@@ -29,7 +29,8 @@ struct SolverSpec : Method {
 class Solver {
 public:
   /// Fields of the work space that the method needs, in a scene with bodies or without.
-  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes);
+  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
+                         bool rigid = false);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -41,7 +42,7 @@ public:
   const State &state() const { return now_; }
 
   /// Before prepare(); null where nothing is rigid.
-  void set_rigid(std::unique_ptr<RigidFaces> faces) { rigid_ = std::move(faces); }
+  PetscErrorCode set_rigid(std::unique_ptr<RigidFaces> faces);
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
   PetscErrorCode prepare();
   /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
