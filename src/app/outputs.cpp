@@ -165,6 +165,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                               &config_.sides, state.time,      solver_->evolved_fraction(),
                               viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
+  for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
   PetscFunctionReturn(0);
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int images = 27;            // of a body: itself and its neighbours across periodic sides
 constexpr double shortest = 1e-3;     // of a link, in spacings
+constexpr double least_open = 0.03;   // part of the pressure increment that a cut face feels at least
 
 // Image of a body that lies `shift` boxes on.
 int image_of(int body, const Int3 &shift) { return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1); }
@@ -184,6 +185,7 @@ RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers, double 
           }
         if (cut.walls == 0) continue;
         cut.share = std::min(1.0, regular / diagonal);
+        cut.open = std::max(least_open, cut.share);
         c.cuts.push_back(cut);
       }
       c.all.push_back(all);

@@ -41,6 +41,7 @@ public:
     int body = 0;        ///< whose surface it sees, index in bodies
     unsigned walls = 0;  ///< bits of the links that end at the surface
     double share = 1;    ///< of the rate, which keeps the stages of the viscous step stable: method.md
+    double open = 1;     ///< of the pressure increment's gradient: share, but not too little
     double link[6]{};    ///< 1 / (length of the link times the spacing)
     double turn[6]{};    ///< (W x (x - centre)) of the component, where a link meets the surface
     double laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension, const double *wall) const;

@@ -118,6 +118,18 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
   });
 }
 
+void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+                       FieldBlock &velocity) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = dt_over_density / grid.spacing()[a];
+    double *u = velocity[a].row(j, k);
+    const std::ptrdiff_t step = increment[0].stride(a);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (const int i = cut->i; owned(grid, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
+  });
+}
+
 RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached)
     : faces_(faces), viscosity_(viscosity) {
   for (const RigidMotion &motion : faces.motions)
@@ -187,6 +199,14 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
   std::vector<double> total(6 * faces.count);
   PetscCall(sums.reduce(grid.comm(), total.data()));
   loads->assign(faces.count, {});
+  for (const RigidBody &body : faces.bodies) {
+    RigidLoad &load = (*loads)[body.index];
+    const RigidMotion &motion = faces.motions[body.motion];
+    load.power = 0;
+    for (int d = 0; d < 3; ++d)
+      load.power -= total[6 * body.index + d] * motion.velocity[d] * motion.of_velocity.at(time) +
+                    total[6 * body.index + 3 + d] * motion.angular_velocity[d] * motion.of_rotation.at(time);
+  }
   for (int b = 0; b < faces.count; ++b)
     for (int d = 0; d < 3; ++d) {
       (*loads)[b].force[d] = total[6 * b + d];

@@ -22,6 +22,10 @@ void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::v
 /// Owned faces inside bodies get the velocity of these at `time`.
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
 
+/// Cut faces, which correct_velocity() has given all of dt/rho grad(increment), get their part of it; one ghost of the
+/// increment.
+void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+                       FieldBlock &velocity);
 /// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes them
 /// before it, release() puts them where they belong after it.
 class RigidStage {
@@ -43,6 +47,7 @@ private:
 struct RigidLoad {
   Real3 force{};   ///< per depth in 2-D
   Real3 torque{};  ///< about the centre of the body
+  double power = 0;  ///< of the body on the fluid
 };
 
 /// Of all rigid bodies. `rate`: dv/dt of the fluid's equation at all owned faces, those inside too, with all of

@@ -68,32 +68,51 @@ void combine_all(const Grid &grid, double scale, double factor, const FieldBlock
 }  // namespace
 
 ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
-                               double accuracy, std::unique_ptr<PressureSolver> other)
+                               double accuracy, int memory,
+                               std::unique_ptr<PressureSolver> other)
     : grid_(&grid), exchange_(&exchange), work_(&work), other_(std::move(other)), accuracy_(accuracy) {
-  find_closed(faces);
+  find_cells(faces);
+  if (memory > 0) memory_ = FieldBlock(grid, memory);
+}
+
+FieldBlock *ObstacleSolver::memory() {
+  if (!memory_) return nullptr;
+  const std::size_t size = memory_.layout().size;
+  double *data = memory_.data();
+  std::rotate(data, data + newest_ * size, data + memory_.count() * size);
+  newest_ = 0;
+  ghosts_of_memory_ = false;
+  return &memory_;
 }
 
 std::size_t ObstacleSolver::bytes() const {
-  return other_->bytes() + closed_.capacity() * sizeof(Closed) + first_.capacity() * sizeof(std::size_t);
+  return other_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(Beside) + first_.capacity() * sizeof(std::size_t);
 }
 
-void ObstacleSolver::find_closed(const RigidFaces &faces) {
+void ObstacleSolver::find_cells(const RigidFaces &faces) {
   const Int3 &n = grid_->owned();
+  std::vector<std::array<double, 6>> open(n[0]);
   for (const Segment &row : grid_->rows()) {
-    first_.push_back(closed_.size());
-    std::vector<unsigned> closed(n[0]);
+    first_.push_back(cells_.size());
+    for (auto &cell : open) cell.fill(1);
     for (int d = 0; d < grid_->dimension(); ++d)
       for (int high = 0; high < 2; ++high) {
-        const int j = row.j + (d == 1 && high), k = row.k + (d == 2 && high), shift = d == 0 && high;
-        const RigidFaces::Row inside = faces.row(d, j, k);
-        for (const RigidFaces::Run *run = inside.runs; run != inside.runs_end; ++run)
+        const int shift = d == 0 && high;
+        const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
+        for (const RigidFaces::Run *run = beside.runs; run != beside.runs_end; ++run)
           for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, n[0]); ++i)
-            closed[i] |= 1U << (2 * d + high);
+            open[i][2 * d + high] = 0;
+        for (const RigidFaces::Cut *cut = beside.cuts; cut != beside.cuts_end; ++cut)
+          if (const int i = cut->i - shift; i >= 0 && i < n[0]) open[i][2 * d + high] = cut->open;
       }
-    for (int i = 0; i < n[0]; ++i)
-      if (closed[i] != 0) closed_.push_back({i, closed[i]});
+    for (int i = 0; i < n[0]; ++i) {
+      if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
+      Beside cell{i, {}};
+      std::copy(open[i].begin(), open[i].end(), cell.open);
+      cells_.push_back(cell);
+    }
   }
-  first_.push_back(closed_.size());
+  first_.push_back(cells_.size());
 }
 
 // dt div(open grad q); q has a layer of ghosts.
@@ -108,13 +127,12 @@ void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) cons
     const double *u = from.row(row.j, row.k);
     double *to = out[0].row(row.j, row.k);
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const int i = closed_[c].i;
+      const int i = cells_[c].i;
       double sum = 0;
       for (int d = 0; d < grid_->dimension(); ++d) {
         const std::ptrdiff_t s = from.stride(d);
-        const double low = closed_[c].faces >> (2 * d) & 1U ? 0 : u[i - s] - u[i];
-        const double high = closed_[c].faces >> (2 * d + 1) & 1U ? 0 : u[i + s] - u[i];
-        sum += (low + high) / (h[d] * h[d]);
+        const double *open = cells_[c].open + 2 * d;
+        sum += (open[0] * (u[i - s] - u[i]) + open[1] * (u[i + s] - u[i])) / (h[d] * h[d]);
       }
       to[i] = dt * sum;
     }
@@ -146,15 +164,26 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
   double square, ignored, last = 0;
   PetscCall(products(residual, residual, residual, residual, &square, &ignored));
   const double cells = grid_->cell_count();
+  const int remembered = memory_ ? memory_.count() : 0;
+  if (memory_ && !ghosts_of_memory_) {
+    PetscCall(exchange_->update(memory_, 1));
+    for (int f = 0; f < remembered; ++f) fill_wall_ghosts_even(*grid_, at_centre, memory_[f], 1);
+    ghosts_of_memory_ = true;
+  }
   double best = square;
   for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
     const double rms = std::sqrt(square / cells);
     if (!(rms > target_)) break;
-    constexpr double inner = 0.1;  // of the residual, in a direction
-    other_->set_target(inner * rms);
-    PetscCall(other_->solve(dt, residual, pressure, correction));
+    if (n < remembered) {
+      correction.copy_from(memory_.part((newest_ + n) % remembered, 1));
+    } else {
+      constexpr double inner = 0.1;  // of the residual, in a direction
+      other_->set_target(inner * rms);
+      PetscCall(other_->solve(dt, residual, pressure, correction));
+      ++iterations_;
+    }
     double along = 0, before = 0;  // <z, r> and, of the next direction, <z, change of r>
-    if (n == 0) {
+    if (n == 0 || last == 0) {
       direction.copy_from(correction);
       PetscCall(products(correction, residual, correction, residual, &along, &ignored));
     } else {
@@ -165,11 +194,12 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     apply(dt, direction, image);
     double curvature, projection;
     PetscCall(products(direction, image, direction, residual, &curvature, &projection));
+    last = curvature;
+    if (curvature == 0 && n < remembered) continue;  // nothing is remembered yet
     if (curvature == 0) break;
     const double step = projection / curvature;
     combine_all(*grid_, 1, step, direction, increment);
     combine_all(*grid_, 1, -step, image, residual);
-    last = curvature;
     PetscCall(exchange_->update(residual, 1));
     fill_wall_ghosts_even(*grid_, at_centre, residual[0], 1);
     PetscCall(products(residual, residual, residual, residual, &square, &ignored));
@@ -177,7 +207,10 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
       best = square;
       since = 0;
     }
-    ++iterations_;
+  }
+  if (memory_) {
+    newest_ = (newest_ + remembered - 1) % remembered;  // the oldest goes
+    memory_.part(newest_, 1).copy_from(increment);
   }
   PetscFunctionReturn(0);
 }

@@ -16,22 +16,25 @@ public:
   static constexpr int work_fields = 4;  ///< of the work space, during a solve, beside those of the other solver
   static constexpr int most_iterations = 100;
 
-  /// `accuracy`: of the target that is asked for, 1 or less. All must outlive the solver.
+  /// `accuracy`: of the target that is asked for, 1 or less. `memory`: increments of earlier steps that are directions to
+  /// begin with. All must outlive the solver.
   ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces, double accuracy,
-                 std::unique_ptr<PressureSolver> other);
+                 int memory, std::unique_ptr<PressureSolver> other);
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }
   double sound_speed() const override { return other_->sound_speed(); }
+  /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
+  FieldBlock *memory() override;
   std::size_t bytes() const override;
 
 private:
-  /// Cell i of a row, and which of its faces are closed: low, high along x, then y, z.
-  struct Closed {
+  /// Cell i of a row, and how far its faces are open: low, high along x, then y, z.
+  struct Beside {
     int i;
-    unsigned faces;
+    double open[6];
   };
-  void find_closed(const RigidFaces &faces);
+  void find_cells(const RigidFaces &faces);
   void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;
@@ -40,8 +43,11 @@ private:
   GhostExchange *exchange_;
   WorkSpace *work_;
   std::unique_ptr<PressureSolver> other_;
-  std::vector<Closed> closed_;
+  std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
+  FieldBlock memory_;  ///< the newest increment is newest_, then those after it, around the block
+  int newest_ = 0;
+  bool ghosts_of_memory_ = true;  ///< valid
   double accuracy_, target_ = 0;
   long iterations_ = 0;
 };

@@ -71,7 +71,7 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidFaces> faces) {
     pressure_solver_ = std::move(sweeps);
   }
   const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
-  pressure_solver_ = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, *rigid_, accuracy,
+  pressure_solver_ = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, *rigid_, accuracy, spec_.acm_memory,
                                                       std::move(pressure_solver_));
   PetscFunctionReturn(0);
 }
@@ -301,6 +301,8 @@ PetscErrorCode Solver::project(double dt) {
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
+  if (rigid_ && !pressure_solver_->formula())
+    correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity_star_);
   if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
