@@ -285,8 +285,10 @@ private:
     for (const SpeciesSpec &spec : config_.species) {
       const Real3 &v = spec.motion.velocity, &w = spec.motion.angular_velocity;
       for (int d = 0; d < dimension_; ++d)
-        scale.speed[d] = std::max(scale.speed[d], std::fabs(v[d]) + spec.radius * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
-      scale.shear_rate = std::max({scale.shear_rate, std::hypot(w[0], w[1], w[2]), std::hypot(v[0], v[1], v[2]) / scale.length});
+        scale.speed[d] =
+            std::max(scale.speed[d], std::fabs(v[d]) + spec.radius * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
+      scale.shear_rate =
+          std::max({scale.shear_rate, std::hypot(w[0], w[1], w[2]), std::hypot(v[0], v[1], v[2]) / scale.length});
     }
   }
 

@@ -73,12 +73,14 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   for_law(4, Law::membrane);
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
-            "velocity V cos(frequency t + phase) of the surface of a rigid body that slides along itself: tube, slab, cylinder");
+            "velocity V cos(frequency t + phase) of the surface of a rigid body that slides along itself: tube, slab, "
+            "cylinder");
   rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
   rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
   rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
             "angular velocity of a rigid sphere, or of a cylinder about its axis");
-  rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time",
+            "angular frequency");
   rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
   for_law(rows.rows.size() - first, Law::rigid);
 }

@@ -100,7 +100,8 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::membrane) return {};
   const std::string law = "-" + spec.name + "_law: membrane needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
-    return law + "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
+    return law +
+           "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
   if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
@@ -124,17 +125,20 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   for (int d = 0; d < 3; ++d) {
     const bool axis = d == (flat(config) ? 2 : spec.axis);
     if (motion.angular_velocity[d] != 0 && (!round || ((flat(config) || spec.shape == Shape::cylinder) && !axis)))
-      return no("angular_velocity", "would carry the body through the grid; accepted: any axis of a sphere, the axis of a "
-                                    "cylinder, z in 2-D, else 0,0,0");
+      return no("angular_velocity",
+                "would carry the body through the grid; accepted: any axis of a sphere, the axis of a "
+                "cylinder, z in 2-D, else 0,0,0");
     const bool slides = spec.shape == Shape::slab ? d != spec.axis
                                                   : (spec.shape == Shape::tube || spec.shape == Shape::cylinder) &&
                                                         d == spec.axis && !(flat(config) && d == 2);
     if (motion.velocity[d] != 0 && !slides)
-      return no("velocity", "would carry the body through the grid; accepted: along the axis of a tube or cylinder, in the "
-                            "plane of a slab, else 0,0,0");
+      return no("velocity",
+                "would carry the body through the grid; accepted: along the axis of a tube or cylinder, in the "
+                "plane of a slab, else 0,0,0");
     if (motion.velocity[d] != 0 && config.grid.boundary[d] == Boundary::wall)
-      return no("velocity", "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
-                            "periodic");
+      return no("velocity",
+                "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
+                "periodic");
   }
   return {};
 }

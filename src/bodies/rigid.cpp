@@ -8,12 +8,14 @@
 namespace eulastic {
 namespace {
 
-constexpr int images = 27;            // of a body: itself and its neighbours across periodic sides
-constexpr double shortest = 1e-3;     // of a link, in spacings
-constexpr double least_open = 0.03;   // part of the pressure increment that a cut face feels at least
+constexpr int images = 27;           // of a body: itself and its neighbours across periodic sides
+constexpr double shortest = 1e-3;    // of a link, in spacings
+constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
 
 // Image of a body that lies `shift` boxes on.
-int image_of(int body, const Int3 &shift) { return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1); }
+int image_of(int body, const Int3 &shift) {
+  return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1);
+}
 
 }  // namespace
 
@@ -115,8 +117,7 @@ double RigidBuilder::crossing(int image, const Real3 &outside, const Real3 &insi
   for (int step = 0; step < 48; ++step) {
     const double middle = 0.5 * (low + high);
     Real3 place{};
-    for (int d = 0; d < 3; ++d)
-      place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d];
+    for (int d = 0; d < 3; ++d) place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d];
     (body->level(place) < 0 ? high : low) = middle;
   }
   return std::max(shortest, 0.5 * (low + high));
@@ -139,7 +140,8 @@ RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers, double 
       for (int i = -layers[0]; i < n[0] + layers[0]; ++i) {
         if (row[i] != 0) {
           const int body = static_cast<int>(row[i]) - 1;
-          const bool goes_on = c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body;
+          const bool goes_on =
+              c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body;
           if (goes_on)
             ++c.runs.back().end;
           else

@@ -26,14 +26,15 @@ private:
   };
   void mark_body(int a, const PlacedBody &body, int index);
   void mark_file(int a, ConstView phi, int index);
-  double crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside, double level_inside) const;
+  double crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
+                  double level_inside) const;
   RigidFaces::Component component(int a, const Int3 &layers, double &speed) const;
 
   const Grid &grid_;
   GhostExchange &exchange_;
   std::unique_ptr<RigidFaces> faces_;
-  std::vector<Source> sources_;          ///< of every body
-  std::array<FieldBlock, 3> inside_;     ///< of every component: 1 + image of the body a face is in, level of files
+  std::vector<Source> sources_;       ///< of every body
+  std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in, level of files
 };
 
 }  // namespace eulastic

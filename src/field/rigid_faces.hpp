@@ -17,8 +17,8 @@ struct Oscillation {
   double at(double time) const { return frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase); }
 };
 
-/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape stays where
-/// it is: spheres and tubes may turn, plates slide.
+/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape stays
+/// where it is: spheres and tubes may turn, plates slide.
 struct RigidMotion {
   Real3 velocity{};          ///< length / time
   Real3 angular_velocity{};  ///< rad / time
@@ -28,9 +28,9 @@ struct RigidMotion {
 
 /// A body, or one of its images across periodic sides.
 struct RigidBody {
-  int index = 0;     ///< among all rigid bodies
-  int motion = 0;    ///< index in RigidFaces::motions
-  Real3 centre{};    ///< from the middle of the box, in cells
+  int index = 0;   ///< among all rigid bodies
+  int motion = 0;  ///< index in RigidFaces::motions
+  Real3 centre{};  ///< from the middle of the box, in cells
 };
 
 class RigidFaces {
@@ -44,7 +44,8 @@ public:
     double open = 1;     ///< of the pressure increment's gradient: share, but not too little
     double link[6]{};    ///< 1 / (length of the link times the spacing)
     double turn[6]{};    ///< (W x (x - centre)) of the component, where a link meets the surface
-    double laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension, const double *wall) const;
+    double laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension,
+                     const double *wall) const;
   };
   /// Faces begin <= i < end are inside a body.
   struct Run {

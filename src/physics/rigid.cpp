@@ -14,8 +14,8 @@ using Strides = std::array<std::ptrdiff_t, 3>;
 Strides strides(ConstView q) { return {1, q.sy, q.sz}; }
 
 // The velocity of the surface on the links of a cut face that end there.
-void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity, double of_rotation,
-                      double *wall) {
+void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity,
+                      double of_rotation, double *wall) {
   const double along = faces.motions[faces.bodies[cut.body].motion].velocity[a] * of_velocity;
   for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
 }
@@ -69,8 +69,8 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
   });
 }
 
-void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
+void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
+                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);

@@ -9,16 +9,17 @@
 
 namespace eulastic {
 
-/// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have the
-/// rate that sees the surface, scaled by their share, as is `slope` (may be null); faces inside 0.
+/// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
+/// the rate that sees the surface, scaled by their share, as is `slope` (may be null); faces inside 0.
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
                         const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
 /// The same of v* = v + dt rate, (7).
-void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
+void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
+                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
 /// Values of all owned cut faces, and back: what is added to the field in between does not reach them.
 std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field);
-void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values, FieldBlock &field);
+void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
+                         FieldBlock &field);
 /// Owned faces inside bodies get the velocity of these at `time`.
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
 
@@ -26,8 +27,8 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
 /// increment.
 void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity);
-/// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes them
-/// before it, release() puts them where they belong after it.
+/// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes
+/// them before it, release() puts them where they belong after it.
 class RigidStage {
 public:
   /// Increments of the factors of all motions from `time` to `reached`, when W_j-1 holds. c.viscous times `viscosity`.
@@ -45,8 +46,8 @@ private:
 
 /// What the fluid exerts on a body: on its surface, the pressure of a uniform body force not included.
 struct RigidLoad {
-  Real3 force{};   ///< per depth in 2-D
-  Real3 torque{};  ///< about the centre of the body
+  Real3 force{};     ///< per depth in 2-D
+  Real3 torque{};    ///< about the centre of the body
   double power = 0;  ///< of the body on the fluid
 };
 

@@ -245,8 +245,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
           exchange.update({{&work.now, pass.depth, nullptr, false}, {&work.before, pass.depth - 1, nullptr, false}}));
     else if (!pass.starts)
       PetscCall(exchange.update({{&work.now, pass.depth, nullptr, false}}));
-    const StageFields fields{&work.rate, &work.slope,   work.slope ? &stressed : nullptr, &work.now, &work.before,
-                             &velocity,  &velocity_star, rigid, &rigid_stages};
+    const StageFields fields{&work.rate,     &work.slope,  work.slope ? &stressed : nullptr,
+                             &work.now,      &work.before, &velocity,
+                             &velocity_star, rigid,        &rigid_stages};
     const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());
     order.for_tasks([&](const StagePass::Task &task) {
       (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, task);

@@ -2,8 +2,8 @@
 
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
-#include "physics/rigid.hpp"
 #include "kernels/deviatoric_stress.hpp"
+#include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
 #include "physics/viscosity.hpp"
 

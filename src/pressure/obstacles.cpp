@@ -48,8 +48,8 @@ EULASTIC_CLONES void add_products(const Grid &grid, const RowPart &part, ConstVi
 }
 
 // to = scale to + factor from, with a layer of ghosts.
-EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scale, double factor, const FieldBlock &from,
-                             FieldBlock &to) {
+EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scale, double factor,
+                             const FieldBlock &from, FieldBlock &to) {
   const RowPart part = owned.with_ghosts(grid);
   const int n = grid.owned()[0];
   for (int k = part.k_begin; k < part.k_end; ++k)
@@ -68,8 +68,7 @@ void combine_all(const Grid &grid, double scale, double factor, const FieldBlock
 }  // namespace
 
 ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
-                               double accuracy, int memory,
-                               std::unique_ptr<PressureSolver> other)
+                               double accuracy, int memory, std::unique_ptr<PressureSolver> other)
     : grid_(&grid), exchange_(&exchange), work_(&work), other_(std::move(other)), accuracy_(accuracy) {
   find_cells(faces);
   if (memory > 0) memory_ = FieldBlock(grid, memory);
@@ -86,7 +85,8 @@ FieldBlock *ObstacleSolver::memory() {
 }
 
 std::size_t ObstacleSolver::bytes() const {
-  return other_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(Beside) + first_.capacity() * sizeof(std::size_t);
+  return other_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(Beside) +
+         first_.capacity() * sizeof(std::size_t);
 }
 
 void ObstacleSolver::find_cells(const RigidFaces &faces) {

@@ -16,8 +16,8 @@ public:
   static constexpr int work_fields = 4;  ///< of the work space, during a solve, beside those of the other solver
   static constexpr int most_iterations = 100;
 
-  /// `accuracy`: of the target that is asked for, 1 or less. `memory`: increments of earlier steps that are directions to
-  /// begin with. All must outlive the solver.
+  /// `accuracy`: of the target that is asked for, 1 or less. `memory`: increments of earlier steps that are directions
+  /// to begin with. All must outlive the solver.
   ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces, double accuracy,
                  int memory, std::unique_ptr<PressureSolver> other);
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
@@ -45,7 +45,7 @@ private:
   std::unique_ptr<PressureSolver> other_;
   std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
-  FieldBlock memory_;  ///< the newest increment is newest_, then those after it, around the block
+  FieldBlock memory_;               ///< the newest increment is newest_, then those after it, around the block
   int newest_ = 0;
   bool ghosts_of_memory_ = true;  ///< valid
   double accuracy_, target_ = 0;

@@ -21,8 +21,8 @@ int Solver::work_fields(const Method &method, int dimension, bool bodies, bool s
                         bool rigid) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
-  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
-                       (rigid && !formula ? ObstacleSolver::work_fields : 0);
+  const int pressure =
+      1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) + (rigid && !formula ? ObstacleSolver::work_fields : 0);
   int forces = surface_tension ? SurfaceTension::work_fields : 0;
   if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
   const int momentum = (method.explicit_predictor() ? (rigid ? dimension : 0) : 2 * dimension) + forces;
@@ -97,9 +97,8 @@ PetscErrorCode Solver::prepare() {
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
-  PetscCall(
-      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr,
-                                  rigid_ != nullptr)));
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr,
+                                       membranes_ != nullptr, rigid_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
