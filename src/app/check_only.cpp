@@ -109,7 +109,7 @@ public:
                   file ? spec.voxels.path.c_str() : "");
     }
     report.line("hematocrit", "%.6g%s", cells / (box - walls),
-                walls > 0 ? " (of the box less slabs, tubes, vessels, rigid bodies)" : "");
+                walls > 0 ? " (of the box less slabs, tubes, vessels)" : "");
   }
 
   void flow(Report &report) const {
