@@ -261,7 +261,8 @@ private:
     const BodyForce &force = config_.fluid.body_force;
     const double nu = config_.fluid.kinematic_viscosity();
     for (int c = 0; c < dimension_; ++c) {
-      const double f = std::fabs(force.force[c]);
+      double f = std::fabs(force.force[c]);
+      for (const SpeciesSpec &spec : config_.species) f += std::fabs(spec.body_force.force[c]);
       double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
       if (is_wall(c)) speed = 0;  // pressure takes it
       const SpeciesSpec *tube = nullptr;

@@ -15,7 +15,8 @@ const std::vector<std::pair<Words, std::string>> &missing() {
   static const std::vector<std::pair<Words, std::string>> table{
       {{"density"}, "bodies have the density of the fluid: -fluid_density is that of both"},
       {{"buoyancy", "gravity", "sedimentation"},
-       "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both"},
+       "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
+       "species alone"},
       {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "farfield"},
        "a side of the box is periodic, a wall without slip that may move in its plane, or a plane of symmetry; "
        "-body_force "

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "physics/limits.hpp"
+#include "physics/species_force.hpp"
 
 #include <algorithm>
 #include <array>
@@ -165,6 +166,9 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                               &config_.sides, state.time,      solver_->evolved_fraction(),
                               viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
+  double power = 0;
+  PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
+  energy->rates.force_power += power;
   for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
   PetscFunctionReturn(0);
 }

@@ -103,6 +103,13 @@ void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
             "surface tension; a drop is a body with -NAME_shear_modulus 0");
 }
 
+void add_body_force(Rows &rows, SpeciesSpec &spec) {
+  rows.real("body_force", spec.body_force.force, any_number, "length/time^2",
+            "force per mass on these bodies alone, F cos(frequency t + phase)");
+  rows.real("body_force_frequency", spec.body_force.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("body_force_phase", spec.body_force.phase, any_number, "rad", "phase");
+}
+
 void add_contact(Rows &rows, SpeciesSpec &spec) {
   Option &row = rows.add("contact", "",
                          "bodies of this species that touch stay separate, each in memory of its own "
@@ -200,6 +207,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_law(rows, spec);
   add_viscosity(rows, spec);
   add_surface_tension(rows, spec);
+  add_body_force(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
             "the shape is "

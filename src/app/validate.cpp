@@ -118,6 +118,7 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   const std::string name = "-" + spec.name + "_";
   const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
   if (spec.viscosity) return no("viscosity", "nothing flows in a rigid body; accepted: without");
+  if (spec.body_force.acts()) return no("body_force", "a rigid body does not move; accepted: 0,0,0");
   if (spec.surface_tension > 0) return no("surface_tension", "a rigid body keeps its shape; accepted: 0");
   if (spec.contact == Contact::separate) return no("contact", "rigid bodies do not move; accepted: merge, or without");
   const RigidMotion &motion = spec.motion;
@@ -158,6 +159,8 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
+    return wrong;
   for (const auto check : {check_membrane, check_rigid})
     if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().elastic())

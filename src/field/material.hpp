@@ -1,6 +1,7 @@
 // What a body is made of.
 #pragma once
 
+#include "field/body_force.hpp"
 #include "kernels/membrane_law.hpp"
 
 namespace eulastic {
@@ -18,6 +19,7 @@ struct Material {
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
   double surface_tension = 0;     ///< force per length
+  BodyForce body_force{};         ///< of its own, per mass
   Membrane membrane{};            ///< Law::membrane: B is B_s, all of it at centres
 
   bool is_rigid() const { return law == Law::rigid; }

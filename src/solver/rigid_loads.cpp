@@ -1,5 +1,6 @@
 // Solver: what the fluid exerts on rigid bodies.
 #include "physics/momentum.hpp"
+#include "physics/species_force.hpp"
 #include "physics/viscous_stress.hpp"
 #include "solver/solver.hpp"
 
@@ -21,6 +22,7 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   FieldBlock none;
   PetscCall(momentum_rate(*grid_, fluid, {now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}},
                           now_.velocity, now_.pressure, *phases, none, rate.fields()));
+  add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
   if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
   PetscCall(measure_rigid_loads(*grid_, *rigid_, spec_.fluid, now_.time, now_.velocity, rate.fields(), force, loads));
   PetscFunctionReturn(0);

@@ -4,6 +4,7 @@
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
 #include "physics/momentum.hpp"
+#include "physics/species_force.hpp"
 #include "physics/transport.hpp"
 #include "physics/viscous_stress.hpp"
 #include "pressure/acm.hpp"
@@ -225,6 +226,7 @@ PetscErrorCode Solver::predict(double dt) {
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
+    add_species_forces(*grid_, now_.phases, step.force_time, dt, velocity_star_);
     std::vector<double> cut;
     if (rigid_) {
       see_rigid_surfaces_at_once(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
@@ -250,6 +252,7 @@ PetscErrorCode Solver::predict(double dt) {
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
+  add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
   std::vector<double> cut;
   if (rigid_) {
     see_rigid_surfaces(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, now_.velocity, rate.fields(),

@@ -248,6 +248,7 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
        {"-a_law rigid -a_shear_modulus 1", {"-a_shear_modulus", "-a_law neo_hookean"}},
        {"-a_law rigid -a_viscosity 1", {"-a_viscosity", "accepted: without"}},
+       {"-a_law rigid -a_body_force 1,0,0", {"-a_body_force", "accepted: 0,0,0"}},
        {"-a_law rigid -a_surface_tension 1", {"-a_surface_tension", "accepted: 0"}},
        {"-a_law rigid -a_contact separate", {"-a_contact", "merge"}},
        {"-a_law rigid -a_initial_stretch 2,1,1", {"-a_initial_stretch", "accepted: 1,1,1"}},
@@ -277,22 +278,24 @@ TEST(OptionRefusals, TwoDimensions) {
   const std::string flat = "-time_end 1 -grid_cells 8,8,1 -boundary_y wall ";
   EXPECT_EQ(parse_line(flat + "-species a -a_shape sphere -a_radius .2 -a_centre .5,.5,9 -a_shear_modulus 1").error,
             "");
-  expect_refusals({{"-boundary_z wall", {"-boundary_z", "more than one cell"}},
-                   {"-boundary_zmin wall -boundary_zmax symmetry", {"-boundary_z", "more than one cell"}},
-                   {"-body_force 0,0,1", {"-body_force", "2-D"}},
-                   {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
-                   {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
-                   {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
-                   {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_initial_stretch 2,.5,1",
-                    {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
-                    {"-a_initial_stretch", "2-D"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
-                    {"-a_count", "2-D"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
-                    {"-a_count", "random", "an integer"}}},
-                  flat);
+  expect_refusals(
+      {{"-boundary_z wall", {"-boundary_z", "more than one cell"}},
+       {"-boundary_zmin wall -boundary_zmax symmetry", {"-boundary_z", "more than one cell"}},
+       {"-body_force 0,0,1", {"-body_force", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .2 -a_shear_modulus 1 -a_body_force 0,0,1", {"-a_body_force", "2-D"}},
+       {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
+       {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
+       {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
+       {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_initial_stretch 2,.5,1",
+        {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
+        {"-a_initial_stretch", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
+        {"-a_count", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
+        {"-a_count", "random", "an integer"}}},
+      flat);
 }
 
 TEST(OptionRefusals, ErrorsNameTheirSource) {
