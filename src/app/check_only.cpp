@@ -103,7 +103,7 @@ public:
       const bool file = spec.shape == Shape::voxels;
       const double count = file ? 1 : double(config_.places[s].size());
       const double volume = file ? config_.solid_volumes[s] : volume_in_box(spec, config_.grid);
-      ((file && random) || spec.material().attached ? walls : cells) += count * volume;
+      ((file && random) || spec.material().attached || spec.law == Law::rigid ? walls : cells) += count * volume;
       report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
                   dimension_ == 2 ? "area" : "volume", volume, count * volume / box, file ? ", from " : "",
                   file ? spec.voxels.path.c_str() : "");
@@ -234,6 +234,7 @@ private:
     scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
     driven_by_walls(scale);
     driven_by_force(scale);
+    driven_by_bodies(scale);
     const InitialFlow &initial = config_.initial;
     const bool moves = initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
                        initial.kind != InitialVelocity::couette;
@@ -260,7 +261,8 @@ private:
     const BodyForce &force = config_.fluid.body_force;
     const double nu = config_.fluid.kinematic_viscosity();
     for (int c = 0; c < dimension_; ++c) {
-      const double f = std::fabs(force.force[c]);
+      double f = std::fabs(force.force[c]);
+      for (const SpeciesSpec &spec : config_.species) f += std::fabs(spec.body_force.force[c]);
       double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
       if (is_wall(c)) speed = 0;  // pressure takes it
       const SpeciesSpec *tube = nullptr;
@@ -277,6 +279,17 @@ private:
         scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));
       }
       scale.speed[c] = std::max(scale.speed[c], speed);
+    }
+  }
+
+  void driven_by_bodies(FlowScale &scale) const {
+    for (const SpeciesSpec &spec : config_.species) {
+      const Real3 &v = spec.motion.velocity, &w = spec.motion.angular_velocity;
+      for (int d = 0; d < dimension_; ++d)
+        scale.speed[d] =
+            std::max(scale.speed[d], std::fabs(v[d]) + spec.radius * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
+      scale.shear_rate =
+          std::max({scale.shear_rate, std::hypot(w[0], w[1], w[2]), std::hypot(v[0], v[1], v[2]) / scale.length});
     }
   }
 

@@ -105,7 +105,7 @@ struct Config {
 
   /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.
   bool separates(const SpeciesSpec &spec) const {
-    return spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
+    return spec.law != Law::rigid && spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
            method.interface == InterfaceScheme::plic;
   }
 };

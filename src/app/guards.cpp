@@ -59,6 +59,7 @@ Guards::Guards(const Config &config) : control_(config.guard) {
                                                      : "lower -time_step";
   for (double f : config.fluid.body_force.force) forced_ = forced_ || f != 0;
   forced_ = forced_ || wall_speed(config.sides) != 0;
+  for (const SpeciesSpec &spec : config.species) forced_ = forced_ || spec.motion.moves() || spec.body_force.acts();
 }
 
 PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const {

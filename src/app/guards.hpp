@@ -23,6 +23,7 @@ struct Measured {
   double time = -1;  ///< of the state; negative: not yet
   FlowMeasures flow;
   SurfaceEnergy surface;
+  std::vector<RigidLoad> loads;  ///< of the rigid ones among the bodies
   std::vector<BodyMeasure> bodies;
   double volume_drift = 0;    ///< of the body that has changed most
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start

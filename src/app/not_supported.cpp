@@ -15,14 +15,15 @@ const std::vector<std::pair<Words, std::string>> &missing() {
   static const std::vector<std::pair<Words, std::string>> table{
       {{"density"}, "bodies have the density of the fluid: -fluid_density is that of both"},
       {{"buoyancy", "gravity", "sedimentation"},
-       "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both"},
+       "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
+       "species alone"},
       {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "farfield"},
        "a side of the box is periodic, a wall without slip that may move in its plane, or a plane of symmetry; "
        "-body_force "
        "drives a flow through"},
-      {{"rigid", "prescribed", "torque"},
-       "bodies are elastic and go with the flow; a stiff -NAME_shear_modulus comes near a rigid one, and "
-       "-NAME_attached holds what touches a wall"},
+      {{"prescribed", "torque"},
+       "bodies go with the flow, or are rigid and stay where they are (-NAME_law rigid): a force or a path of a rigid "
+       "one cannot be given"},
       {{"bending", "shell", "curvature"},
        "membranes (-NAME_law membrane) resist shear and change of area and have no bending stiffness"},
       {{"marangoni", "surfactant", "wetting"},

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "physics/limits.hpp"
+#include "physics/species_force.hpp"
 
 #include <algorithm>
 #include <array>
@@ -81,7 +82,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscCall(series_.open(comm, directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5");
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", solver_->has_rigid());
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -120,6 +121,7 @@ PetscErrorCode Outputs::measure() {
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
   PetscCall(solver_->surface_energy(&m.surface));
+  if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
@@ -164,11 +166,16 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                               &config_.sides, state.time,      solver_->evolved_fraction(),
                               viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
+  double power = 0;
+  PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
+  energy->rates.force_power += power;
+  for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
   PetscFunctionReturn(0);
 }
 
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
+  std::size_t rigid = 0;
   for (const BodyMeasure &body : measured_.bodies) {
     BodyRecord record;
     record.id = body.label;
@@ -181,6 +188,10 @@ std::vector<BodyRecord> Outputs::records() const {
     record.elastic_energy = body.elastic_energy;
     record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
     record.rest_deformation = body.rest_deformation;
+    if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
+      record.force = measured_.loads[rigid].force;
+      record.torque = measured_.loads[rigid++].torque;
+    }
     records.push_back(record);
   }
   return records;

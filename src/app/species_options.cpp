@@ -7,7 +7,7 @@ namespace {
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
                         "tube",   "constricted_tube", "voxels",    "state"};
-const Names law_names{"neo_hookean", "mooney_rivlin", "membrane"};
+const Names law_names{"neo_hookean", "mooney_rivlin", "membrane", "rigid"};
 const Names membrane_names{"neo_hookean", "skalak"};
 const Names placement_names{"one", "list", "lattice", "random"};
 const Names contact_names{"separate", "merge"};
@@ -71,6 +71,18 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
             "area of a membrane at the start over that at rest");
   for_law(4, Law::membrane);
+  const std::size_t first = rows.rows.size();
+  rows.real("velocity", spec.motion.velocity, any_number, "length/time",
+            "velocity V cos(frequency t + phase) of the surface of a rigid body that slides along itself: tube, slab, "
+            "cylinder");
+  rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
+  rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
+            "angular velocity of a rigid sphere, or of a cylinder about its axis");
+  rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time",
+            "angular frequency");
+  rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
+  for_law(rows.rows.size() - first, Law::rigid);
 }
 
 void add_viscosity(Rows &rows, SpeciesSpec &spec) {
@@ -89,6 +101,13 @@ void add_viscosity(Rows &rows, SpeciesSpec &spec) {
 void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
   rows.real("surface_tension", spec.surface_tension, not_negative, "force/length",
             "surface tension; a drop is a body with -NAME_shear_modulus 0");
+}
+
+void add_body_force(Rows &rows, SpeciesSpec &spec) {
+  rows.real("body_force", spec.body_force.force, any_number, "length/time^2",
+            "force per mass on these bodies alone, F cos(frequency t + phase)");
+  rows.real("body_force_frequency", spec.body_force.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("body_force_phase", spec.body_force.phase, any_number, "rad", "phase");
 }
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {
@@ -188,6 +207,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_law(rows, spec);
   add_viscosity(rows, spec);
   add_surface_tension(rows, spec);
+  add_body_force(rows, spec);
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
             "the shape is "

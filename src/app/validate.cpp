@@ -100,7 +100,8 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::membrane) return {};
   const std::string law = "-" + spec.name + "_law: membrane needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
-    return law + "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin";
+    return law +
+           "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
   if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
@@ -108,6 +109,38 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.initial_stretch != Real3{1, 1, 1})
     return "-" + spec.name + "_initial_stretch: has no meaning for a membrane; accepted: -" + spec.name +
            "_initial_area_stretch";
+  return {};
+}
+
+// The shape must stay where it is.
+std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
+  if (spec.law != Law::rigid) return {};
+  const std::string name = "-" + spec.name + "_";
+  const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
+  if (spec.viscosity) return no("viscosity", "nothing flows in a rigid body; accepted: without");
+  if (spec.body_force.acts()) return no("body_force", "a rigid body does not move; accepted: 0,0,0");
+  if (spec.surface_tension > 0) return no("surface_tension", "a rigid body keeps its shape; accepted: 0");
+  if (spec.contact == Contact::separate) return no("contact", "rigid bodies do not move; accepted: merge, or without");
+  const RigidMotion &motion = spec.motion;
+  const bool round = spec.shape == Shape::sphere || spec.shape == Shape::cylinder;
+  for (int d = 0; d < 3; ++d) {
+    const bool axis = d == (flat(config) ? 2 : spec.axis);
+    if (motion.angular_velocity[d] != 0 && (!round || ((flat(config) || spec.shape == Shape::cylinder) && !axis)))
+      return no("angular_velocity",
+                "would carry the body through the grid; accepted: any axis of a sphere, the axis of a "
+                "cylinder, z in 2-D, else 0,0,0");
+    const bool slides = spec.shape == Shape::slab ? d != spec.axis
+                                                  : (spec.shape == Shape::tube || spec.shape == Shape::cylinder) &&
+                                                        d == spec.axis && !(flat(config) && d == 2);
+    if (motion.velocity[d] != 0 && !slides)
+      return no("velocity",
+                "would carry the body through the grid; accepted: along the axis of a tube or cylinder, in the "
+                "plane of a slab, else 0,0,0");
+    if (motion.velocity[d] != 0 && config.grid.boundary[d] == Boundary::wall)
+      return no("velocity",
+                "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
+                "periodic");
+  }
   return {};
 }
 
@@ -126,7 +159,10 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
-  if (const std::string wrong = check_membrane(config, spec); !wrong.empty()) return wrong;
+  if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
+    return wrong;
+  for (const auto check : {check_membrane, check_rigid})
+    if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().elastic())
     return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
            spec.name + "_shear_modulus > 0";

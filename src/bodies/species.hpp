@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/law.hpp"
+#include "field/rigid_faces.hpp"
 #include "grid/grid.hpp"
 
 #include <array>
@@ -46,7 +47,9 @@ struct SpeciesSpec {
   double c1 = 0, c2 = 0, c3 = 0;    ///< Mooney-Rivlin; pressure units
   std::optional<double> viscosity;  ///< dynamic; default: the fluid's
   double surface_tension = 0;       ///< force per length
+  BodyForce body_force{};           ///< of these bodies alone
   Membrane membrane{};              ///< Law::membrane
+  RigidMotion motion;               ///< Law::rigid
   std::optional<bool> attached;     ///< default by shape: is_attached()
   std::optional<Contact> contact;   ///< default by method: Config::separates()
   Real3 initial_stretch{1, 1, 1};   ///< B = diag(l^2), turned with the body; the shape is given in the stretched state
@@ -66,9 +69,17 @@ struct SpeciesSpec {
 
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
-    return {
-        at_rest, attached.value_or(is_attached(shape)), false, law, c1, c2, c3, viscosity.value_or(0), surface_tension,
-        membrane};
+    return {at_rest,
+            attached.value_or(is_attached(shape)),
+            false,
+            law,
+            c1,
+            c2,
+            c3,
+            viscosity.value_or(0),
+            surface_tension,
+            body_force,
+            membrane};
   }
 };
 

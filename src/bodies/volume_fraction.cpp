@@ -55,6 +55,7 @@ PlacedBody::PlacedBody(const Surface &surface, const GridSpec &grid, const BodyP
     middle_[d] = snap((place.centre[d] - grid.length[d] / 2) / spacing_[d]);
     const double extent = surface.support(rotation_[d]) / spacing_[d], centre = middle_[d] + 0.5 * cells_[d];
     if (!std::isfinite(extent)) continue;
+    ends_[d] = true;
     has_images_[d] = grid.boundary[d] == Boundary::periodic;
     begin_[d] = static_cast<int>(std::floor(centre - extent)) - 1;
     end_[d] = static_cast<int>(std::ceil(centre + extent)) + 1;
@@ -118,6 +119,12 @@ Real3 PlacedBody::from_body(const Int3 &cell) const noexcept {
 bool PlacedBody::is_clear_of(const Int3 &cell) const noexcept {
   const Real3 y = body_coordinates(from_body(cell));
   return surface_.level(y) >= surface_.slope(y, half_diagonal_) * half_diagonal_;
+}
+
+double PlacedBody::level(const Real3 &place) const noexcept {
+  Real3 r{};
+  for (int d = 0; d < dimension_; ++d) r[d] = place[d] - middle_[d];
+  return surface_.level(body_coordinates(r));
 }
 
 double PlacedBody::fraction(const Int3 &cell) const noexcept {

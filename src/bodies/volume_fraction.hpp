@@ -29,6 +29,11 @@ public:
   std::vector<Range> ranges(int d, int first, int last) const;
   /// Whether the surface cannot pass a global, unwrapped cell, and the cell is outside: cheaper than its fraction.
   bool is_clear_of(const Int3 &cell) const noexcept;
+  /// Negative inside, at a place in cells from the middle of the box.
+  double level(const Real3 &place) const noexcept;
+  /// Whether the body ends in direction d; and its centre, in cells from the middle of the box.
+  bool ends(int d) const noexcept { return ends_[d]; }
+  const Real3 &centre() const noexcept { return middle_; }
   /// phi of a global, unwrapped cell, 0 ... 1.
   double fraction(const Int3 &cell) const noexcept;
 
@@ -44,7 +49,7 @@ private:
   double half_diagonal_;    ///< of a cell
   Rotation rotation_;
   Int3 begin_{}, end_{};
-  std::array<bool, 3> has_images_{};
+  std::array<bool, 3> ends_{}, has_images_{};
 };
 
 }  // namespace eulastic

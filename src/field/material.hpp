@@ -1,11 +1,12 @@
 // What a body is made of.
 #pragma once
 
+#include "field/body_force.hpp"
 #include "kernels/membrane_law.hpp"
 
 namespace eulastic {
 
-enum class Law { neo_hookean, mooney_rivlin, membrane };
+enum class Law { neo_hookean, mooney_rivlin, membrane, rigid };
 using kernels::Membrane;
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I
@@ -18,8 +19,10 @@ struct Material {
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's
   double surface_tension = 0;     ///< force per length
+  BodyForce body_force{};         ///< of its own, per mass
   Membrane membrane{};            ///< Law::membrane: B is B_s, all of it at centres
 
+  bool is_rigid() const { return law == Law::rigid; }
   bool is_membrane() const { return law == Law::membrane; }
   /// false: a marked part of the fluid, or a drop; its B is I.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }

@@ -117,12 +117,13 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path)
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool loads)
     : comm_(comm),
       path_(std::move(path)),
       columns_{{"time", 0, {}, 0},           {"centroid", 3, {}, 0},           {"velocity", 3, {}, 0},
                {"volume", 1, {}, 0},         {"taylor_deformation", 1, {}, 0}, {"inclination", 1, {}, 0},
                {"elastic_energy", 1, {}, 0}, {"largest_stretch", 1, {}, 0},    {"rest_deformation", 1, {}, 0}} {
+  if (loads) columns_.insert(columns_.end(), {{"force", 3, {}, 0}, {"torque", 3, {}, 0}});
   (void)MPI_Comm_rank(comm, &rank_);
 }
 
@@ -143,9 +144,12 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
       columns_[6].waiting.push_back(body.elastic_energy);
       columns_[7].waiting.push_back(body.largest_stretch);
       columns_[8].waiting.push_back(body.rest_deformation);
+      if (columns_.size() == 9) continue;
+      columns_[9].waiting.insert(columns_[9].waiting.end(), body.force.begin(), body.force.end());
+      columns_[10].waiting.insert(columns_[10].waiting.end(), body.torque.begin(), body.torque.end());
     }
     ++waiting_;
-    const std::size_t bytes = waiting_ * (1 + 12 * bodies.size()) * sizeof(double);
+    const std::size_t bytes = waiting_ * (1 + 18 * bodies.size()) * sizeof(double);
     if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
   }
   PetscCall(fail_together(comm_, problem));

@@ -14,7 +14,8 @@ namespace eulastic {
 
 class BodiesFile {
 public:
-  BodiesFile(MPI_Comm comm, std::string path);
+  /// `loads`: with force and torque, where there are rigid bodies.
+  BodiesFile(MPI_Comm comm, std::string path, bool loads = false);
 
   /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);

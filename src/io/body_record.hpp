@@ -18,6 +18,7 @@ struct BodyRecord {
   double elastic_energy = 0;
   double largest_stretch = 0;   ///< largest principal stretch anywhere in it, from tr B
   double rest_deformation = 0;  ///< taylor_deformation of what is left when the mean of B is undone
+  Real3 force{}, torque{};      ///< of the fluid on a rigid body; 0 of others
 };
 
 }  // namespace eulastic

@@ -19,7 +19,9 @@ std::string summary_text(const Summary &s) {
                          .add("inclination", b.inclination)
                          .add("elastic_energy", b.elastic_energy)
                          .add("largest_stretch", b.largest_stretch)
-                         .add("rest_deformation", b.rest_deformation));
+                         .add("rest_deformation", b.rest_deformation)
+                         .add("force", b.force)
+                         .add("torque", b.torque));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))

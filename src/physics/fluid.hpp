@@ -1,22 +1,9 @@
 // The fluid and what drives it.
 #pragma once
 
-#include "grid/grid.hpp"
-
-#include <cmath>
+#include "field/body_force.hpp"
 
 namespace eulastic {
-
-/// f cos(frequency t + phase), a force per mass.
-struct BodyForce {
-  Real3 force{};         ///< length / time^2
-  double frequency = 0;  ///< angular
-  double phase = 0;      ///< rad
-  Real3 at(double time) const {
-    const double factor = frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase);
-    return {force[0] * factor, force[1] * factor, force[2] * factor};
-  }
-};
 
 struct Fluid {
   double density = 1;    ///< rho

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "field/sides.hpp"
 #include "grid/blocks.hpp"
+#include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
 
 #include <algorithm>
@@ -31,6 +32,8 @@ struct StageFields {
   FieldBlock *now, *before;
   const FieldBlock *velocity;
   FieldBlock *velocity_star;
+  const RigidFaces *rigid;
+  std::vector<RigidStage> *rigid_stages;  // of the pass
 
   bool has_slope(const Int3 &n, const Segment &row) const {
     const bool owned =
@@ -74,6 +77,22 @@ EULASTIC_INLINE void stage_row(const Int3 &n, const kernels::RklStage &c, const 
     kernels::rkl_stage<Dim, true>(row, c, w, m, (*f.slope)[a], h, out);
   else
     kernels::rkl_stage<Dim, false>(row, c, w, m, m, h, out);
+}
+
+// The same where there are rigid bodies: none on rows inside, and cut faces by themselves.
+template <int Dim>
+EULASTIC_INLINE void stage_beside_rigid(const Int3 &n, const kernels::RklStage &c, const InverseSquares &h,
+                                        const StageFields &f, const RigidStage &rigid, int a, ConstView w, View out,
+                                        const Segment &row) {
+  const RigidFaces::Row faces = f.rigid->row(a, row.j, row.k);
+  if (faces.all) return;
+  if (faces.empty()) return stage_row<Dim>(n, c, h, f, a, w, out, row);
+  thread_local std::vector<double> held;
+  const double *slope = f.has_slope(n, row) ? (*f.slope)[a].row(row.j, row.k) : nullptr;
+  rigid.hold(faces, Dim, a, row.i_begin, row.i_end, c, w.row(row.j, row.k), {1, w.sy, w.sz},
+             (*f.rate)[a].row(row.j, row.k), slope, out.row(row.j, row.k), &held);
+  stage_row<Dim>(n, c, h, f, a, w, out, row);
+  RigidStage::release(faces, row.i_begin, row.i_end, held, out.row(row.j, row.k));
 }
 
 // Whether a row lies on a low wall that its component is normal to: W is 0 there and stays so.
@@ -144,7 +163,10 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
         } else {
           if (pass.starts && s == 0) std::fill(values + row.i_begin, values + row.i_end, 0.0);  // W_0
           surround_row<Dim>(n, sides, pass.twice_wall[s][a], pass.image, a, w, row);
-          stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
+          if (f.rigid)
+            stage_beside_rigid<Dim>(n, pass.stage[s], h, f, (*f.rigid_stages)[s], a, w, out, row);
+          else
+            stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
         }
         if (a == 0 && sides.wall[0][0]) values[0] = 0;
       }
@@ -180,7 +202,7 @@ int rkl_stages(double dt, double dt_explicit) {
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star) {
+                               FieldBlock &velocity_star, const RigidFaces *rigid) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = grid.inverse_squares();
@@ -207,7 +229,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     pass.depth = passes > 0 ? (left + passes - 1) / passes : 0;
     pass.starts = j == 2;
     pass.ends = pass.depth == left;
+    std::vector<RigidStage> rigid_stages;
     for (int s = 0; s < pass.depth; ++s) {
+      if (rigid) rigid_stages.emplace_back(*rigid, 1, time, time_of(j + s - 1));
       pass.stage[s] = rkl_stage_coefficients(j + s, stages, dt, kinematic_viscosity);
       for (int d = 0; d < 3; ++d)
         for (int side = 0; side < 2; ++side) {
@@ -221,8 +245,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
           exchange.update({{&work.now, pass.depth, nullptr, false}, {&work.before, pass.depth - 1, nullptr, false}}));
     else if (!pass.starts)
       PetscCall(exchange.update({{&work.now, pass.depth, nullptr, false}}));
-    const StageFields fields{&work.rate, &work.slope,   work.slope ? &stressed : nullptr, &work.now, &work.before,
-                             &velocity,  &velocity_star};
+    const StageFields fields{&work.rate,     &work.slope,  work.slope ? &stressed : nullptr,
+                             &work.now,      &work.before, &velocity,
+                             &velocity_star, rigid,        &rigid_stages};
     const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());
     order.for_tasks([&](const StagePass::Task &task) {
       (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, task);

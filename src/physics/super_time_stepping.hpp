@@ -4,6 +4,7 @@
 
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "field/rigid_faces.hpp"
 #include "field/sides.hpp"
 
 namespace eulastic {
@@ -22,10 +23,10 @@ struct SuperTimeStepping {
 /// v* = v + W_s, where W' = nu lap W + M_0 + (t - dt/2) M_1 over dt, W = 0 at the start and U(t) - U(time) on moving
 /// walls. Without M_1 the jump of the elastic force at an interface, which the viscous one balances at every moment,
 /// would leave an error of order dt^1.5. M_1 vanishes where no phase is stressed. One stage is plain explicit Euler
-/// and needs no `before`.
+/// and needs no `before`. `rigid` may be null; `rate` and slope have seen its surfaces.
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star);
+                               FieldBlock &velocity_star, const RigidFaces *rigid = nullptr);
 
 }  // namespace eulastic

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/deviatoric_stress.hpp"
+#include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
 #include "physics/viscosity.hpp"
 
@@ -164,7 +165,8 @@ PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, 
 
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                const FieldBlock &viscosity, double time, double dt, int stages,
-                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star) {
+                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
+                               const RigidFaces *rigid, double viscosity_beside_rigid) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const int n = grid.owned()[0];
@@ -180,9 +182,22 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 1);
     const StageTerms stage{
         &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
+    std::unique_ptr<RigidStage> beside;
+    if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached);
     for_velocity_rows(grid, [&](int a, int row, int k) {
       prefetch_ahead(grid, stage, a, row, k);
+      const RigidFaces::Row faces = rigid ? rigid->row(a, row, k) : RigidFaces::Row{};
+      if (faces.all) return;
+      thread_local std::vector<double> held;
+      double *out = work.before[a].row(row, k);
+      if (!faces.empty()) {
+        if (j == 2) std::fill_n(out, n, 0.0);
+        const ConstView w = work.now[a];
+        beside->hold(faces, grid.dimension(), a, 0, n, stage.c, w.row(row, k), {1, w.sy, w.sz},
+                     work.rate[a].row(row, k), slope ? (*slope)[a].row(row, k) : nullptr, out, &held);
+      }
       (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row, k);
+      if (!faces.empty()) RigidStage::release(faces, 0, n, held, out);
     });
     work.now.swap(work.before);
   }

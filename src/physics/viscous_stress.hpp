@@ -11,10 +11,11 @@ PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, 
                                  const FieldBlock &velocity, FieldBlock &out);
 
 /// super_time_step() with this stress for the Laplacian: its components see each other, so that ghosts are exchanged
-/// before every stage.
+/// before every stage. Cut faces of rigid bodies have the kinematic viscosity of the fluid beside them.
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                const FieldBlock &viscosity, double time, double dt, int stages,
-                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star);
+                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
+                               const RigidFaces *rigid = nullptr, double viscosity_beside_rigid = 0);
 
 /// p -= factor nu D*, in one ghost layer too: the rotational update where nu is that of the place.
 PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,

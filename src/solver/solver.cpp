@@ -4,11 +4,13 @@
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
 #include "physics/momentum.hpp"
+#include "physics/species_force.hpp"
 #include "physics/transport.hpp"
 #include "physics/viscous_stress.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
+#include "pressure/obstacles.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -16,13 +18,15 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes) {
+int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
+                        bool rigid) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
   const bool formula = method.pressure == PressureKind::acm && !sweeps;
-  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
+  const int pressure =
+      1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) + (rigid && !formula ? ObstacleSolver::work_fields : 0);
   int forces = surface_tension ? SurfaceTension::work_fields : 0;
   if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
-  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + forces;
+  const int momentum = (method.explicit_predictor() ? (rigid ? dimension : 0) : 2 * dimension) + forces;
   const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
@@ -56,8 +60,26 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   PetscFunctionReturn(0);
 }
 
+// Artificial compressibility needs no more than the velocity of the bodies; what solves for the increment has to know
+// which faces are closed. Increments of steps before are of no use to it.
+PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidFaces> faces) {
+  PetscFunctionBeginUser;
+  rigid_ = std::move(faces);
+  if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
+  if (spec_.pressure == PressureKind::acm) {
+    auto sweeps = std::make_unique<AcmSweepSolver>();
+    PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
+    pressure_solver_ = std::move(sweeps);
+  }
+  const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
+  pressure_solver_ = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, *rigid_, accuracy, spec_.acm_memory,
+                                                      std::move(pressure_solver_));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time, now_.velocity);
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
@@ -76,8 +98,8 @@ PetscErrorCode Solver::prepare() {
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
-  PetscCall(
-      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr)));
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr,
+                                       membranes_ != nullptr, rigid_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
@@ -136,6 +158,7 @@ std::vector<double> Solver::evolved_fraction() const {
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
+  for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
   now_.speed_scale = scale;
@@ -148,7 +171,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
-                    viscosity_.bytes() + pressure_solver_->bytes();
+                    viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
@@ -190,6 +213,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
 PetscErrorCode Solver::predict(double dt) {
   PetscFunctionBeginUser;
   Fluid fluid = spec_.fluid;
+  const double nu = fluid.kinematic_viscosity();
   if (viscosity_) {
     PetscCall(compute_viscosity(*grid_, fluid, now_.phases, viscosity_));
     fluid.viscosity = 0;  // the stress of the varying one is added
@@ -202,7 +226,18 @@ PetscErrorCode Solver::predict(double dt) {
   if (spec_.explicit_predictor()) {
     PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, dt / fluid.density, true, velocity_star_));
+    add_species_forces(*grid_, now_.phases, step.force_time, dt, velocity_star_);
+    std::vector<double> cut;
+    if (rigid_) {
+      see_rigid_surfaces_at_once(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
+                                 velocity_star_);
+      cut = cut_face_values(*grid_, *rigid_, velocity_star_);
+    }
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
+    if (rigid_) {
+      set_cut_face_values(*grid_, *rigid_, cut, velocity_star_);
+      impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
+    }
     ++stages_;
     PetscFunctionReturn(0);
   }
@@ -217,17 +252,26 @@ PetscErrorCode Solver::predict(double dt) {
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
+  add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
+  std::vector<double> cut;
+  if (rigid_) {
+    see_rigid_surfaces(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, now_.velocity, rate.fields(),
+                       slope_ ? &slope_ : nullptr);
+    cut = cut_face_values(*grid_, *rigid_, rate.fields());
+  }
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
+  if (rigid_) set_cut_face_values(*grid_, *rigid_, cut, rate.fields());
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   if (viscosity_)
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, viscosity_, now_.time, dt, stages, now_.velocity,
-                              viscous, velocity_star_));
+                              viscous, velocity_star_, rigid_.get(), nu));
   else
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                              now_.phases, now_.velocity, viscous, velocity_star_));
+                              now_.phases, now_.velocity, viscous, velocity_star_, rigid_.get()));
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   stages_ += stages;
   PetscFunctionReturn(0);
 }
@@ -259,6 +303,9 @@ PetscErrorCode Solver::project(double dt) {
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
+  if (rigid_ && !pressure_solver_->formula())
+    correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity_star_);
+  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);

@@ -9,6 +9,7 @@
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/membrane.hpp"
+#include "physics/rigid.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
@@ -28,7 +29,8 @@ struct SolverSpec : Method {
 class Solver {
 public:
   /// Fields of the work space that the method needs, in a scene with bodies or without.
-  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes);
+  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
+                         bool rigid = false);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -39,6 +41,8 @@ public:
   BodyTracker &bodies() { return bodies_; }
   const State &state() const { return now_; }
 
+  /// Before prepare(); null where nothing is rigid.
+  PetscErrorCode set_rigid(std::unique_ptr<RigidFaces> faces);
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
   PetscErrorCode prepare();
   /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
@@ -52,6 +56,9 @@ public:
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension.
   PetscErrorCode surface_energy(SurfaceEnergy *measured);
+  bool has_rigid() const { return rigid_ != nullptr; }
+  /// What the fluid exerts on every rigid body, in the order of the bodies; costs as much as the rate of momentum.
+  PetscErrorCode rigid_loads(std::vector<RigidLoad> *loads);
   /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
@@ -120,6 +127,7 @@ private:
   std::unique_ptr<InterfaceTransport> interface_;
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
+  std::unique_ptr<RigidFaces> rigid_;                ///< the same of rigid bodies
   std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart

@@ -28,6 +28,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
+    if (phase.material.is_rigid()) continue;
     rows[p].swapped_in = next_rows_;
     if (phase.material.elastic())
       next_rows_ = phase.rows;
@@ -42,10 +43,12 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     rows[p].join(phase.rows);  // it has moved less than a cell
   }
   std::vector<WantedGhosts> fractions, tensors;
-  for (std::size_t p = 0; p < phases.size(); ++p) fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    if (!phases[p].material.is_rigid()) fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
   PetscCall(exchange_->update(fractions));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
+    if (phase.material.is_rigid()) continue;                  // it stays where it is
     PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);

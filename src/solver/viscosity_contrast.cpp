@@ -1,6 +1,8 @@
 // Solver: what depends on how far the viscosities of fluid and bodies lie apart.
 #include "solver/solver.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
@@ -13,8 +15,10 @@ ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
 }
 
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  return time_step_limits(*grid_, spec_.fluid, contrast(extremes.trace), spec_.sides, extremes,
-                          {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
+  TimeStepLimits limits = time_step_limits(*grid_, spec_.fluid, contrast(extremes.trace), spec_.sides, extremes,
+                                           {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
+  if (rigid_) limits.forcing = std::min(limits.forcing, rigid_->shortest_period());
+  return limits;
 }
 
 PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {

@@ -51,11 +51,10 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-gravity 0,-9.81,0", {"\"gravity\" is not supported", "-body_force", read}},
        {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
        {"-inflow 1", {"\"inflow\" is not supported", read}},
-       {"-cell_rigid true", {"\"rigid\" is not supported", "elastic", read}},
+       {"-cell_torque 1,0,0", {"\"torque\" is not supported", "-NAME_law rigid", read}},
        {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "-NAME_law membrane", read}},
        {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
        {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not supported", "one of periodic, wall"}},
-       {"-cell_law rigid", {"-cell_law", "\"rigid\" is not supported", "mooney_rivlin"}},
        {"-density 1", {"nearest known: -fluid_density"}},
        {"-surface_tension 1", {"nearest known: -cell_surface_tension"}},
        {"-fluid_viscosty 1", {"nearest known: -fluid_viscosity"}},
@@ -237,42 +236,66 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 2 -fluid_viscosity 0",
         {"-a_viscosity", "-fluid_viscosity > 0"}}},
       periodic);
-  expect_refusals({{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
-                   {"-a_law membrane", {"-a_surface_shear_modulus", "must be given"}},
-                   {"-a_law membrane -a_surface_shear_modulus 0", {"-a_surface_shear_modulus", "> 0"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-time_integrator staggered"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_initial_stretch 2,1,1",
-                    {"-a_initial_stretch", "-a_initial_area_stretch"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
-                   {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
-                   {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
-                   {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
-                   {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
-                  periodic + "-species a -a_shape sphere -a_radius .1 ");
+  expect_refusals(
+      {{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
+       {"-a_law membrane", {"-a_surface_shear_modulus", "must be given"}},
+       {"-a_law membrane -a_surface_shear_modulus 0", {"-a_surface_shear_modulus", "> 0"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-time_integrator staggered"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_initial_stretch 2,1,1",
+        {"-a_initial_stretch", "-a_initial_area_stretch"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
+       {"-a_law rigid -a_shear_modulus 1", {"-a_shear_modulus", "-a_law neo_hookean"}},
+       {"-a_law rigid -a_viscosity 1", {"-a_viscosity", "accepted: without"}},
+       {"-a_law rigid -a_body_force 1,0,0", {"-a_body_force", "accepted: 0,0,0"}},
+       {"-a_law rigid -a_surface_tension 1", {"-a_surface_tension", "accepted: 0"}},
+       {"-a_law rigid -a_contact separate", {"-a_contact", "merge"}},
+       {"-a_law rigid -a_initial_stretch 2,1,1", {"-a_initial_stretch", "accepted: 1,1,1"}},
+       {"-a_law rigid -a_velocity 1,0,0", {"-a_velocity", "along the axis of a tube"}},
+       {"-a_shear_modulus 1 -a_angular_velocity 1,0,0", {"-a_angular_velocity", "-a_law rigid"}},
+       {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
+       {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
+       {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
+       {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
+      periodic + "-species a -a_shape sphere -a_radius .1 ");
+}
+
+// What would not stay where it is.
+TEST(OptionRefusals, RigidBodiesThatMove) {
+  expect_refusals(
+      {{"-a_shape tube -a_radius .2 -a_axis x -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
+       {"-a_shape cylinder -a_radius .2 -a_axis z -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape slab -a_interval 0,.1 -a_axis y -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
+       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
+        {"-a_velocity", "sides of the box"}}},
+      "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
 }
 
 TEST(OptionRefusals, TwoDimensions) {
   const std::string flat = "-time_end 1 -grid_cells 8,8,1 -boundary_y wall ";
   EXPECT_EQ(parse_line(flat + "-species a -a_shape sphere -a_radius .2 -a_centre .5,.5,9 -a_shear_modulus 1").error,
             "");
-  expect_refusals({{"-boundary_z wall", {"-boundary_z", "more than one cell"}},
-                   {"-boundary_zmin wall -boundary_zmax symmetry", {"-boundary_z", "more than one cell"}},
-                   {"-body_force 0,0,1", {"-body_force", "2-D"}},
-                   {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
-                   {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
-                   {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
-                   {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_initial_stretch 2,.5,1",
-                    {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
-                    {"-a_initial_stretch", "2-D"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
-                    {"-a_count", "2-D"}},
-                   {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
-                    {"-a_count", "random", "an integer"}}},
-                  flat);
+  expect_refusals(
+      {{"-boundary_z wall", {"-boundary_z", "more than one cell"}},
+       {"-boundary_zmin wall -boundary_zmax symmetry", {"-boundary_z", "more than one cell"}},
+       {"-body_force 0,0,1", {"-body_force", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .2 -a_shear_modulus 1 -a_body_force 0,0,1", {"-a_body_force", "2-D"}},
+       {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
+       {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
+       {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
+       {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 0 -a_initial_stretch 2,.5,1",
+        {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
+        {"-a_initial_stretch", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
+        {"-a_count", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
+        {"-a_count", "random", "an integer"}}},
+      flat);
 }
 
 TEST(OptionRefusals, ErrorsNameTheirSource) {

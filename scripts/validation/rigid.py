@@ -1,0 +1,53 @@
+"""S13 to S15: rigid bodies; docs/method.md, section 19."""
+import math
+
+from .bodies import fast_at
+from .case import Case, Measure
+
+# Drag K of a simple cubic array of spheres over Stokes' 6 pi mu a U at solid volume fraction c, U the mean velocity of the box
+# (Zick & Homsy, J. Fluid Mech. 115, 1982, table 2).
+ARRAY = {.027: 2.008, .064: 2.810, .125: 4.292, .216: 7.442}
+ACROSS = .77  # diameter of the tube in a box of 1
+TORQUE = 4 * math.pi / (.15**-2 - .4**-2)
+
+
+def bulk(run):
+    return float(run.series.bulk_velocity_x[-1])
+
+
+def array(fraction, settings, quick):
+    radius = (3 * fraction / (4 * math.pi))**(1 / 3)
+
+    def options(n, _):  # n: cells per radius; anywhere in the grid
+        cells = round(n / radius)
+        return {"grid_cells": f"{cells},{cells},{cells}", "grain_radius": radius, "time_end": .6 if fraction > .1 else 1.5, "snapshot_interval": 0}
+    return Case("S13", f"Cubic array of rigid spheres, volume fraction {fraction}", "sphere_array", options, settings, quick,
+                (Measure(f"fraction {fraction}: drag K", lambda run: 1 / (6 * math.pi * radius * bulk(run)),
+                         {"fast": lambda n: .01 * max(1, (16 / n)**2)}, "asked for: 1 % at 16 cells per radius; second order",
+                         ARRAY[fraction], True),
+                 Measure(f"fraction {fraction}: force on the sphere, of what drives the fluid", lambda run: float(
+                     run.bodies.force[-1, 0, 0]) / (1 - fraction), {"fast": lambda n: .01 * max(1, (16 / n)**2)},
+                         "the balance of momentum of the box", 1, True)),
+                lambda run: ((run.series.time, run.series.bulk_velocity_x), None), ("t", "mean velocity"))
+
+
+def tube_options(across, _):
+    cells = round(across / ACROSS)
+    return {"grid_cells": f"8,{cells},{cells}", "grid_length": f"{8 / cells},1,1", "grain_shape": "tube", "grain_axis": "x", "grain_radius": ACROSS / 2,
+            "grain_centre": "0,0.513,0.487", "fluid_inertia": "true", "time_end": .5, "time_step": .005, "snapshot_interval": 0}
+
+
+CASES = (
+    array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
+    Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
+         (Measure("flow rate", bulk, {"fast": lambda across: .01 * (20 / across)**1.8},
+                  "asked for: 1 % at 20 cells across, order 1.8", math.pi * (ACROSS / 2)**4 / 8, True, order={"fast": 1.8}),),
+         lambda run: ((run.series.time, run.series.bulk_velocity_x), None), ("t", "mean velocity")),
+    Case("S15", "Cylinder turning in another one", "rotating_cylinder",
+         lambda n, _: {"grid_cells": f"{n},{n},1", "snapshot_interval": 0}, fast_at((32, 64, 128)), fast_at((32, 64)),
+         (Measure("torque on the inner one", lambda run: float(run.bodies.torque[-1, 0, 2]), {"fast": .01},
+                  "asked for: 1 %", -TORQUE, True),
+          Measure("torque on the outer one", lambda run: float(run.bodies.torque[-1, 1, 2]), {"fast": .01},
+                  "asked for: 1 %", TORQUE, True)),
+         lambda run: ((run.bodies.time, -run.bodies.torque[:, 0, 2]), None), ("t", "torque")),
+)

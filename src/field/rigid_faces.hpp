@@ -1,0 +1,104 @@
+// Where rigid bodies are among the faces of the velocity: faces inside, whose velocity is given, and cut ones, fluid
+// faces with a neighbour inside, which see the surface instead of it (docs/method.md, section 19). PETSc-free.
+#pragma once
+
+#include "grid/grid.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace eulastic {
+
+/// cos(frequency t + phase).
+struct Oscillation {
+  double frequency = 0;  ///< angular, 1 / time
+  double phase = 0;      ///< rad
+  double at(double time) const { return frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase); }
+};
+
+/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape stays
+/// where it is: spheres and tubes may turn, plates slide.
+struct RigidMotion {
+  Real3 velocity{};          ///< length / time
+  Real3 angular_velocity{};  ///< rad / time
+  Oscillation of_velocity, of_rotation;
+  bool moves() const { return velocity != Real3{} || angular_velocity != Real3{}; }
+};
+
+/// A body, or one of its images across periodic sides.
+struct RigidBody {
+  int index = 0;   ///< among all rigid bodies
+  int motion = 0;  ///< index in RigidFaces::motions
+  Real3 centre{};  ///< from the middle of the box, in cells
+};
+
+class RigidFaces {
+public:
+  /// A fluid face with neighbours inside. Links are low, high along x, then y, z.
+  struct Cut {
+    int i = 0;
+    int body = 0;        ///< whose surface it sees, index in bodies
+    unsigned walls = 0;  ///< bits of the links that end at the surface
+    double share = 1;    ///< of the rate, which keeps the stages of the viscous step stable: method.md
+    double open = 1;     ///< of the pressure increment's gradient: share, but not too little
+    double link[6]{};    ///< 1 / (length of the link times the spacing)
+    double turn[6]{};    ///< (W x (x - centre)) of the component, where a link meets the surface
+    double laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension,
+                     const double *wall) const;
+  };
+  /// Faces begin <= i < end are inside a body.
+  struct Run {
+    int begin, end, body;
+  };
+  struct Row {
+    const Cut *cuts = nullptr, *cuts_end = nullptr;
+    const Run *runs = nullptr, *runs_end = nullptr;
+    bool all = false;  ///< inside, the ghosts of the row too
+    bool empty() const { return cuts == cuts_end && runs == runs_end; }
+  };
+
+  std::vector<RigidMotion> motions;
+  std::vector<RigidBody> bodies;
+  int count = 0;  ///< of bodies, images not counted
+  bool moves = false;
+  Real3 speed{};  ///< largest of any surface, along every direction
+
+  /// Rows of component a; j and k within `layers` of ghosts.
+  Row row(int a, int j, int k) const {
+    const Component &c = components_[a];
+    const std::size_t at = (j + layers_[1]) + std::size_t(rows_) * (k + layers_[2]);
+    return {c.cuts.data() + c.first_cut[at], c.cuts.data() + c.first_cut[at + 1], c.runs.data() + c.first_run[at],
+            c.runs.data() + c.first_run[at + 1], c.all[at] != 0};
+  }
+  /// Component a of the velocity of a body at a face, at the times of the factors of its motion.
+  double velocity(int a, const RigidBody &body, const Real3 &place, const Real3 &spacing, double of_velocity,
+                  double of_rotation) const;
+
+  double shortest_period() const;  ///< of what moves; infinite if nothing oscillates
+
+  struct Component {
+    std::vector<Cut> cuts;
+    std::vector<Run> runs;
+    std::vector<std::size_t> first_cut, first_run;  ///< of every row, and the end
+    std::vector<char> all;
+  };
+  void set(const Int3 &layers, int rows, std::array<Component, 3> components);
+  std::size_t bytes() const;
+
+private:
+  Int3 layers_{};
+  int rows_ = 0;
+  std::array<Component, 3> components_;
+};
+
+/// Of face i of component a in row (j, k): its place in cells from the middle of the box.
+inline Real3 place_of_face(const Grid &grid, int a, int i, int j, int k) {
+  const Int3 &begin = grid.layout().begin, local{i, j, k};
+  Real3 place{};
+  for (int d = 0; d < grid.dimension(); ++d)
+    place[d] = begin[d] + local[d] + (d == a ? 0 : 0.5) - 0.5 * grid.cells()[d];
+  return place;
+}
+
+}  // namespace eulastic

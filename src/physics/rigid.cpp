@@ -1,0 +1,218 @@
+#include "physics/rigid.hpp"
+
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+#include "kernels/momentum.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+using Strides = std::array<std::ptrdiff_t, 3>;
+
+Strides strides(ConstView q) { return {1, q.sy, q.sz}; }
+
+// The velocity of the surface on the links of a cut face that end there.
+void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity,
+                      double of_rotation, double *wall) {
+  const double along = faces.motions[faces.bodies[cut.body].motion].velocity[a] * of_velocity;
+  for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
+}
+
+double regular_laplacian(const Grid &grid, const double *u, const Strides &s) {
+  const InverseSquares h = grid.inverse_squares();
+  return grid.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
+}
+
+// visit(component, row, j, k) for all owned rows that a body is in or beside.
+template <class Visit>
+void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (const Segment &s : grid.rows())
+      if (const RigidFaces::Row row = faces.row(a, s.j, s.k); !row.empty()) visit(a, row, s.j, s.k);
+}
+
+bool owned(const Grid &grid, int i) { return i >= 0 && i < grid.owned()[0]; }
+
+// The viscous rate at a cut face, and how much of it a regular face has.
+struct Viscous {
+  double cut, regular;
+};
+Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
+                      const double *u, const Strides &s) {
+  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
+  double wall[6];
+  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
+}
+
+}  // namespace
+
+void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
+                        const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k);
+    double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(grid, cut->i)) continue;
+      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
+      if (m) m[cut->i] *= cut->share;
+    }
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i) {
+        out[i] = 0;
+        if (m) m[i] = 0;
+      }
+  });
+}
+
+void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
+                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k);
+    double *out = velocity_star[a].row(j, k);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(grid, cut->i)) continue;
+      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
+      out[cut->i] = u[cut->i] + cut->share * change;
+    }
+  });
+}
+
+std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field) {
+  std::vector<double> values;
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(grid, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
+  });
+  return values;
+}
+
+void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
+                         FieldBlock &field) {
+  std::size_t at = 0;
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(grid, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
+  });
+}
+
+void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    double *out = velocity[a].row(j, k);
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
+      const RigidBody &body = faces.bodies[run->body];
+      const RigidMotion &motion = faces.motions[body.motion];
+      const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i)
+        out[i] = motion.moves() ? faces.velocity(a, body, place_of_face(grid, a, i, j, k), grid.spacing(), of_velocity,
+                                                 of_rotation)
+                                : 0;
+    }
+  });
+}
+
+void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+                       FieldBlock &velocity) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = dt_over_density / grid.spacing()[a];
+    double *u = velocity[a].row(j, k);
+    const std::ptrdiff_t step = increment[0].stride(a);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (const int i = cut->i; owned(grid, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
+  });
+}
+
+RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached)
+    : faces_(faces), viscosity_(viscosity) {
+  for (const RigidMotion &motion : faces.motions)
+    moved_.push_back({motion.of_velocity.at(reached) - motion.of_velocity.at(time),
+                      motion.of_rotation.at(reached) - motion.of_rotation.at(time)});
+}
+
+void RigidStage::hold(const RigidFaces::Row &row, int dimension, int a, int begin, int end, const kernels::RklStage &c,
+                      const double *now, const std::array<std::ptrdiff_t, 3> &stride, const double *rate,
+                      const double *slope, const double *before, std::vector<double> *held) const {
+  held->clear();
+  for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+    const int i = cut->i;
+    if (i < begin || i >= end) continue;
+    double wall[6] = {};
+    if (faces_.moves) {
+      const std::array<double, 2> &moved = moved_[faces_.bodies[cut->body].motion];
+      surface_velocity(faces_, *cut, a, moved[0], moved[1], wall);
+    }
+    double sum = c.nu * before[i];
+    sum += c.mu * now[i];
+    sum += c.rate * rate[i];
+    if (slope) sum += c.slope * slope[i];
+    sum += c.viscous * viscosity_ * cut->share * cut->laplacian(now + i, stride, dimension, wall);
+    held->push_back(sum);
+  }
+}
+
+void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const std::vector<double> &held, double *out) {
+  std::size_t at = 0;
+  for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+    if (cut->i >= begin && cut->i < end) out[cut->i] = held[at++];
+}
+
+// The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
+// of the surface, less what they would feel of the neighbours inside, is the rest.
+PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+                                   const FieldBlock &velocity, const FieldBlock &rate, const Real3 &force,
+                                   std::vector<RigidLoad> *loads) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::rigid);
+  const double mass = fluid.density * grid.cell_volume();
+  ExactSums sums(6 * faces.count);
+  const auto add = [&](int body, int a, const Real3 &place, double push) {
+    const RigidBody &b = faces.bodies[body];
+    Real3 r{}, f{};
+    for (int d = 0; d < 3; ++d) r[d] = (place[d] - b.centre[d]) * grid.spacing()[d];
+    f[a] = push;
+    sums.add(6 * b.index + a, push);
+    for (int d = 0; d < 3; ++d) {
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+      if (e == a || g == a) sums.add(6 * b.index + 3 + d, r[e] * f[g] - r[g] * f[e]);
+    }
+  };
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k), *dv = rate[a].row(j, k);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(grid, cut->i)) continue;
+      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
+          mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
+    }
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i)
+        add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
+  });
+  std::vector<double> total(6 * faces.count);
+  PetscCall(sums.reduce(grid.comm(), total.data()));
+  loads->assign(faces.count, {});
+  for (const RigidBody &body : faces.bodies) {
+    RigidLoad &load = (*loads)[body.index];
+    const RigidMotion &motion = faces.motions[body.motion];
+    load.power = 0;
+    for (int d = 0; d < 3; ++d)
+      load.power -= total[6 * body.index + d] * motion.velocity[d] * motion.of_velocity.at(time) +
+                    total[6 * body.index + 3 + d] * motion.angular_velocity[d] * motion.of_rotation.at(time);
+  }
+  for (int b = 0; b < faces.count; ++b)
+    for (int d = 0; d < 3; ++d) {
+      (*loads)[b].force[d] = total[6 * b + d];
+      (*loads)[b].torque[d] = total[6 * b + 3 + d];
+    }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,60 @@
+// Rigid bodies in the momentum equation: faces inside have the velocity of the body, cut faces see its surface where it
+// crosses their links, in every viscous stage (docs/method.md, section 19). The projection knows nothing of them.
+#pragma once
+
+#include "field/phase.hpp"
+#include "field/rigid_faces.hpp"
+#include "kernels/super_time_stepping.hpp"
+#include "physics/fluid.hpp"
+
+namespace eulastic {
+
+/// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
+/// the rate that sees the surface, scaled by their share, as is `slope` (may be null); faces inside 0.
+void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
+                        const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
+/// The same of v* = v + dt rate, (7).
+void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
+                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
+/// Values of all owned cut faces, and back: what is added to the field in between does not reach them.
+std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field);
+void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
+                         FieldBlock &field);
+/// Owned faces inside bodies get the velocity of these at `time`.
+void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
+
+/// Cut faces, which correct_velocity() has given all of dt/rho grad(increment), get their part of it; one ghost of the
+/// increment.
+void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+                       FieldBlock &velocity);
+/// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes
+/// them before it, release() puts them where they belong after it.
+class RigidStage {
+public:
+  /// Increments of the factors of all motions from `time` to `reached`, when W_j-1 holds. c.viscous times `viscosity`.
+  RigidStage(const RigidFaces &faces, double viscosity, double time, double reached);
+  void hold(const RigidFaces::Row &row, int dimension, int a, int begin, int end, const kernels::RklStage &c,
+            const double *now, const std::array<std::ptrdiff_t, 3> &stride, const double *rate, const double *slope,
+            const double *before, std::vector<double> *held) const;
+  static void release(const RigidFaces::Row &row, int begin, int end, const std::vector<double> &held, double *out);
+
+private:
+  const RigidFaces &faces_;
+  double viscosity_;
+  std::vector<std::array<double, 2>> moved_;  ///< of every motion
+};
+
+/// What the fluid exerts on a body: on its surface, the pressure of a uniform body force not included.
+struct RigidLoad {
+  Real3 force{};     ///< per depth in 2-D
+  Real3 torque{};    ///< about the centre of the body
+  double power = 0;  ///< of the body on the fluid
+};
+
+/// Of all rigid bodies. `rate`: dv/dt of the fluid's equation at all owned faces, those inside too, with all of
+/// `viscosity` in it, less the body force `force`. Collective.
+PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+                                   const FieldBlock &velocity, const FieldBlock &rate, const Real3 &force,
+                                   std::vector<RigidLoad> *loads);
+
+}  // namespace eulastic

@@ -1,0 +1,17 @@
+// A force per mass on the bodies of a species alone: phi f, phi averaged to faces. Bodies keep the density of the fluid
+// as far as inertia goes: settling, a centrifuge, a magnetic pull.
+#pragma once
+
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+/// Whether any phase has one.
+bool species_are_forced(const std::vector<Phase> &phases);
+/// out += scale phi f(time) at owned faces; one ghost of phi.
+void add_species_forces(const Grid &grid, const std::vector<Phase> &phases, double time, double scale, FieldBlock &out);
+/// What they do on the flow: sum of density phi f . v. Collective.
+PetscErrorCode species_force_power(const Grid &grid, const std::vector<Phase> &phases, double time, double density,
+                                   const FieldBlock &velocity, double *power);
+
+}  // namespace eulastic

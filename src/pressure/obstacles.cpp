@@ -1,0 +1,218 @@
+#include "pressure/obstacles.hpp"
+
+#include "base/events.hpp"
+#include "field/sides.hpp"
+#include "kernels/momentum.hpp"
+#include "pressure/row_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr int patience = 12;  // iterations without progress: round-off
+
+template <int Dim>
+EULASTIC_INLINE void laplacian_rows(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+                                    FieldBlock &out) {
+  const InverseSquares h = grid.inverse_squares();
+  const ConstView from = q[0];
+  const std::ptrdiff_t sy = from.sy, sz = from.sz;
+  for (const Segment &s : part.rows(grid)) {
+    const double *u = from.row(s.j, s.k);
+    double *to = out[0].row(s.j, s.k);
+#pragma omp simd
+    for (int i = s.i_begin; i < s.i_end; ++i) to[i] = dt * kernels::laplacian<Dim>(u + i, sy, sz, h);
+  }
+}
+EULASTIC_CLONES void laplacian_2d(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+                                  FieldBlock &out) {
+  laplacian_rows<2>(grid, part, dt, q, out);
+}
+EULASTIC_CLONES void laplacian_3d(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+                                  FieldBlock &out) {
+  laplacian_rows<3>(grid, part, dt, q, out);
+}
+
+EULASTIC_CLONES void add_products(const Grid &grid, const RowPart &part, ConstView a, ConstView b, ConstView c,
+                                  ConstView d, ExactSums &sums) {
+  for (const Segment &s : part.rows(grid)) {
+    const double *p = a.row(s.j, s.k), *q = b.row(s.j, s.k), *r = c.row(s.j, s.k), *t = d.row(s.j, s.k);
+    const auto products = [=](int i, auto add) EULASTIC_BODY {
+      add(0, p[i], q[i]);
+      add(1, r[i], t[i]);
+    };
+    add_row_sums<2>(s.size(), grid.layout().begin[0], products, sums);
+  }
+}
+
+// to = scale to + factor from, with a layer of ghosts.
+EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scale, double factor,
+                             const FieldBlock &from, FieldBlock &to) {
+  const RowPart part = owned.with_ghosts(grid);
+  const int n = grid.owned()[0];
+  for (int k = part.k_begin; k < part.k_end; ++k)
+    for (int j = part.j_begin; j < part.j_end; ++j) {
+      const double *x = from[0].row(j, k);
+      double *y = to[0].row(j, k);
+#pragma omp simd
+      for (int i = -1; i < n + 1; ++i) y[i] = kernels::fma(factor, x[i], scale * y[i]);
+    }
+}
+
+void combine_all(const Grid &grid, double scale, double factor, const FieldBlock &from, FieldBlock &to) {
+  in_row_parts(grid, [&](const RowPart &part) { combine(grid, part, scale, factor, from, to); });
+}
+
+}  // namespace
+
+ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
+                               double accuracy, int memory, std::unique_ptr<PressureSolver> other)
+    : grid_(&grid), exchange_(&exchange), work_(&work), other_(std::move(other)), accuracy_(accuracy) {
+  find_cells(faces);
+  if (memory > 0) memory_ = FieldBlock(grid, memory);
+}
+
+FieldBlock *ObstacleSolver::memory() {
+  if (!memory_) return nullptr;
+  const std::size_t size = memory_.layout().size;
+  double *data = memory_.data();
+  std::rotate(data, data + newest_ * size, data + memory_.count() * size);
+  newest_ = 0;
+  ghosts_of_memory_ = false;
+  return &memory_;
+}
+
+std::size_t ObstacleSolver::bytes() const {
+  return other_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(Beside) +
+         first_.capacity() * sizeof(std::size_t);
+}
+
+void ObstacleSolver::find_cells(const RigidFaces &faces) {
+  const Int3 &n = grid_->owned();
+  std::vector<std::array<double, 6>> open(n[0]);
+  for (const Segment &row : grid_->rows()) {
+    first_.push_back(cells_.size());
+    for (auto &cell : open) cell.fill(1);
+    for (int d = 0; d < grid_->dimension(); ++d)
+      for (int high = 0; high < 2; ++high) {
+        const int shift = d == 0 && high;
+        const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
+        for (const RigidFaces::Run *run = beside.runs; run != beside.runs_end; ++run)
+          for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, n[0]); ++i)
+            open[i][2 * d + high] = 0;
+        for (const RigidFaces::Cut *cut = beside.cuts; cut != beside.cuts_end; ++cut)
+          if (const int i = cut->i - shift; i >= 0 && i < n[0]) open[i][2 * d + high] = cut->open;
+      }
+    for (int i = 0; i < n[0]; ++i) {
+      if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
+      Beside cell{i, {}};
+      std::copy(open[i].begin(), open[i].end(), cell.open);
+      cells_.push_back(cell);
+    }
+  }
+  first_.push_back(cells_.size());
+}
+
+// dt div(open grad q); q has a layer of ghosts.
+void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) const {
+  in_row_parts(*grid_, [&](const RowPart &part) {
+    (grid_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*grid_, part, dt, q, out);
+  });
+  const ConstView from = q[0];
+  const Real3 &h = grid_->spacing();
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    const double *u = from.row(row.j, row.k);
+    double *to = out[0].row(row.j, row.k);
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
+      const int i = cells_[c].i;
+      double sum = 0;
+      for (int d = 0; d < grid_->dimension(); ++d) {
+        const std::ptrdiff_t s = from.stride(d);
+        const double *open = cells_[c].open + 2 * d;
+        sum += (open[0] * (u[i - s] - u[i]) + open[1] * (u[i + s] - u[i])) / (h[d] * h[d]);
+      }
+      to[i] = dt * sum;
+    }
+    ++at;
+  }
+}
+
+PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c,
+                                        const FieldBlock &d, double *ab, double *cd) const {
+  PetscFunctionBeginUser;
+  double total[2];
+  PetscCall(sum_row_parts(
+      *grid_, 2,
+      [&](const RowPart &part, ExactSums &sums) { add_products(*grid_, part, a[0], b[0], c[0], d[0], sums); }, total));
+  *ab = total[0];
+  *cd = total[1];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
+                                     FieldBlock &increment) {
+  PetscFunctionBeginUser;
+  WorkSpace::Lease lease;
+  PetscCall(work_->take("pressure around rigid bodies", work_fields, &lease));
+  FieldBlock residual = lease.part(0, 1), direction = lease.part(1, 1), image = lease.part(2, 1),
+             correction = lease.part(3, 1);
+  residual.copy_from(divergence);
+  increment.clear();
+  double square, ignored, last = 0;
+  PetscCall(products(residual, residual, residual, residual, &square, &ignored));
+  const double cells = grid_->cell_count();
+  const int remembered = memory_ ? memory_.count() : 0;
+  if (memory_ && !ghosts_of_memory_) {
+    PetscCall(exchange_->update(memory_, 1));
+    for (int f = 0; f < remembered; ++f) fill_wall_ghosts_even(*grid_, at_centre, memory_[f], 1);
+    ghosts_of_memory_ = true;
+  }
+  double best = square;
+  for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
+    const double rms = std::sqrt(square / cells);
+    if (!(rms > target_)) break;
+    if (n < remembered) {
+      correction.copy_from(memory_.part((newest_ + n) % remembered, 1));
+    } else {
+      constexpr double inner = 0.1;  // of the residual, in a direction
+      other_->set_target(inner * rms);
+      PetscCall(other_->solve(dt, residual, pressure, correction));
+      ++iterations_;
+    }
+    double along = 0, before = 0;  // <z, r> and, of the next direction, <z, change of r>
+    if (n == 0 || last == 0) {
+      direction.copy_from(correction);
+      PetscCall(products(correction, residual, correction, residual, &along, &ignored));
+    } else {
+      // `image` still holds A p of the step before: r has changed by -alpha A p.
+      PetscCall(products(correction, residual, correction, image, &along, &before));
+      combine_all(*grid_, before == 0 ? 0 : -before / last, 1, correction, direction);
+    }
+    apply(dt, direction, image);
+    double curvature, projection;
+    PetscCall(products(direction, image, direction, residual, &curvature, &projection));
+    last = curvature;
+    if (curvature == 0 && n < remembered) continue;  // nothing is remembered yet
+    if (curvature == 0) break;
+    const double step = projection / curvature;
+    combine_all(*grid_, 1, step, direction, increment);
+    combine_all(*grid_, 1, -step, image, residual);
+    PetscCall(exchange_->update(residual, 1));
+    fill_wall_ghosts_even(*grid_, at_centre, residual[0], 1);
+    PetscCall(products(residual, residual, residual, residual, &square, &ignored));
+    if (square < 0.5 * best) {
+      best = square;
+      since = 0;
+    }
+  }
+  if (memory_) {
+    newest_ = (newest_ + remembered - 1) % remembered;  // the oldest goes
+    memory_.part(newest_, 1).copy_from(increment);
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

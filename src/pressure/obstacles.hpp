@@ -1,0 +1,55 @@
+// The pressure increment where rigid bodies close faces: D* is made 0 through the open ones alone.
+//
+// Conjugate gradients for div(open grad q) = D*/dt, with any other solver, which sees no bodies, as the preconditioner:
+// flexible, as that one may stop early (Notay, SIAM J. Sci. Comput. 22, 2000).
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/rigid_faces.hpp"
+#include "field/work_space.hpp"
+#include "pressure/pressure_solver.hpp"
+
+namespace eulastic {
+
+class ObstacleSolver final : public PressureSolver {
+public:
+  static constexpr int work_fields = 4;  ///< of the work space, during a solve, beside those of the other solver
+  static constexpr int most_iterations = 100;
+
+  /// `accuracy`: of the target that is asked for, 1 or less. `memory`: increments of earlier steps that are directions
+  /// to begin with. All must outlive the solver.
+  ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces, double accuracy,
+                 int memory, std::unique_ptr<PressureSolver> other);
+  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  void set_target(double rms) override { target_ = accuracy_ * rms; }
+  long sweeps() const override { return iterations_; }
+  double sound_speed() const override { return other_->sound_speed(); }
+  /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
+  FieldBlock *memory() override;
+  std::size_t bytes() const override;
+
+private:
+  /// Cell i of a row, and how far its faces are open: low, high along x, then y, z.
+  struct Beside {
+    int i;
+    double open[6];
+  };
+  void find_cells(const RigidFaces &faces);
+  void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
+  PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
+                          double *ab, double *cd) const;
+
+  const Grid *grid_;
+  GhostExchange *exchange_;
+  WorkSpace *work_;
+  std::unique_ptr<PressureSolver> other_;
+  std::vector<Beside> cells_;
+  std::vector<std::size_t> first_;  ///< of every owned row, and the end
+  FieldBlock memory_;               ///< the newest increment is newest_, then those after it, around the block
+  int newest_ = 0;
+  bool ghosts_of_memory_ = true;  ///< valid
+  double accuracy_, target_ = 0;
+  long iterations_ = 0;
+};
+
+}  // namespace eulastic
