@@ -1,6 +1,7 @@
 #include "solver/solver.hpp"
 
 #include "field/law.hpp"
+#include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
 #include "physics/momentum.hpp"
@@ -16,9 +17,10 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes) {
+int Solver::work_fields(const Method &method, int dimension, bool open, bool bodies, bool surface_tension,
+                        bool membranes) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
-  const bool formula = method.pressure == PressureKind::acm && !sweeps;
+  const bool formula = method.pressure == PressureKind::acm && !sweeps && !open;
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0);
   int forces = surface_tension ? SurfaceTension::work_fields : 0;
   if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
@@ -51,7 +53,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, false, false, false)));
+  PetscCall(work_->reserve(work_fields(spec, dim, grid.any_open(), false, false, false)));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -61,6 +63,7 @@ PetscErrorCode Solver::prepare() {
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
+  if (volume_crosses(spec_.sides)) PetscCall(make_solenoidal());
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const int dim = grid_->dimension();
@@ -77,7 +80,8 @@ PetscErrorCode Solver::prepare() {
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
   PetscCall(
-      work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr, membranes_ != nullptr)));
+      work_->reserve(work_fields(spec_, grid_->dimension(), grid_->any_open(), true, surface_tension_ != nullptr,
+                                 membranes_ != nullptr)));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
@@ -138,6 +142,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
+  for (const double speed : inflow_speed(spec_.sides)) scale = std::max(scale, speed);
   now_.speed_scale = scale;
   now_.crossing_rate = 0;
   for (int d = 0; d < grid_->dimension(); ++d)
@@ -195,6 +200,8 @@ PetscErrorCode Solver::predict(double dt) {
     fluid.viscosity = 0;  // the stress of the varying one is added
   }
   MomentumStep step{now_.time, dt, speed_scale(dt), {}};
+  fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt, fluid.density,
+                                now_.velocity, now_.pressure[0]);
   if (spec_.staggered()) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
@@ -234,7 +241,7 @@ PetscErrorCode Solver::predict(double dt) {
 
 // At rest: what the force makes in a step, and never less than a Courant number of 1e-6.
 double Solver::speed_scale(double dt) const {
-  const Real3 &f = spec_.fluid.body_force.force, &h = grid_->spacing();
+  const Real3 f = driven_fluid().body_force.force, &h = grid_->spacing();
   return std::max({now_.speed_scale, dt * std::hypot(f[0], f[1], f[2]), 1e-6 * std::min(h[0], h[1]) / dt});
 }
 
@@ -250,7 +257,7 @@ PetscErrorCode Solver::project(double dt) {
   FieldBlock &divergence = of_velocity.fields();
   PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence));
   PetscCall(exchange_->update(divergence, 1));
-  fill_wall_ghosts_even(*grid_, at_centre, divergence[0], 1);
+  fill_ghosts_of_increment(*grid_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
