@@ -15,7 +15,7 @@ namespace eulastic {
 
 /// What -boundary_x and -boundary_xmin say.
 enum class BoundaryChoice { periodic, wall, symmetry };
-enum class SideChoice { same, wall, symmetry };
+enum class SideChoice { same, wall, symmetry, inflow, pressure, outflow };
 
 struct BoundaryControl {
   std::array<BoundaryChoice, 3> both{};
@@ -26,11 +26,23 @@ struct BoundaryControl {
     return both[d] != BoundaryChoice::periodic || (side[d][0] != SideChoice::same && side[d][1] != SideChoice::same);
   }
   SideKind kind(int d, int high) const {
-    const bool symmetric =
-        side[d][high] == SideChoice::same ? both[d] == BoundaryChoice::symmetry : side[d][high] == SideChoice::symmetry;
-    return symmetric ? SideKind::symmetry : SideKind::wall;
+    if (side[d][high] == SideChoice::same)
+      return both[d] == BoundaryChoice::symmetry ? SideKind::symmetry : SideKind::wall;
+    return static_cast<SideKind>(static_cast<int>(side[d][high]) - 1);
   }
-  bool is_wall(int d, int high) const { return bounded(d) && kind(d, high) == SideKind::wall; }
+  bool is(SideKind wanted, int d, int high) const { return bounded(d) && kind(d, high) == wanted; }
+  bool is_wall(int d, int high) const { return is(SideKind::wall, d, high); }
+};
+
+/// What is said of one inflow or pressure side. Numbers over time are a number or a file, as given; empty: not given.
+struct OpeningSpec {
+  std::string profile = "uniform";    ///< uniform, developed, or a file
+  std::string velocity, flow_rate;    ///< into the box
+  double frequency = 0, phase = 0;    ///< of these
+  double value = 0;                   ///< the pressure
+  std::string table;                  ///< file of the pressure over time
+
+  bool from_file() const { return profile != "uniform" && profile != "developed"; }
 };
 
 struct TimeControl {
@@ -84,7 +96,8 @@ struct GuardControl {
 struct Config {
   GridSpec grid;
   BoundaryControl boundary;
-  BoxSides sides;  ///< and grid.boundary: after parsing, as `boundary` says
+  std::array<std::array<OpeningSpec, 2>, 3> openings;
+  BoxSides sides;  ///< and grid.boundary: after parsing, as `boundary` and `openings` say
   Fluid fluid;
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none

@@ -1,5 +1,7 @@
 #include "app/guards.hpp"
 
+#include "field/open_sides.hpp"
+
 #include "diagnostics/places.hpp"
 
 #include <algorithm>
@@ -58,7 +60,7 @@ Guards::Guards(const Config &config) : control_(config.guard) {
                      : pressure == PressureKind::ksp ? "lower -pressure_ksp_rtol or -time_step"
                                                      : "lower -time_step";
   for (double f : config.fluid.body_force.force) forced_ = forced_ || f != 0;
-  forced_ = forced_ || wall_speed(config.sides) != 0;
+  forced_ = forced_ || wall_speed(config.sides) != 0 || volume_crosses(config.sides);
   for (const SpeciesSpec &spec : config.species) forced_ = forced_ || spec.motion.moves() || spec.body_force.acts();
 }
 

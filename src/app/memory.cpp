@@ -1,5 +1,6 @@
 #include "app/memory.hpp"
 
+#include "field/open_sides.hpp"
 #include "bodies/expected_colours.hpp"
 #include "io/fail_together.hpp"
 #include "solver/solver.hpp"
@@ -42,8 +43,8 @@ double fields(const Config &config) {
                                      [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
-  double sum =
-      2 * dimension + 1 + Solver::work_fields(method, dimension, !config.species.empty(), tension, membranes, rigid);
+  const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, parts);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {

@@ -1,5 +1,6 @@
 #include "app/option_table.hpp"
 
+#include "app/opening_options.hpp"
 #include "app/option_rows.hpp"
 #include "app/petsc_options.hpp"
 #include "app/species_options.hpp"
@@ -9,7 +10,8 @@
 namespace eulastic {
 namespace {
 
-const Names boundary_names{"periodic", "wall", "symmetry"}, side_names{"same", "wall", "symmetry"};
+const Names boundary_names{"periodic", "wall", "symmetry"};
+const Names side_names{"same", "wall", "symmetry", "inflow", "pressure", "outflow"};
 const Names method_names{"fast", "classic"};
 
 void add_grid(Rows &rows, Config &config) {
@@ -260,6 +262,7 @@ std::vector<Option> option_table(Config &config) {
   Rows rows;
   add_grid(rows, config);
   add_walls(rows, config);
+  add_openings(rows, config);
   add_flow(rows, config);
   add_bodies(rows, config);
   add_method(rows, config);

@@ -5,6 +5,7 @@
 #include "app/option_source.hpp"
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
+#include "app/openings.hpp"
 #include "app/petsc_options.hpp"
 #include "app/unknown_option.hpp"
 #include "app/validate.hpp"
@@ -115,11 +116,10 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
   Reader reader(table);
   for (const Source &source : sources)
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
-  for (int d = 0; d < 3; ++d) {
+  for (int d = 0; d < 3; ++d)
     config->grid.boundary[d] = config->boundary.bounded(d) ? Boundary::wall : Boundary::periodic;
-    for (int high = 0; high < 2; ++high) config->sides[d][high].kind = config->boundary.kind(d, high);
-  }
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
+  if (std::string wrong = resolve_openings(config); !wrong.empty()) return wrong;
   for (const Source &source : sources)
     for (const Entry &entry : source) {
       if (is_pressure_ksp_option(entry.name) && config->method.pressure != PressureKind::ksp)

@@ -1,6 +1,7 @@
 #include "app/scene.hpp"
 
 #include "app/initial_state.hpp"
+#include "app/openings.hpp"
 #include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "bodies/contact.hpp"
@@ -83,7 +84,9 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
 PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
-  PetscCall(solver->create(grid, {config.method, config.fluid, config.sides}));
+  BoxSides sides = config.sides;
+  PetscCall(develop_profiles(config, &sides));
+  PetscCall(solver->create(grid, {config.method, config.fluid, sides}));
   PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   PetscCall(solver->prepare());

@@ -67,7 +67,7 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
   const Layout &own = grid_.layout();
   std::array<std::vector<PlacedBody::Range>, 3> pieces;
   for (int d = 0; d < 3; ++d) {
-    const int first = own.begin[d], last = first + own.cells[d];
+    const int first = own.begin[d], last = first + grid_.faces_end(a, d);
     pieces[d] = d < grid_.dimension() && body.ends(d) ? body.ranges(d, first, last)
                                                       : std::vector<PlacedBody::Range>{{first, last, 0}};
   }
@@ -95,16 +95,15 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
 void RigidBuilder::mark_file(int a, ConstView phi, int index) {
   const View inside = inside_[a][0], level = inside_[a][1];
   const std::ptrdiff_t step = phi.stride(a);
-  for (const Segment &row : grid_.rows()) {
-    const double *q = phi.row(row.j, row.k);
-    double *mark = inside.row(row.j, row.k), *to = level.row(row.j, row.k);
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      const double here = 0.5 - 0.5 * (q[i] + q[i - step]);
-      if (mark[i] != 0) continue;
-      to[i] = here;
-      if (here < 0) mark[i] = 1 + image_of(index, {0, 0, 0});
-    }
-  }
+  for (int k = 0; k < grid_.faces_end(a, 2); ++k)
+    for (int j = 0; j < grid_.faces_end(a, 1); ++j)
+      for (int i = 0; i < grid_.faces_end(a, 0); ++i) {
+        const double *q = phi.row(j, k) + i;
+        const double here = 0.5 - 0.5 * (q[0] + q[-step]);
+        if (inside(i, j, k) != 0) continue;
+        level(i, j, k) = here;
+        if (here < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
+      }
 }
 
 // Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.

@@ -1,34 +1,17 @@
 #include "field/sides.hpp"
 
 #include "base/events.hpp"
+#include "field/open_sides.hpp"
+#include "field/reflection.hpp"
 #include "grid/blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
-namespace {
-
-// The plane 0 of direction d, ghosts of the other directions included.
-struct Plane {
-  Int3 begin{}, end{};
-  Plane(const Layout &layout, int d) {
-    for (int e = 0; e < 3; ++e) {
-      begin[e] = e == d ? 0 : -layout.ghosts[e];
-      end[e] = e == d ? 1 : layout.cells[e] + layout.ghosts[e];
-    }
-  }
-};
-
-// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width, or as far as there is
-// memory behind a neighbour's wall. Runs over all ghosts of the other directions, so that doing the directions in turn
-// fills edges and corners.
-struct Reflection {
-  double sign, twice_wall;
-};
 
 void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width,
-             const OccupiedRows *rows = nullptr) {
+             const OccupiedRows *rows) {
   const std::ptrdiff_t s = q.stride(d);
   const Layout &own = grid.layout();
   const int last = (high ? grid.cells()[d] - 1 : 0) - own.begin[d];  // before the wall
@@ -40,6 +23,11 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
   const std::ptrdiff_t mirror = staggered ? 0 : -step;                          // mirror image of that point
   const int from = plane.begin[0], to = plane.end[0], first = staggered ? 1 : 0;
   const auto reflect_row = [=](double *row) {
+    if (rule.about_face) {
+      for (int m = first; m < first + width; ++m)
+        for (int i = from; i < to; ++i) row[i + m * step] = 2 * row[i] - row[i - m * step];
+      return;
+    }
     for (int m = first; m < first + width; ++m)
       for (int i = from; i < to; ++i) row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
   };
@@ -59,6 +47,8 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
   });
 }
 
+namespace {
+
 // The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests
 // is left alone (FieldBlock::at_rest).
 void clear_face(const Grid &grid, View q, int d, bool high) {
@@ -77,7 +67,8 @@ void clear_face(const Grid &grid, View q, int d, bool high) {
 }  // namespace
 
 void close_wall_faces(const Grid &grid, View q, int d) {
-  for (const bool high : {false, true}) clear_face(grid, q, d, high);
+  for (const bool high : {false, true})
+    if (!grid.is_open(d, high)) clear_face(grid, q, d, high);
 }
 
 Real3 WallMotion::at(double time) const {
@@ -109,15 +100,20 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = grid.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
-    if (grid.is_wall(c)) close_wall_faces(grid, velocity[c], c);
+    if (grid.is_wall(c)) {
+      close_wall_faces(grid, velocity[c], c);
+      set_inflow_faces(grid, sides, time, velocity[c], c);
+    }
     for (int e = 0; e < dimension; ++e) {
       const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
       for (const bool high : {false, true}) {
         if (!(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
         const Side &side = sides[d][high];
         Reflection rule{-1, 0};
-        if (c != d && side.kind == SideKind::symmetry)
+        if (is_open(side.kind) || (c != d && side.kind == SideKind::symmetry))
           rule.sign = 1;
+        else if (c == d && side.kind == SideKind::inflow)
+          rule.about_face = true;
         else if (c != d)
           rule.twice_wall = 2 * side.motion.at(time)[c];
         reflect(grid, velocity[c], d, high, c == d, rule, width);

@@ -1,13 +1,18 @@
-// What happens at the faces of the box, and the ghosts behind them. No volume crosses a side of either kind.
+// What happens at the faces of the box, and the ghosts behind them.
 //
-// Pressure, solid fraction and everything centred reflect evenly. Normal velocity is 0 on a side and reflects oddly.
+// Solid fraction and everything centred reflect evenly. Normal velocity is 0 on a wall or a plane of symmetry and reflects
+// oddly; it is given on an inflow side and reflects oddly about that; on open sides (pressure and outflow) it is an
+// unknown, and all of the velocity reflects evenly. The pressure is open_sides.hpp's there.
 // Wall: the tangential velocity reflects oddly about the wall's; tensor components that live on the wall itself (edges)
 // are evolved there and reflect evenly about it. Symmetry: what is behind is the mirror image, so the tangential
 // velocity reflects evenly, and tensor components on the plane are 0 and reflect oddly.
 #pragma once
 
 #include "field/field_block.hpp"
+#include "field/time_course.hpp"
 #include "grid/occupied_rows.hpp"
+
+#include <memory>
 
 namespace eulastic {
 
@@ -20,11 +25,18 @@ struct WallMotion {
   double speed() const;  ///< largest |U|
 };
 
-enum class SideKind : unsigned char { wall, symmetry };
+enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
+/// Whether the pressure is given there, so that volume may cross it either way.
+constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
+
+/// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
+using SideProfile = std::vector<double>;
 
 struct Side {
   SideKind kind = SideKind::wall;
   WallMotion motion;  ///< of a wall
+  TimeCourse given;   ///< inflow: what the profile is multiplied by; pressure: the pressure
+  std::shared_ptr<const SideProfile> profile;  ///< of an inflow side
 };
 
 /// [direction][low, high]; without meaning in periodic directions.

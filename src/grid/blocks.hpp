@@ -52,6 +52,7 @@ struct Sides {
   int cells_x;
   bool wall[3][2];
   bool alone[3];
+  int beyond[3] = {};  ///< 1: stages come to the faces of an open high side too, those of the component normal to it
 
   explicit Sides(const Grid &grid);
   /// Wraps a row around by one point, where x does: for stages of the same pass that read it.
@@ -61,7 +62,7 @@ struct Sides {
     row[cells_x] = row[0];
   }
   int low(int d, int layers) const { return alone[d] || wall[d][0] ? 0 : layers; }
-  int high(int d, int layers) const { return alone[d] || wall[d][1] ? 0 : layers; }
+  int high(int d, int layers) const { return alone[d] || wall[d][1] ? beyond[d] : layers; }
 };
 
 /// Stages of a stencil that reaches to the next point, each of which reads what the one before it has written: a slice
@@ -117,9 +118,9 @@ public:
         rows(task.stage, row(task.stage, Dim == 3 ? task.j_begin : slice, slice), Dim == 3 ? task.j_end : slice + 1);
       return;
     }
-    const int first_row = Dim == 3 ? -sides_.low(1, most_) : 0, end_row = Dim == 3 ? n[1] + depth_ - 1 : 1;
+    const int first_row = Dim == 3 ? -sides_.low(1, most_) : 0, end_row = Dim == 3 ? n[1] + sides_.beyond[1] + depth_ - 1 : 1;
     const int first_slice = task.begin - (task.low ? sides_.low(last, most_) : 0);
-    const int end_slice = task.end + (task.high ? depth_ - 1 : 0);
+    const int end_slice = task.end + (task.high ? sides_.beyond[last] + depth_ - 1 : 0);
     for (int block = first_row; block < end_row; block += block_rows)
       for (int first = first_slice; first < end_slice; ++first)
         for (int s = 0; s < depth_; ++s) {

@@ -144,6 +144,22 @@ InverseSquares Grid::inverse_squares() const {
 
 double Grid::cell_volume() const { return spacing_[0] * spacing_[1] * (dimension() == 3 ? spacing_[2] : 1.0); }
 
+bool Grid::any_open() const {
+  bool any = false;
+  for (int d = 0; d < dimension(); ++d) any = any || is_open(d, false) || is_open(d, true);
+  return any;
+}
+
+std::vector<Segment> Grid::high_faces(int d) const {
+  std::vector<Segment> faces;
+  if (!touches_high(d)) return faces;
+  const Int3 &n = layout_.cells;
+  const int k0 = d == 2 ? n[2] : 0, k1 = d == 2 ? n[2] + 1 : n[2], j0 = d == 1 ? n[1] : 0, j1 = d == 1 ? n[1] + 1 : n[1];
+  for (int k = k0; k < k1; ++k)
+    for (int j = j0; j < j1; ++j) faces.push_back({d == 0 ? n[0] : 0, d == 0 ? n[0] + 1 : n[0], j, k});
+  return faces;
+}
+
 std::vector<Segment> Grid::rows() const {
   std::vector<Segment> rows;
   rows.reserve(static_cast<std::size_t>(layout_.cells[1]) * layout_.cells[2]);
@@ -157,6 +173,8 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
   comm_ = comm;
   spec_ = spec;
   if (spec_.cells[2] == 1) spec_.boundary[2] = Boundary::periodic;
+  for (int d = 0; d < 3; ++d)
+    if (spec_.boundary[d] != Boundary::wall) spec_.open[d] = {};
   PetscCallMPI(MPI_Comm_rank(comm, &rank_));
   PetscCallMPI(MPI_Comm_size(comm, &ranks_));
   const std::string reason = why_not(spec, ranks_);

@@ -22,6 +22,8 @@ struct GridSpec {
   Int3 cells{64, 64, 64};              ///< N_x, N_y, N_z; N_z = 1 is 2-D
   Real3 length{1, 1, 1};               ///< box, any length unit
   std::array<Boundary, 3> boundary{};  ///< both sides of a direction alike; ignored in z when 2-D
+  /// [direction][low, high]: volume crosses a side on which the pressure is given, and the faces on it move
+  std::array<std::array<bool, 2>, 3> open{};
   Int3 processors{0, 0, 0};            ///< ranks per direction, 0 = chosen here
   int ghosts = 5;                      ///< layers in memory: WENO5 reads three, B outside bodies takes five
 };
@@ -69,7 +71,8 @@ public:
   const GridSpec &spec() const { return spec_; }
   int rank() const { return rank_; }
   int ranks() const { return ranks_; }
-  int dimension() const { return spec_.cells[2] == 1 ? 2 : 3; }
+  /// A coarse() grid with one cell between open sides in z is still of three.
+  int dimension() const { return spec_.cells[2] == 1 && !spec_.open[2][0] && !spec_.open[2][1] ? 2 : 3; }
   const Int3 &cells() const { return spec_.cells; }
   double cell_count() const { return double(spec_.cells[0]) * spec_.cells[1] * spec_.cells[2]; }
   double owned_count() const { return double(layout_.cells[0]) * layout_.cells[1] * layout_.cells[2]; }
@@ -78,6 +81,9 @@ public:
   double cell_volume() const;  ///< area in 2-D
   Boundary boundary(int d) const { return spec_.boundary[d]; }
   bool is_wall(int d) const { return d < dimension() && spec_.boundary[d] == Boundary::wall; }
+  bool is_open(int d, bool high) const { return is_wall(d) && spec_.open[d][high]; }
+  /// Whether the pressure is given anywhere; elsewhere its mean is free.
+  bool any_open() const;
   bool touches_low(int d) const { return is_wall(d) && layout_.begin[d] == 0; }
   bool touches_high(int d) const { return is_wall(d) && layout_.begin[d] + layout_.cells[d] == spec_.cells[d]; }
   /// Ranks along direction d.
@@ -110,8 +116,15 @@ public:
   /// Local indices along d of the points a field really has here, with `layers` of ghosts, or as many as there are:
   /// none behind walls, those of a neighbour too.
   Range points_near(int d, bool staggered, int layers) const;
+  /// The faces on the high side of direction d, index N, if this rank touches it: no verb that goes through owned rows
+  /// comes there.
+  std::vector<Segment> high_faces(int d) const;
+  /// The same of an open side, else none.
+  std::vector<Segment> open_high_faces(int d) const { return is_open(d, true) ? high_faces(d) : std::vector<Segment>(); }
   /// All owned rows, whole.
   std::vector<Segment> rows() const;
+  /// One past the last owned face of component a along d: on an open high side the face on it as well.
+  int faces_end(int a, int d) const { return layout_.cells[d] + (a == d && touches_high(d) && is_open(d, true)); }
 
 private:
   PetscErrorCode ask_dm(Int3 *place);

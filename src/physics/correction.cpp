@@ -98,6 +98,13 @@ PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, dou
   in_row_parts(grid, [&](const RowPart &part) {
     correct_rows(grid, part.with_ghosts(grid), dt / density, rotation, increment, divergence, velocity, pressure);
   });
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (const Segment &row : grid.open_high_faces(a)) {
+      const ConstView q = increment[0];
+      const double *here = q.row(row.j, row.k) + row.i_begin;
+      correct_row(row.size(), dt / density / grid.spacing()[a], here, here - q.stride(a),
+                  velocity[a].row(row.j, row.k) + row.i_begin);
+    }
   scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
   PetscFunctionReturn(0);
 }

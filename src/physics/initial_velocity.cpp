@@ -129,15 +129,18 @@ void set_initial_velocity(const Grid &grid, const BoxSides &sides, const Initial
   const Pointwise value{box, flow, sides[1][0].motion.at(0), sides[1][1].motion.at(0),
                         flow.kind == InitialVelocity::random ? random_modes(box, flow.amplitude) : Modes{}};
   const Layout &layout = grid.layout();
-  for (int c = 0; c < velocity.count(); ++c)
-    for (int k = 0; k < layout.cells[2]; ++k)
-      for (int j = 0; j < layout.cells[1]; ++j)
-        for (int i = 0; i < layout.cells[0]; ++i) {
+  for (int c = 0; c < velocity.count(); ++c) {
+    Int3 end = layout.cells;
+    if (grid.is_open(c, true)) end[c] = grid.points_end(c, true);
+    for (int k = 0; k < end[2]; ++k)
+      for (int j = 0; j < end[1]; ++j)
+        for (int i = 0; i < end[0]; ++i) {
           const Int3 cell{layout.begin[0] + i, layout.begin[1] + j, layout.begin[2] + k};
           Real3 x{};  // z = 0 in 2-D
           for (int d = 0; d < grid.dimension(); ++d) x[d] = (cell[d] + (d == c ? 0.0 : 0.5)) * grid.spacing()[d];
           velocity[c](i, j, k) = value(c, x) + flow.mean[c];
         }
+  }
 }
 
 }  // namespace eulastic

@@ -2,6 +2,7 @@
 
 #include "field/exact_sum.hpp"
 #include "field/law.hpp"
+#include "field/open_sides.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
@@ -83,6 +84,9 @@ std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, cons
         largest[d] = std::max(largest[d], r.largest);
         if (r.bad) mark(row, 0, n[0], j, k);
       }
+  for (int d = 0; d < velocity.count() && part == 0; ++d)
+    for (const Segment &row : grid.high_faces(d))
+      largest[d] = std::max(largest[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const Phase &phase = phases[p];
     const std::vector<Segment> &solid = phase.solid.all();
@@ -164,8 +168,9 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
     for (const auto &pair : sides)
       for (const Side &side : pair) {
         speed = std::max(speed, std::fabs(side.motion.velocity[d]));
-        frequency = std::max(frequency, std::fabs(side.motion.frequency));
+        frequency = std::max({frequency, std::fabs(side.motion.frequency), std::fabs(side.given.frequency)});
       }
+    speed = std::max(speed, inflow_speed(sides)[d]);
     S += 1 / (spacing[d] * spacing[d]);
     crossing += speed / spacing[d];
     gain += std::fabs(fluid.body_force.force[d]) / spacing[d];

@@ -68,34 +68,40 @@ RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, c
 }
 
 // rate holds -v.grad v of now and `kept` that of the last step; they trade places, weighted.
-EULASTIC_INLINE void combine_advection(int n, AdvectionWeights weights, double *kept, double *rate) {
+EULASTIC_INLINE void combine_advection(const Segment &row, AdvectionWeights weights, double *kept, double *rate) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
+  for (int i = row.i_begin; i < row.i_end; ++i) {
     const double now = rate[i], before = kept[i];
     rate[i] = kernels::fma(weights.now, now, weights.before * before);
     kept[i] = now;
   }
 }
 
-// All terms but the elastic force. `advection`: a row of scratch.
+// All terms but the elastic force, of component a on a row. `advection`: a row of scratch.
 template <int Dim>
-EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+EULASTIC_INLINE void rate_of_row(const RateTerms &t, const Segment &row, int a, const RowsAhead &ahead,
+                                 double *advection, FieldBlock &out) {
   const FieldBlock &v = t.velocity;
   const ConstView p = t.pressure[0];
+  if (t.inertia) {
+    face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, advection);
+    if (t.advection) combine_advection(row, t.weights, (*t.advection)[a].row(row.j, row.k), advection);
+  } else {
+    for (int d = 0; d < Dim; ++d) ahead.prefetch_rows(d, 0, ahead.length);
+    std::fill(advection + row.i_begin, advection + row.i_end, 0.0);
+  }
+  kernels::fluid_rate<Dim>(row, advection, v[a], t.viscosity, p, p.stride(a), t.inverse[a] / t.density, t.body_force[a],
+                           out[a].row(row.j, row.k));
+}
+
+template <int Dim>
+EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
   const int n = t.grid.owned()[0];
   for (int j = block.begin; j < block.end; ++j) {
     const Segment row{0, n, j, block.k};
     for (int a = 0; a < Dim; ++a) {
       const RowsAhead ahead = Dim == 3 ? rows_ahead(t, block, a, j, out) : RowsAhead{};
-      if (t.inertia) {
-        face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, advection);
-        if (t.advection) combine_advection(n, t.weights, (*t.advection)[a].row(j, block.k), advection);
-      } else {
-        for (int d = 0; d < Dim; ++d) ahead.prefetch_rows(d, 0, ahead.length);
-        std::fill_n(advection, n, 0.0);
-      }
-      kernels::fluid_rate<Dim>(row, advection, v[a], t.viscosity, p, p.stride(a), t.inverse[a] / t.density,
-                               t.body_force[a], out[a].row(j, block.k));
+      rate_of_row<Dim>(t, row, a, ahead, advection, out);
     }
   }
 }
@@ -105,6 +111,16 @@ EULASTIC_CLONES void fluid_rate_2d(const RateTerms &t, const BlockRows &block, d
 }
 EULASTIC_CLONES void fluid_rate_3d(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
   fluid_rate<3>(t, block, advection, out);
+}
+
+// On the high faces of open sides, which are no row's.
+EULASTIC_CLONES void open_face_rate_2d(const RateTerms &t, const Segment &row, int a, double *advection,
+                                       FieldBlock &out) {
+  rate_of_row<2>(t, row, a, {}, advection, out);
+}
+EULASTIC_CLONES void open_face_rate_3d(const RateTerms &t, const Segment &row, int a, double *advection,
+                                       FieldBlock &out) {
+  rate_of_row<3>(t, row, a, {}, advection, out);
 }
 
 // Fewer rows than for other verbs, as nine fields share the cache.
@@ -125,6 +141,11 @@ void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
         after(block);
       }
   });
+  for (int a = 0; a < dim; ++a)
+    for (const Segment &row : t.grid.open_high_faces(a)) {
+      const RowScratch scratch(t.grid, 1);
+      (dim == 2 ? open_face_rate_2d : open_face_rate_3d)(t, row, a, scratch.row(0), out);
+    }
   const double per_face = (t.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * t.grid.owned_count() * per_face + elastic_flops(dim, t.phases));
@@ -133,15 +154,17 @@ void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
 }
 
 // v + dt rate, in place of the rate.
-EULASTIC_CLONES void advance_by_rate(const Grid &grid, const BlockRows &block, double dt, const FieldBlock &velocity,
-                                     FieldBlock &rate) {
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (int j = block.begin; j < block.end; ++j) {
-      const double *v = velocity[a].row(j, block.k);
-      double *out = rate[a].row(j, block.k);
+EULASTIC_CLONES void advance_row(const Segment &row, double dt, ConstView velocity, View rate) {
+  const double *v = velocity.row(row.j, row.k);
+  double *out = rate.row(row.j, row.k);
 #pragma omp simd
-      for (int i = 0; i < grid.owned()[0]; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
-    }
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
+}
+void advance_by_rate(const Grid &grid, const BlockRows &block, double dt, const FieldBlock &velocity,
+                     FieldBlock &rate) {
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (int j = block.begin; j < block.end; ++j)
+      advance_row({0, grid.owned()[0], j, block.k}, dt, velocity[a], rate[a]);
 }
 
 }  // namespace
@@ -163,6 +186,8 @@ PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const Mome
   PetscFunctionBeginUser;
   compute_rate(rate_terms(grid, fluid, step, velocity, pressure, phases), velocity_star,
                [&](const BlockRows &block) { advance_by_rate(grid, block, step.dt, velocity, velocity_star); });
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (const Segment &row : grid.open_high_faces(a)) advance_row(row, step.dt, velocity[a], velocity_star[a]);
   PetscFunctionReturn(0);
 }
 

@@ -25,7 +25,7 @@ struct MomentumStep {
 
 /// dv/dt = -v.grad v + nu lap v - grad p/rho + div(sigma)/rho + f at all owned faces. Needs three ghosts of v, one of
 /// p, phi and B. `advection` holds -v.grad v of the last step (read when its weight is not 0) and gets that of this
-/// one; it may be empty when the weight is 0.
+/// one; it may be empty when the weight is 0. Faces of open sides are owned ones.
 PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
                              FieldBlock &rate, const ForceSlope &slope = {});

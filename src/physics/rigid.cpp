@@ -29,11 +29,12 @@ double regular_laplacian(const Grid &grid, const double *u, const Strides &s) {
 template <class Visit>
 void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
   for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &s : grid.rows())
-      if (const RigidFaces::Row row = faces.row(a, s.j, s.k); !row.empty()) visit(a, row, s.j, s.k);
+    for (int k = 0; k < grid.faces_end(a, 2); ++k)
+      for (int j = 0; j < grid.faces_end(a, 1); ++j)
+        if (const RigidFaces::Row row = faces.row(a, j, k); !row.empty()) visit(a, row, j, k);
 }
 
-bool owned(const Grid &grid, int i) { return i >= 0 && i < grid.owned()[0]; }
+bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
 // The viscous rate at a cut face, and how much of it a regular face has.
 struct Viscous {
@@ -56,13 +57,13 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
     const double *u = velocity[a].row(j, k);
     double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, cut->i)) continue;
+      if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i) {
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) {
         out[i] = 0;
         if (m) m[i] = 0;
       }
@@ -76,7 +77,7 @@ void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, doubl
     const double *u = velocity[a].row(j, k);
     double *out = velocity_star[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, cut->i)) continue;
+      if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
       out[cut->i] = u[cut->i] + cut->share * change;
@@ -88,7 +89,7 @@ std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, c
   std::vector<double> values;
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
+      if (owned(grid, a, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
   });
   return values;
 }
@@ -98,7 +99,7 @@ void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::v
   std::size_t at = 0;
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
+      if (owned(grid, a, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
   });
 }
 
@@ -110,7 +111,7 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
       const RigidBody &body = faces.bodies[run->body];
       const RigidMotion &motion = faces.motions[body.motion];
       const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
         out[i] = motion.moves() ? faces.velocity(a, body, place_of_face(grid, a, i, j, k), grid.spacing(), of_velocity,
                                                  of_rotation)
                                 : 0;
@@ -126,7 +127,7 @@ void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over
     double *u = velocity[a].row(j, k);
     const std::ptrdiff_t step = increment[0].stride(a);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (const int i = cut->i; owned(grid, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
+      if (const int i = cut->i; owned(grid, a, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
   });
 }
 
@@ -187,13 +188,13 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k), *dv = rate[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, cut->i)) continue;
+      if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
           mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
         add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
   });
   std::vector<double> total(6 * faces.count);

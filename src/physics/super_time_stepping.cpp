@@ -1,7 +1,7 @@
 #include "physics/super_time_stepping.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/open_sides.hpp"
 #include "grid/blocks.hpp"
 #include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
@@ -54,6 +54,7 @@ struct Pass {
   kernels::RklStage stage[deepest];
   double twice_wall[deepest][3][3][2];  // of component a of what the stage reads, at a wall of direction d: 2 U
   double image[3][2];                   // the mirror image's sign behind a side, of tangential components
+  double inflow[deepest][3][2];         // what the stage's input has more of on an inflow side than at the start
 };
 
 // The first stage of component a: M_0 for good, and W_1.
@@ -95,15 +96,59 @@ EULASTIC_INLINE void stage_beside_rigid(const Int3 &n, const kernels::RklStage &
   RigidStage::release(faces, row.i_begin, row.i_end, held, out.row(row.j, row.k));
 }
 
-// Whether a row lies on a low wall that its component is normal to: W is 0 there and stays so.
-EULASTIC_INLINE bool is_on_wall(const Sides &sides, int a, const Segment &row) {
-  return (a == 1 && sides.wall[1][0] && row.j == 0) || (a == 2 && sides.wall[2][0] && row.k == 0);
+// Sides of the box as stages see them.
+struct StageSides : Sides {
+  bool fixed[3][2];   // here, and the normal velocity on it is given
+  bool open[3][2];    // here, and it is an unknown
+  bool any_beside;    // anything but closed sides that stay so: beside_row() has something to do
+  const Grid *grid;
+  const BoxSides *box;
+
+  StageSides(const Grid &g, const BoxSides &b) : Sides(g), any_beside(false), grid(&g), box(&b) {
+    for (int d = 0; d < 3; ++d) {
+      for (const bool high : {false, true}) {
+        open[d][high] = wall[d][high] && g.is_open(d, high);
+        fixed[d][high] = wall[d][high] && !open[d][high];
+        any_beside = any_beside || open[d][high] || (fixed[d][high] && b[d][high].kind == SideKind::inflow);
+      }
+      beyond[d] = open[d][1];
+    }
+  }
+};
+
+// Whether a row lies on a low side that its component is normal to, and where it is given.
+EULASTIC_INLINE bool is_on_wall(const StageSides &sides, int a, const Segment &row) {
+  return (a == 1 && sides.fixed[1][0] && row.j == 0) || (a == 2 && sides.fixed[2][0] && row.k == 0);
+}
+
+// What a stage reads beside its points `at` in the direction that its component is normal to: what is given on an inflow
+// side, the mirror image about an open one.
+[[gnu::noinline]] void beside_row(const StageSides &sides, const double (&inflow)[3][2], int a, View w,
+                                  const Segment &at) {
+  const Int3 &n = sides.grid->owned();
+  double *row = w.row(at.j, at.k);
+  const int place[3] = {0, at.j, at.k};
+  for (const bool high : {false, true}) {
+    const int face = high ? n[a] : 0, inside = high ? n[a] - 1 : 1;
+    const std::ptrdiff_t outward = high ? w.stride(a) : -w.stride(a);
+    if (sides.open[a][high] && a == 0) row[face + outward] = row[inside];
+    if (sides.open[a][high] && a != 0 && place[a] == face)
+      for (int i = at.i_begin; i < at.i_end; ++i) row[i + outward] = row[i - outward];
+    const Side &side = (*sides.box)[a][high];
+    if (!sides.fixed[a][high] || side.kind != SideKind::inflow || inflow[a][high] == 0) continue;
+    if (a == 0) set_inflow_row(*sides.grid, side, a, high, inflow[a][high], at, w);
+    if (a != 0 && place[a] == inside) {
+      Segment face_row = at;
+      (a == 1 ? face_row.j : face_row.k) = face;
+      set_inflow_row(*sides.grid, side, a, high, inflow[a][high], face_row, w);
+    }
+  }
 }
 
 // What a stage reads beside its points `row`, made when it comes to them: across a periodic x and behind sides that its
 // component is tangential to.
 template <int Dim>
-EULASTIC_INLINE void surround_row(const Int3 &n, const Sides &sides, const double (&twice_wall)[3][2],
+EULASTIC_INLINE void surround_row(const Int3 &n, const StageSides &sides, const double (&twice_wall)[3][2],
                                   const double (&image)[3][2], int a, View w, const Segment &at) {
   double *row = w.row(at.j, at.k);
   sides.wrap(row);
@@ -136,11 +181,16 @@ EULASTIC_CLONES void end_row(const StageFields &f, int a, ConstView w, const Seg
 // Stages alternate: the first of a pass reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other
 // way. Rows ahead are asked for with the first.
 template <int Dim>
-EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
-                                    const StageFields &f, const StagePass &order, const StagePass::Task &task) {
+EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h,
+                                    const StageSides &sides, const StageFields &f, const StagePass &order,
+                                    const StagePass::Task &task) {
   const Int3 n = grid.owned();
   const int a = task.field;
   order.go<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
+    // Faces beyond the last cells are those of the component normal to them.
+    if (a != 0) row.i_end -= sides.beyond[0];
+    if (a != 1 && sides.beyond[1]) j_end = std::min(j_end, n[1]);
+    if (Dim == 3 && a != 2 && sides.beyond[2] && row.k == n[2]) return;
     const int s = stage - pass.starts;  // -1: W_1
     const View w = (*(s % 2 ? f.before : f.now))[a], out = (*(s % 2 ? f.now : f.before))[a];
     const int first = row.j;
@@ -163,28 +213,29 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
         } else {
           if (pass.starts && s == 0) std::fill(values + row.i_begin, values + row.i_end, 0.0);  // W_0
           surround_row<Dim>(n, sides, pass.twice_wall[s][a], pass.image, a, w, row);
+          if (sides.any_beside) beside_row(sides, pass.inflow[s], a, w, row);
           if (f.rigid)
             stage_beside_rigid<Dim>(n, pass.stage[s], h, f, (*f.rigid_stages)[s], a, w, out, row);
           else
             stage_row<Dim>(n, pass.stage[s], h, f, a, w, out, row);
         }
-        if (a == 0 && sides.wall[0][0]) values[0] = 0;
+        if (a == 0 && sides.fixed[0][0]) values[0] = 0;
       }
       if (pass.ends && s == pass.depth - 1) end_row(f, a, out, row);
     }
   });
 }
 
-EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
+EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const StageSides &sides,
                                const StageFields &f, const StagePass &order, const StagePass::Task &task) {
   stages_of_task<2>(grid, pass, h, sides, f, order, task);
 }
-EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const Sides &sides,
+EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const StageSides &sides,
                                const StageFields &f, const StagePass &order, const StagePass::Task &task) {
   stages_of_task<3>(grid, pass, h, sides, f, order, task);
 }
 
-// No flow through walls.
+// No flow through sides, but what stages find on open ones.
 void close_walls(const Grid &grid, FieldBlock &velocity) {
   for (int d = 0; d < grid.dimension(); ++d)
     if (grid.is_wall(d)) close_wall_faces(grid, velocity[d], d);
@@ -206,11 +257,16 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = grid.inverse_squares();
-  const Sides sides(grid);
+  const StageSides sides(grid, box);
   const int depth = StagePass::depth(grid, sides, 2, deepest);
   std::vector<char> stressed;
   for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(grid, *field);
+  for (int d = 0; work.slope && d < grid.dimension(); ++d)  // bodies do not come to open sides
+    for (const Segment &face : grid.open_high_faces(d)) {
+      double *row = work.slope[d].row(face.j, face.k);
+      std::fill(row + face.i_begin, row + face.i_end, 0.0);
+    }
   if (work.slope) {
     PetscCall(exchange.update({{&work.rate, depth, nullptr, false}, {&work.slope, depth, nullptr, false}}));
     stressed = stressed_rows(grid, phases);
@@ -220,7 +276,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
   for (int d = 0; d < 3; ++d)
-    for (int side = 0; side < 2; ++side) pass.image[d][side] = box[d][side].kind == SideKind::wall ? -1 : 1;
+    for (int side = 0; side < 2; ++side) {
+      const SideKind kind = box[d][side].kind;
+      pass.image[d][side] = kind == SideKind::wall || kind == SideKind::inflow ? -1 : 1;
+    }
   pass.first = rkl_first_step(stages, dt);
   pass.half = -0.5 * dt;  // the force at the start
   int j = 2;
@@ -238,6 +297,9 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
           const WallMotion &wall = box[d][side].motion;
           const Real3 u = wall.at(time), v = wall.at(time_of(j + s - 1));
           for (int a = 0; a < 3; ++a) pass.twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
+          pass.inflow[s][d][side] = 0;
+          if (const Side &way_in = box[d][side]; way_in.kind == SideKind::inflow)
+            pass.inflow[s][d][side] = way_in.given.at(time_of(j + s - 1)) - way_in.given.at(time);
         }
     }
     if (!pass.starts && pass.depth > 2)

@@ -1,6 +1,7 @@
 #include "pressure/acm.hpp"
 
 #include "base/events.hpp"
+#include "field/open_sides.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
@@ -44,6 +45,21 @@ EULASTIC_CLONES void add_sums_3d(const Grid &grid, const RowPart &part, ConstVie
   add_sums<3>(grid, part, D, p, s);
 }
 
+// What the formula says, ghosts included.
+void increment_everywhere(const Grid &grid, const kernels::AcmIncrement &formula, const FieldBlock &divergence,
+                          const FieldBlock &pressure, FieldBlock &increment) {
+  in_row_parts(grid, [&](const RowPart &owned) {
+    const RowPart part = owned.with_ghosts(grid);
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j) {
+        const double *D = divergence[0].row(j, k), *p = pressure[0].row(j, k);
+        double *out = increment[0].row(j, k);
+        for (int i = -1; i < grid.owned()[0] + 1; ++i) out[i] = formula(D[i], p[i]);
+      }
+  });
+  fill_ghosts_of_increment(grid, increment[0], 1);
+}
+
 }  // namespace
 
 double AcmCoefficients::sound_speed(double dt) const { return std::sqrt(kappa) / dt; }
@@ -58,10 +74,12 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
   return {s.A1 / s.A2, 0};
 }
 
-PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &) {
+PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   const int dim = grid_->dimension();
+  const bool open = grid_->any_open();
+  if (open) fill_ghosts_of_increment(*grid_, pressure[0], 1);
   double total[sum_count];
   PetscCall(sum_row_parts(
       *grid_, sum_count,
@@ -71,7 +89,8 @@ PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBl
       total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
   sound_speed_ = last_.sound_speed(dt);
-  formula_ = {last_.kappa, last_.g, 1 / dt, total[5] / grid_->cell_count()};
+  formula_ = {last_.kappa, last_.g, 1 / dt, open ? 0 : total[5] / grid_->cell_count()};
+  if (open) increment_everywhere(*grid_, formula_, divergence, pressure, increment);
   scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12));
   PetscFunctionReturn(0);
 }

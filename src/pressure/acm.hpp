@@ -27,10 +27,11 @@ AcmCoefficients acm_coefficients(const AcmSums &sums);
 class AcmSolver : public PressureSolver {
 public:
   explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
-  /// Finds formula(); fills no field.
+  /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and ghosts of
+  /// the pressure behind sides are lost.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
-  const kernels::AcmIncrement *formula() const override { return &formula_; }
+  const kernels::AcmIncrement *formula() const override { return grid_->any_open() ? nullptr : &formula_; }
   double sound_speed() const override { return sound_speed_; }
 
 private:

@@ -1,7 +1,7 @@
 #include "pressure/acm_sweeps.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ std::size_t AcmSweepSolver::bytes() const {
 PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(field, width));
-  for (int f = 0; f < field.count(); ++f) fill_wall_ghosts_even(*grid_, at_centre, field[f], 1);
+  for (int f = 0; f < field.count(); ++f) fill_ghosts_of_increment(*grid_, field[f], 1);
   PetscFunctionReturn(0);
 }
 
@@ -87,13 +87,14 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     if (multigrid_) {
       const SweepTask next{grid_, nullptr, 1, state.recurs, state.residual, state.before};
       sums_.start(*grid_, next.directions());
+      for (FieldBlock *field : {&residual_, &correction, &scratch}) clear_open_ghosts(*grid_, (*field)[0], Multigrid::halo);
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
                                     SweepTask rows = next;
                                     rows.q = &q;
                                     sums_.add_inner(rows, thread, j_begin, j_end, k);
                                   }));
-      fill_wall_ghosts_even(*grid_, at_centre, correction[0], 1);
+      fill_ghosts_of_increment(*grid_, correction[0], 1);
       scope.flops(multigrid_->flops());
     }
     directions_.assign(1, multigrid_ ? correction[0] : residual_[0]);
@@ -148,7 +149,7 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
   state.residual = D;
   state.recurs = true;
   PetscCall(exchange_->update(residual_, Multigrid::halo));
-  fill_wall_ghosts_even(*grid_, at_centre, residual_[0], 1);
+  fill_ghosts_of_increment(*grid_, residual_[0], 1);
   PetscFunctionReturn(0);
 }
 

@@ -24,7 +24,7 @@ public:
   /// Collective; `grid`, `exchange` and `work` must outlive the solver.
   PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
 
-  /// The increment has zero mean. It is NaN where D is not finite anywhere.
+  /// The increment has zero mean where no side is open. It is NaN where D is not finite anywhere.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = rms; }
   long sweeps() const override { return sweeps_; }

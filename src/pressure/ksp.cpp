@@ -2,7 +2,7 @@
 
 #include "field/exact_sum.hpp"
 #include "field/global_vector.hpp"
-#include "field/sides.hpp"
+#include "field/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,10 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
         for (int d = 0; d < grid.dimension(); ++d)
           for (const PetscInt way : {-1, 1}) {
             const PetscInt other = cell[d] + way;
-            if (grid.is_wall(d) && (other < 0 || other >= cells[d])) continue;
+            if (grid.is_wall(d) && (other < 0 || other >= cells[d])) {
+              if (grid.is_open(d, way > 0)) value[0] += 2 * volume * coupling[d];  // 0 half a cell away
+              continue;
+            }
             column[count] = row;
             (d == 0 ? column[count].i : d == 1 ? column[count].j : column[count].k) = other;
             value[count++] = -volume * coupling[d];
@@ -59,6 +62,7 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
       }
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  if (grid.any_open()) PetscFunctionReturn(0);
   PetscCall(MatNullSpaceCreate(grid.comm(), PETSC_TRUE, 0, nullptr, constants.put()));
   PetscCall(MatSetNullSpace(matrix, constants.get()));
   PetscFunctionReturn(0);
@@ -162,7 +166,7 @@ PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBl
   for (const Segment &s : grid_->rows())
     sum.add_row(0, divergence[0].row(s.j, s.k), s.size(), grid_->layout().begin[0]);
   PetscCall(sum.reduce(grid_->comm(), &mean));
-  mean /= grid_->cell_count();
+  mean = grid_->any_open() ? 0 : mean / grid_->cell_count();
   PetscCall(to_global_vector(*grid_, divergence[0], rhs_.get()));
   PetscCall(VecShift(rhs_.get(), -mean));
   PetscCall(VecScale(rhs_.get(), factor));
@@ -176,7 +180,7 @@ PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBl
     PetscCall(iterate());
   PetscCall(from_global_vector(*grid_, solution_.get(), increment[0]));
   PetscCall(exchange_->update(increment, 1));
-  fill_wall_ghosts_even(*grid_, at_centre, increment[0], 1);
+  fill_ghosts_of_increment(*grid_, increment[0], 1);
   PetscFunctionReturn(0);
 }
 

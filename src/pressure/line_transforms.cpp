@@ -11,9 +11,10 @@ namespace eulastic {
 void LineTransform::Destroy::operator()(fftw_plan_s *plan) const noexcept { fftw_destroy_plan(plan); }
 void LineTransform::Free::operator()(double *p) const noexcept { fftw_free(p); }
 
-PetscErrorCode LineTransform::create(Boundary boundary, int cells) {
+PetscErrorCode LineTransform::create(Boundary boundary, int cells, std::array<bool, 2> open) {
   PetscFunctionBeginUser;
   boundary_ = boundary;
+  open_ = open;
   cells_ = cells;
   pitch_ = (cells + 7) / 8 * 8;
   if (pitch_ % 512 == 0) pitch_ += 8;  // eight lines 4 KiB apart would share their cache sets
@@ -26,8 +27,10 @@ PetscErrorCode LineTransform::create(Boundary boundary, int cells) {
     return fftw_plan_many_r2r(1, &cells_, batch, in_.get(), nullptr, 1, pitch_, out_.get(), nullptr, 1, pitch_, &kind,
                               FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
   };
-  forward_.reset(plan(periodic ? FFTW_R2HC : FFTW_REDFT10));
-  backward_.reset(plan(periodic ? FFTW_HC2R : FFTW_REDFT01));
+  const bool low = open[0], high = open[1];
+  const fftw_r2r_kind mixed = low ? FFTW_RODFT11 : FFTW_REDFT11;
+  forward_.reset(plan(periodic ? FFTW_R2HC : low != high ? mixed : low ? FFTW_RODFT10 : FFTW_REDFT10));
+  backward_.reset(plan(periodic ? FFTW_HC2R : low != high ? mixed : low ? FFTW_RODFT01 : FFTW_REDFT01));
   PetscCheck(forward_ && backward_, PETSC_COMM_SELF, PETSC_ERR_LIB, "FFTW has no plan for %d cells", cells);
   double add, multiply, fused;
   fftw_flops(forward_.get(), &add, &multiply, &fused);
@@ -37,7 +40,8 @@ PetscErrorCode LineTransform::create(Boundary boundary, int cells) {
 
 double LineTransform::stiffness(int m) const {
   // Half-complex order keeps cosine m at m and sine m at N - m: the formula gives both the same.
-  const double sine = std::sin(M_PI * m / (boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_));
+  const double waves = open_[0] != open_[1] ? m + 0.5 : open_[0] ? m + 1 : m;
+  const double sine = std::sin(M_PI * waves / (boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_));
   return 4 * sine * sine;
 }
 

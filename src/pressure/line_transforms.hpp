@@ -1,5 +1,6 @@
-// The real transforms that make the second difference along a line diagonal: R2HC (periodic), DCT-II and DCT-III
-// (walls, even reflection about the face), by FFTW (Frigo and Johnson, Proc. IEEE 93, 2005).
+// The real transforms that make the second difference along a line diagonal, by FFTW (Frigo and Johnson, Proc. IEEE 93,
+// 2005): R2HC (periodic); DCT-II and DCT-III between two closed sides (even about the face), DST-II and DST-III between
+// two open ones (odd about it), DCT-IV or DST-IV, which are their own inverses, between one of each.
 #pragma once
 
 #include "grid/grid.hpp"
@@ -16,7 +17,8 @@ class LineTransform {
 public:
   static constexpr int batch = 8;
 
-  PetscErrorCode create(Boundary boundary, int cells);
+  /// `open`: the low and the high side, where there are any.
+  PetscErrorCode create(Boundary boundary, int cells, std::array<bool, 2> open = {});
   /// Value m of a transformed line belongs to the second difference q(i-1) - 2 q(i) + q(i+1) = -stiffness(m) q(i).
   double stiffness(int m) const;
   /// `backward` after `forward` multiplies by this.
@@ -38,6 +40,7 @@ private:
   void apply(const Plan &plan, double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
 
   Boundary boundary_ = Boundary::periodic;
+  std::array<bool, 2> open_{};
   int cells_ = 0;
   int pitch_ = 0;  ///< doubles between two lines in scratch, a multiple of 8
   double flops_ = 0;

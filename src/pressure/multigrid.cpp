@@ -74,6 +74,7 @@ struct Pass {
   ConstView rhs;
   View fields[2];
   int depth;
+  int open_end;  // of x: where the ghosts behind a high open side begin; -1: none
   const Multigrid::RowsDone *rows_done;  // the stage after them
 };
 
@@ -116,6 +117,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
       else
         kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
       pass.sides->wrap(out.row(row.j, row.k));  // long before it is read
+      if (s == 0 && pass.open_end >= 0) out.row(row.j, row.k)[pass.open_end] = 0;  // pairs may reach beyond the side
     }
   });
 }
@@ -192,7 +194,10 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
                                 const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
-  if (level.single_cell()) PetscFunctionReturn(0);  // defined up to a constant: 0, for ever
+  if (level.single_cell()) {  // without an open side defined up to a constant: 0
+    if (level.has_cells() && level.grid().any_open()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
+    PetscFunctionReturn(0);
+  }
   MultigridLevel &next = *levels_[l + 1];
   const bool gathers = next.grid().ranks() < level.grid().ranks();
   if (gathers)
@@ -227,7 +232,7 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     const bool reports = rows_done && done + depth == stages;
     const Pass pass{
         &sides, &fine,     done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]},
-        depth,  &rows_done};
+        depth,  fine.grid().is_open(0, true) && fine.grid().touches_high(0) ? fine.grid().owned()[0] : -1, &rows_done};
     const StagePass order(fine.grid(), sides, depth + reports, 1, reports ? -1 : 0);
     order.for_tasks([&](const StagePass::Task &task) {
       (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);

@@ -1,5 +1,5 @@
-// A multigrid V-cycle for the Poisson equation with zero normal derivative on walls: a fixed linear operator, without
-// global sums, the same bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
+// A multigrid V-cycle for the Poisson equation with zero normal derivative on closed sides and 0 on open ones, where the
+// ghosts of all fields are 0, the value on the side itself: a fixed linear operator, without global sums, the same bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
 //
 // One relaxation before the coarse grid (never stored: it is folded into the restriction), a few after it with the
 // steps of a Chebyshev polynomial; restriction by volume, linear interpolation; directions of unequal spacing are
@@ -21,8 +21,8 @@ public:
   /// Builds all levels, collectively; keeps no reference to `grid`.
   PetscErrorCode create(const Grid &grid);
   /// solution = V rhs, about the q with lap q = rhs. `rhs`: `halo` ghost layers valid. `solution`: one ghost layer
-  /// valid on return; `scratch` is lost. All on the grid. Ghosts behind walls are neither used (but must be finite)
-  /// nor set.
+  /// valid on return; `scratch` is lost. All on the grid. Ghosts behind closed sides are neither used (but must be
+  /// finite) nor set; behind open sides they must be 0, of all three, as many as are exchanged, and stay so.
   /// In 3-D, where x wraps around, rows_done(solution, thread, j_begin, j_end, k), if given, is called for rows as soon
   /// as all owned ones around them have their last values, but for those at the ends of y and z.
   PetscErrorCode apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,

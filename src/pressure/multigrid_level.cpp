@@ -7,10 +7,11 @@ namespace eulastic {
 namespace {
 
 // A last cell stays between half and twice as wide as the others, and the next number of cells is even if it can be.
-int halved(int cells, bool last_is_narrow) {
+// Beside an open side it is never narrow: its coupling to the side would be too stiff for the steps of relaxation.
+int halved(int cells, bool last_is_narrow, bool open_high) {
   const int more = (cells + 1) / 2;
   if (cells % 2 == 0 || cells == 1) return more;
-  return more % 2 == 0 && !last_is_narrow ? more : cells / 2;
+  return more % 2 == 0 && !last_is_narrow && !open_high ? more : cells / 2;
 }
 
 int parent_of(int cell, int stride, int coarse_cells) { return std::min(cell / stride, coarse_cells - 1); }
@@ -43,10 +44,17 @@ MultigridLevel::MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &f
       const int g = image(begin + local, cells), below = image(g - 1, cells), above = image(g + 1, cells);
       const bool low_wall = grid_.boundary(d) == Boundary::wall && g == 0;
       const bool high_wall = grid_.boundary(d) == Boundary::wall && g == cells - 1;
-      low_[d].push_back(cells == 1 || low_wall ? 0 : 2 / (h * h * w[g] * (w[g] + w[below])));
-      high_[d].push_back(cells == 1 || high_wall ? 0 : 2 / (h * h * w[g] * (w[g] + w[above])));
+      const auto coupling = [&](bool side, bool open, int other) {
+        if (side && open) return 2 / (h * h * w[g] * w[g]);  // to the 0 on it
+        return cells == 1 || side ? 0 : 2 / (h * h * w[g] * (w[g] + w[other]));
+      };
+      low_[d].push_back(coupling(low_wall, grid_.is_open(d, false), below));
+      high_[d].push_back(coupling(high_wall, grid_.is_open(d, true), above));
     }
-    if (cells > 1) diagonal += 2 / (h * h * w[0] * w[0]);
+    if (cells > 1)
+      diagonal += 2 / (h * h * w[0] * w[0]);
+    else
+      diagonal += low_[d][0] + high_[d][0];
   }
   step_ = diagonal > 0 ? -1 / diagonal : 0;
 }
@@ -61,7 +69,7 @@ std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
     if (cells[d] > 1) smallest = std::min(smallest, widths_[d][0] * finest_spacing_[d]);
   for (int d = 0; d < 3; ++d) {
     const bool halve = cells[d] > 1 && widths_[d][0] * finest_spacing_[d] <= about_equal * smallest;
-    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0]);
+    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0], grid_.is_open(d, true));
     widths[d].assign(cells[d], 0.0);
     for (int i = 0; i < grid_.cells()[d]; ++i) widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
   }
@@ -103,7 +111,12 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     const double distance = fine_centre[g] - coarse_centre[parent];
     const int way = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + way;
     *share = 0;
-    if (way == 0 || coarse_cells == 1 || (wall && (other < 0 || other >= coarse_cells))) return 0;
+    if (way != 0 && wall && (other < 0 || other >= coarse_cells)) {
+      if (!grid_.is_open(d, other >= coarse_cells)) return 0;
+      *share = 2 * std::abs(distance) / coarse_width[parent];
+      return way;
+    }
+    if (way == 0 || coarse_cells == 1) return 0;
     *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
     return way;
   };

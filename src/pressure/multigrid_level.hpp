@@ -46,6 +46,8 @@ public:
   const Grid &grid() const { return grid_; }
   GhostExchange &exchange() { return exchange_; }
   bool single_cell() const { return grid_.cell_count() == 1; }
+  /// Whether this rank holds cells.
+  bool has_cells() const { return grid_.owned_count() > 0; }
   /// 1 / (sum over directions of -2/h^2): the step of an undamped relaxation.
   double step() const { return step_; }
   kernels::LineCoefficients coefficients(int j, int k) const {

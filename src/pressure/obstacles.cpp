@@ -1,7 +1,7 @@
 #include "pressure/obstacles.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/open_sides.hpp"
 #include "kernels/momentum.hpp"
 #include "pressure/row_sums.hpp"
 
@@ -11,6 +11,7 @@
 namespace eulastic {
 namespace {
 
+constexpr double round_off = 1e-12;  // of the first residual: further on directions are noise
 constexpr int patience = 12;  // iterations without progress: round-off
 
 template <int Dim>
@@ -163,17 +164,17 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
   increment.clear();
   double square, ignored, last = 0;
   PetscCall(products(residual, residual, residual, residual, &square, &ignored));
-  const double cells = grid_->cell_count();
+  const double cells = grid_->cell_count(), target = std::max(target_, round_off * std::sqrt(square / cells));
   const int remembered = memory_ ? memory_.count() : 0;
   if (memory_ && !ghosts_of_memory_) {
     PetscCall(exchange_->update(memory_, 1));
-    for (int f = 0; f < remembered; ++f) fill_wall_ghosts_even(*grid_, at_centre, memory_[f], 1);
+    for (int f = 0; f < remembered; ++f) fill_ghosts_of_increment(*grid_, memory_[f], 1);
     ghosts_of_memory_ = true;
   }
   double best = square;
   for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
     const double rms = std::sqrt(square / cells);
-    if (!(rms > target_)) break;
+    if (!(rms > target)) break;
     if (n < remembered) {
       correction.copy_from(memory_.part((newest_ + n) % remembered, 1));
     } else {
@@ -201,7 +202,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     combine_all(*grid_, 1, step, direction, increment);
     combine_all(*grid_, 1, -step, image, residual);
     PetscCall(exchange_->update(residual, 1));
-    fill_wall_ghosts_even(*grid_, at_centre, residual[0], 1);
+    fill_ghosts_of_increment(*grid_, residual[0], 1);
     PetscCall(products(residual, residual, residual, residual, &square, &ignored));
     if (square < 0.5 * best) {
       best = square;

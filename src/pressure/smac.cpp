@@ -1,7 +1,7 @@
 #include "pressure/smac.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/open_sides.hpp"
 
 #include <algorithm>
 
@@ -40,17 +40,17 @@ PetscErrorCode SmacSolver::set_up() {
     for (int m = 0; m < box_y_.cells[d]; ++m)
       stiffness.push_back(ratio * ratio * transform.stiffness(box_y_.begin[d] + m));
   };
-  PetscCall(transform_x_.create(grid_->boundary(0), grid_->cells()[0]));
+  PetscCall(transform_x_.create(grid_->boundary(0), grid_->cells()[0], grid_->spec().open[0]));
   scaled(transform_x_, 0, stiffness_x_);
   flops_ = 2 * transform_x_.flops_per_line() * box_x_.cells[1] * box_x_.cells[2];
   if (flat) {
     stiffness_z_ = {0.0};
   } else {
-    PetscCall(transform_z_.create(grid_->boundary(2), grid_->cells()[2]));
+    PetscCall(transform_z_.create(grid_->boundary(2), grid_->cells()[2], grid_->spec().open[2]));
     scaled(transform_z_, 2, stiffness_z_);
     flops_ += 2 * transform_z_.flops_per_line() * box_z_.cells[0] * box_z_.cells[1];
   }
-  lines_y_ = TridiagonalLines(grid_->cells()[1], grid_->boundary(1) == Boundary::periodic);
+  lines_y_ = TridiagonalLines(grid_->cells()[1], grid_->boundary(1) == Boundary::periodic, grid_->spec().open[1]);
   flops_ += TridiagonalLines::flops_per_value * double(box_y_.size());
   PetscFunctionReturn(0);
 }
@@ -83,7 +83,7 @@ PetscErrorCode SmacSolver::solve(double dt, const FieldBlock &divergence, FieldB
     for (const Segment &s : grid_->rows()) std::copy_n(packed(s.j, s.k), owned[0], increment[0].row(s.j, s.k));
   }
   PetscCall(exchange_->update(increment, 1));
-  fill_wall_ghosts_even(*grid_, at_centre, increment[0], 1);
+  fill_ghosts_of_increment(*grid_, increment[0], 1);
   PetscFunctionReturn(0);
 }
 

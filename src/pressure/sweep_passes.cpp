@@ -177,6 +177,7 @@ PetscErrorCode RowSums::find_minimum(const SweepTask &task, SweepMinimum *minimu
   int s = 0;
   sums.square = total[s++];
   *mean = total[s++] / task.grid->cell_count();
+  if (task.grid->any_open()) *mean = 0;  // is not free
   for (int f = 0; f < count; ++f) sums.with[f] = total[s++];
   for (int f = 0; f < count; ++f)
     for (int g = 0; g <= f; ++g) sums.product[f][g] = total[s++];

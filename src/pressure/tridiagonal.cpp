@@ -14,13 +14,14 @@ void TridiagonalLines::remove_mean(int lane) {
 // singular lane differs only in q_last = 0.
 void TridiagonalLines::solve(const double *shift) {
   const int last = cells_ - 1;
-  const double end = periodic_ ? 2 : 1, link = periodic_ ? 1 : 0;
+  const double low = periodic_ ? 2 : open_[0] ? 3 : 1, high = periodic_ ? 2 : open_[1] ? 3 : 1, link = periodic_ ? 1 : 0;
+  const bool free = !open_[0] && !open_[1];
   double *y = row(0), *z = row(cells_), *m = row(2 * cells_);  // m: reciprocal pivots
   for (int l = 0; l < lanes; ++l)
-    if (shift[l] == 0) remove_mean(l);
+    if (free && shift[l] == 0) remove_mean(l);
 #pragma omp simd
   for (int l = 0; l < lanes; ++l) {
-    m[l] = 1 / (end + shift[l]);
+    m[l] = 1 / (low + shift[l]);
     y[l] *= m[l];
     z[l] = link * m[l];
   }
@@ -45,14 +46,14 @@ void TridiagonalLines::solve(const double *shift) {
   double *q = row(last);
   const double *y_high = row(last - 1), *z_high = z + lanes * (last - 1);
   for (int l = 0; l < lanes; ++l)
-    q[l] = shift[l] == 0 ? 0 : (q[l] + y_high[l] + link * y[l]) / (end + shift[l] - z_high[l] - link * z[l]);
+    q[l] = free && shift[l] == 0 ? 0 : (q[l] + y_high[l] + link * y[l]) / (high + shift[l] - z_high[l] - link * z[l]);
   for (int j = 0; j < last; ++j) {
     double *yj = y + lanes * j, *zj = z + lanes * j;
 #pragma omp simd
     for (int l = 0; l < lanes; ++l) yj[l] += zj[l] * q[l];
   }
   for (int l = 0; l < lanes; ++l)
-    if (shift[l] == 0) remove_mean(l);
+    if (free && shift[l] == 0) remove_mean(l);
 }
 
 }  // namespace eulastic

@@ -1,6 +1,8 @@
-// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between walls (q_{-1} = q_0).
+// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between sides: closed (q_{-1} = q_0)
+// or open (q_{-1} = -q_0).
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace eulastic {
@@ -12,10 +14,12 @@ public:
 
   TridiagonalLines() = default;
   /// `cells` >= 3 per line.
-  TridiagonalLines(int cells, bool periodic) : cells_(cells), periodic_(periodic), work_(3 * lanes * cells) {}
+  TridiagonalLines(int cells, bool periodic, std::array<bool, 2> open = {})
+      : cells_(cells), periodic_(periodic), open_(open), work_(3 * lanes * cells) {}
   /// g on entry to `solve`, q on return: the eight values of one j.
   double *row(int j) { return work_.data() + lanes * j; }
-  /// `shift` >= 0, one per lane. A lane with shift 0 is singular: its g loses its mean, and so does its q.
+  /// `shift` >= 0, one per lane. A lane with shift 0 and no open end is singular: its g loses its mean, and so does its
+  /// q.
   void solve(const double *shift);
 
 private:
@@ -23,6 +27,7 @@ private:
 
   int cells_ = 0;
   bool periodic_ = false;
+  std::array<bool, 2> open_{};
   std::vector<double> work_;
 };
 

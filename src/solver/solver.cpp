@@ -1,6 +1,7 @@
 #include "solver/solver.hpp"
 
 #include "field/law.hpp"
+#include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
 #include "physics/momentum.hpp"
@@ -18,17 +19,16 @@
 
 namespace eulastic {
 
-int Solver::work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
-                        bool rigid) {
+int Solver::work_fields(const Method &method, int dimension, const Parts &parts) {
   const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
-  const bool formula = method.pressure == PressureKind::acm && !sweeps;
-  const int pressure =
-      1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) + (rigid && !formula ? ObstacleSolver::work_fields : 0);
-  int forces = surface_tension ? SurfaceTension::work_fields : 0;
-  if (membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
-  const int momentum = (method.explicit_predictor() ? (rigid ? dimension : 0) : 2 * dimension) + forces;
-  const int tensor = bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
-  const int interface = bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
+  const bool formula = method.pressure == PressureKind::acm && !sweeps && !parts.open;
+  const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
+                       (parts.rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
+  int forces = parts.surface_tension ? SurfaceTension::work_fields : 0;
+  if (parts.membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
+  const int momentum = (method.explicit_predictor() ? (parts.rigid ? dimension : 0) : 2 * dimension) + forces;
+  const int tensor = parts.bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
+  const int interface = parts.bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, tensor, interface});
 }
 
@@ -55,7 +55,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.velocity = FieldBlock(grid, dim);
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, false, false, false)));
+  PetscCall(work_->reserve(work_fields(spec, dim, {grid.any_open()})));
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -66,6 +66,7 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidFaces> faces) {
   PetscFunctionBeginUser;
   rigid_ = std::move(faces);
   if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), {grid_->any_open(), false, false, false, true})));
   if (spec_.pressure == PressureKind::acm) {
     auto sweeps = std::make_unique<AcmSweepSolver>();
     PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
@@ -83,6 +84,7 @@ PetscErrorCode Solver::prepare() {
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
+  if (volume_crosses(spec_.sides)) PetscCall(make_solenoidal());
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const int dim = grid_->dimension();
@@ -98,8 +100,9 @@ PetscErrorCode Solver::prepare() {
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), true, surface_tension_ != nullptr,
-                                       membranes_ != nullptr, rigid_ != nullptr)));
+  PetscCall(work_->reserve(work_fields(
+      spec_, grid_->dimension(),
+      {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
@@ -161,6 +164,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
+  for (const double speed : inflow_speed(spec_.sides)) scale = std::max(scale, speed);
   now_.speed_scale = scale;
   now_.crossing_rate = 0;
   for (int d = 0; d < grid_->dimension(); ++d)
@@ -219,6 +223,8 @@ PetscErrorCode Solver::predict(double dt) {
     fluid.viscosity = 0;  // the stress of the varying one is added
   }
   MomentumStep step{now_.time, dt, speed_scale(dt), {}};
+  fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt, fluid.density,
+                                now_.velocity, now_.pressure[0]);
   if (spec_.staggered()) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
@@ -278,7 +284,7 @@ PetscErrorCode Solver::predict(double dt) {
 
 // At rest: what the force makes in a step, and never less than a Courant number of 1e-6.
 double Solver::speed_scale(double dt) const {
-  const Real3 &f = spec_.fluid.body_force.force, &h = grid_->spacing();
+  const Real3 f = driven_fluid().body_force.force, &h = grid_->spacing();
   return std::max({now_.speed_scale, dt * std::hypot(f[0], f[1], f[2]), 1e-6 * std::min(h[0], h[1]) / dt});
 }
 
@@ -294,7 +300,7 @@ PetscErrorCode Solver::project(double dt) {
   FieldBlock &divergence = of_velocity.fields();
   PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence));
   PetscCall(exchange_->update(divergence, 1));
-  fill_wall_ghosts_even(*grid_, at_centre, divergence[0], 1);
+  fill_ghosts_of_increment(*grid_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
@@ -303,7 +309,7 @@ PetscErrorCode Solver::project(double dt) {
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
-  if (rigid_ && !pressure_solver_->formula())
+  if (rigid_ && !spec_.acm_of_the_paper())
     correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity_star_);
   if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));

@@ -28,9 +28,12 @@ struct SolverSpec : Method {
 
 class Solver {
 public:
-  /// Fields of the work space that the method needs, in a scene with bodies or without.
-  static int work_fields(const Method &method, int dimension, bool bodies, bool surface_tension, bool membranes,
-                         bool rigid = false);
+  /// What a scene has.
+  struct Parts {
+    bool open = false, bodies = false, surface_tension = false, membranes = false, rigid = false;
+  };
+  /// Fields of the work space that the method needs for it.
+  static int work_fields(const Method &method, int dimension, const Parts &parts);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
 
@@ -85,6 +88,10 @@ private:
   PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
   PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows);
   double speed_scale(double dt) const;
+  /// With the force that differences of given pressures are to a fluid at rest.
+  Fluid driven_fluid() const;
+  /// Makes the flow at the start pass through the sides as it is given there, without a pressure.
+  PetscErrorCode make_solenoidal();
   /// Viscosities, and with the largest tr B of every phase what they mean for the time step.
   ViscosityContrast contrast(const std::vector<double> &trace) const;
   /// Of the rotational update of p: the factor of D*, and that of the place's viscosity times D*.

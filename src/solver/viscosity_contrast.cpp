@@ -15,7 +15,7 @@ ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
 }
 
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  TimeStepLimits limits = time_step_limits(*grid_, spec_.fluid, contrast(extremes.trace), spec_.sides, extremes,
+  TimeStepLimits limits = time_step_limits(*grid_, driven_fluid(), contrast(extremes.trace), spec_.sides, extremes,
                                            {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
   if (rigid_) limits.forcing = std::min(limits.forcing, rigid_->shortest_period());
   return limits;
@@ -35,7 +35,7 @@ PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
 bool Solver::drifts() const {
   for (int d = 0; d < grid_->dimension(); ++d)
     for (const Side &side : spec_.sides[d])
-      if (grid_->is_wall(d) && side.kind == SideKind::wall) return false;
+      if (grid_->is_wall(d) && side.kind != SideKind::symmetry) return false;
   return true;
 }
 

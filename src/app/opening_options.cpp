@@ -1,0 +1,61 @@
+#include "app/opening_options.hpp"
+
+namespace eulastic {
+namespace {
+
+// The rows from `first` on mean something only on sides of that kind.
+void only_on(Rows &rows, std::size_t first, Config &config, SideKind kind, const std::string &side, int d, int high) {
+  for (std::size_t r = first; r < rows.rows.size(); ++r) {
+    rows.rows[r].only_with = "-boundary_" + side + (kind == SideKind::inflow ? " inflow" : " pressure");
+    rows.rows[r].applies = [&config, kind, d, high] { return config.boundary.is(kind, d, high); };
+  }
+}
+
+void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int high) {
+  OpeningSpec &spec = config.openings[d][high];
+  const std::string name = "inflow_" + side;
+  const std::size_t first = rows.rows.size();
+  Option &profile = rows.path(name + "_profile", spec.profile,
+                              "shape of the velocity into the box: uniform; developed, that of a steady flow along the "
+                              "side; or one number per cell");
+  profile.accepted = "uniform, developed, or a path";
+  profile.is_input = true;
+  for (const bool flow : {false, true}) {
+    std::string &target = flow ? spec.flow_rate : spec.velocity;
+    Option &row = rows.path(name + (flow ? "_flow_rate" : "_velocity"), target,
+                            flow ? "volume into the box per time, in 2-D per depth; over time from a file"
+                                 : "mean velocity into the box; over time from a file");
+    row.unit = flow ? "volume/time" : "length/time";
+    row.accepted = "a number, or a path to a table of time,value";
+    row.default_note = flow ? "" : "this or the flow rate is required, but with a file as profile";
+    row.is_input = true;
+  }
+  rows.real(name + "_frequency", spec.frequency, not_negative, "1/time",
+            "angular frequency: times cos(frequency t + phase)");
+  rows.real(name + "_phase", spec.phase, any_number, "rad", "phase");
+  only_on(rows, first, config, SideKind::inflow, side, d, high);
+}
+
+void add_pressure(Rows &rows, Config &config, const std::string &side, int d, int high) {
+  OpeningSpec &spec = config.openings[d][high];
+  const std::size_t first = rows.rows.size();
+  rows.real("pressure_" + side + "_value", spec.value, any_number, "pressure", "pressure on the side");
+  Option &table = rows.path("pressure_" + side + "_table", spec.table, "the pressure over time, in place of the value");
+  table.accepted = "a path to a table of time,value";
+  table.is_input = true;
+  only_on(rows, first, config, SideKind::pressure, side, d, high);
+}
+
+}  // namespace
+
+void add_openings(Rows &rows, Config &config) {
+  rows.group = "Inflow, pressure and outflow sides";
+  for (int d = 0; d < 3; ++d)
+    for (int high = 0; high < 2; ++high) {
+      const std::string side = std::string{"xyz"[d]} + (high ? "max" : "min");
+      add_inflow(rows, config, side, d, high);
+      add_pressure(rows, config, side, d, high);
+    }
+}
+
+}  // namespace eulastic

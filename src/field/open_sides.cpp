@@ -1,0 +1,132 @@
+#include "field/open_sides.hpp"
+
+#include "field/reflection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// Of a cell of the plane of direction d, periodic images included; what lies behind other sides is nobody's.
+double shape_at(const Grid &grid, const SideProfile &profile, int d, const Int3 &local) {
+  std::size_t place = 0;
+  for (int e = 2; e >= 0; --e) {
+    if (e == d) continue;
+    const int n = grid.cells()[e], g = grid.layout().begin[e] + local[e];
+    place = place * n + std::size_t(grid.is_wall(e) ? std::clamp(g, 0, n - 1) : (g % n + n) % n);
+  }
+  return profile[place];
+}
+
+}  // namespace
+
+void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double given, Segment row, View component) {
+  const double along = high ? -given : given;
+  if (d == 0) {
+    row.i_begin = high ? grid.cells()[0] - grid.layout().begin[0] : -grid.layout().begin[0];
+    row.i_end = row.i_begin + 1;
+  }
+  double *face = component.row(row.j, row.k);
+  const bool even = !side.profile || side.profile->empty();
+  for (int i = row.i_begin; i < row.i_end; ++i)
+    face[i] = along * (even ? 1 : shape_at(grid, *side.profile, d, {i, row.j, row.k}));
+}
+
+void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View component, int d) {
+  const Layout &layout = grid.layout();
+  for (const bool high : {false, true}) {
+    const Side &side = sides[d][high];
+    const int local = (high ? grid.cells()[d] : 0) - layout.begin[d];
+    if (side.kind != SideKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
+    const double given = side.given.at(time);
+    const Plane plane(layout, d);
+    for (int k = plane.begin[2]; k < plane.end[2]; ++k)
+      for (int j = plane.begin[1]; j < plane.end[1]; ++j)
+        set_inflow_row(grid, side, d, high, given,
+                       {plane.begin[0], plane.end[0], d == 1 ? local : j, d == 2 ? local : k}, component);
+  }
+}
+
+void fill_ghosts_of_increment(const Grid &grid, View field, int width) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true})
+      if (grid.is_wall(d))
+        reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
+}
+
+void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, double time, double density,
+                                   const FieldBlock &velocity, View pressure) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true}) {
+      if (!grid.is_open(d, high) || !(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
+      const bool outflow = sides[d][high].kind == SideKind::outflow;
+      const double given = outflow ? 0 : sides[d][high].given.at(time);
+      Int3 begin{}, end = grid.owned();
+      begin[d] = high ? end[d] - 1 : 0;
+      end[d] = begin[d] + 1;
+      const std::ptrdiff_t outward = high ? pressure.stride(d) : -pressure.stride(d);
+      const std::ptrdiff_t to_face = high ? velocity[d].stride(d) : 0;
+      for (int k = begin[2]; k < end[2]; ++k)
+        for (int j = begin[1]; j < end[1]; ++j)
+          for (int i = begin[0]; i < end[0]; ++i) {
+            const double speed = (&velocity[d](i, j, k))[to_face], inward = high ? -speed : speed;
+            const double back = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
+            double *p = &pressure(i, j, k);
+            p[outward] = 2 * (given - back) - p[0];
+          }
+    }
+}
+
+void clear_open_ghosts(const Grid &grid, View field, int width) {
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true})
+      if (grid.is_open(d, high)) reflect(grid, field, d, high, false, {0.0, 0.0}, width);
+}
+
+bool volume_crosses(const BoxSides &sides) {
+  for (const auto &pair : sides)
+    for (const Side &side : pair)
+      if (is_open(side.kind) || side.kind == SideKind::inflow) return true;
+  return false;
+}
+
+bool opens(const BoxSides &sides) {
+  for (const auto &pair : sides)
+    for (const Side &side : pair)
+      if (is_open(side.kind)) return true;
+  return false;
+}
+
+Real3 pressure_drive(const BoxSides &sides, const Real3 &length, double density) {
+  Real3 drive{};
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const auto &pair : sides)
+    for (const Side &side : pair) {
+      if (!is_open(side.kind)) continue;
+      const auto range = side.kind == SideKind::outflow ? std::array{0.0, 0.0} : side.given.range();
+      low = std::min(low, range[0]);
+      high = std::max(high, range[1]);
+    }
+  if (!(high > low)) return drive;
+  for (int d = 0; d < 3; ++d)
+    if (is_open(sides[d][0].kind) || is_open(sides[d][1].kind)) drive[d] = (high - low) / (density * length[d]);
+  return drive;
+}
+
+Real3 inflow_speed(const BoxSides &sides) {
+  Real3 speed{};
+  for (int d = 0; d < 3; ++d)
+    for (const Side &side : sides[d]) {
+      if (side.kind != SideKind::inflow) continue;
+      double most = 0;
+      if (!side.profile || side.profile->empty())
+        most = 1;
+      else
+        for (const double shape : *side.profile) most = std::max(most, std::fabs(shape));
+      speed[d] = std::max(speed[d], most * side.given.largest());
+    }
+  return speed;
+}
+
+}  // namespace eulastic
