@@ -16,10 +16,9 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"density"}, "bodies have the density of the fluid: -fluid_density is that of both"},
       {{"buoyancy", "gravity", "sedimentation"},
        "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both"},
-      {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "farfield"},
-       "a side of the box is periodic, a wall without slip that may move in its plane, or a plane of symmetry; "
-       "-body_force "
-       "drives a flow through"},
+      {{"inlet", "outlet", "neumann", "dirichlet", "farfield"},
+       "a side of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both sides of a "
+       "direction, -boundary_xmin and -boundary_xmax for each"},
       {{"rigid", "prescribed", "torque"},
        "bodies are elastic and go with the flow; a stiff -NAME_shear_modulus comes near a rigid one, and "
        "-NAME_attached holds what touches a wall"},

@@ -84,6 +84,7 @@ PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solve
   PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   PetscCall(solver->prepare());
+  *reason = solver->crowded();
   PetscFunctionReturn(0);
 }
 
