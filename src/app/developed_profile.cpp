@@ -1,10 +1,12 @@
-// The steady flow along a pipe of any section, on the cells of a side: -lap u = 1 with u = 0 on walls.
+// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of that
+// section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
 #include "app/openings.hpp"
 #include "base/petsc.hpp"
 
 #include <petscksp.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -34,7 +36,54 @@ Beyond beyond(const Config &config, int e, int i, bool high) {
   return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
 }
 
-PetscErrorCode assemble(const Config &config, int d, Mat matrix, bool *held) {
+// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular one.
+struct OpenCells {
+  static constexpr int values = 5;
+  std::vector<double> all;
+  bool open(std::size_t cell) const { return all[values * cell] > 0; }
+  double link(std::size_t cell, int which, bool high) const { return all[values * cell + 1 + 2 * which + high]; }
+};
+
+// Collective.
+PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const RigidFaces *rigid, int d, bool high,
+                               OpenCells *cells) {
+  const SidePlane plane(d);
+  const int na = config.grid.cells[plane.a], nb = config.grid.cells[plane.b];
+  const Int3 &n = grid.owned(), &begin = grid.layout().begin;
+  PetscFunctionBeginUser;
+  cells->all.assign(std::size_t(OpenCells::values) * na * nb, rigid ? 0 : 1);
+  for (std::size_t v = 0; !rigid && v < cells->all.size(); ++v)
+    if (v % OpenCells::values != 0) cells->all[v] = 0;
+  if (!rigid) PetscFunctionReturn(0);
+  const auto values = [&](const Int3 &local) {
+    const std::size_t cell = (begin[plane.a] + local[plane.a]) + std::size_t(na) * (begin[plane.b] + local[plane.b]);
+    return cells->all.data() + OpenCells::values * cell;
+  };
+  Int3 first{}, last = n;
+  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) last = {};
+  first[d] = high ? n[d] : 0;
+  last[d] = last[d] > 0 ? first[d] + 1 : 0;
+  for (int k = first[2]; k < last[2]; ++k)
+    for (int j = first[1]; j < last[1]; ++j) {
+      const RigidFaces::Row row = rigid->row(d, j, k);
+      for (int i = first[0]; i < last[0]; ++i) {
+        double *cell = values({i, j, k});
+        cell[0] = 1;
+        for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+          if (i >= run->begin && i < run->end) cell[0] = 0;
+        for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+          for (const int which : {0, 1})
+            for (const bool up : {false, true})
+              if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut->i == i && (cut->walls >> link & 1U))
+                cell[1 + 2 * which + up] = cut->link[link];
+      }
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cells->all.data(), static_cast<int>(cells->all.size()), MPI_DOUBLE, MPI_SUM,
+                             grid.comm()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode assemble(const Config &config, int d, const OpenCells &cells, Mat matrix, bool *held) {
   const SidePlane plane(d);
   const int n[2] = {config.grid.cells[plane.a], config.grid.cells[plane.b]};
   PetscFunctionBeginUser;
@@ -42,13 +91,20 @@ PetscErrorCode assemble(const Config &config, int d, Mat matrix, bool *held) {
   for (int j = 0; j < n[1]; ++j)
     for (int i = 0; i < n[0]; ++i) {
       const PetscInt row = i + PetscInt(n[0]) * j;
+      if (!cells.open(row)) {
+        PetscCall(MatSetValue(matrix, row, row, 1, ADD_VALUES));
+        continue;
+      }
       for (const int which : {0, 1}) {
         const int e = which == 0 ? plane.a : plane.b;
         const double h = config.grid.length[e] / config.grid.cells[e], coupling = 1 / (h * h);
         for (const bool high : {false, true}) {
           const Beyond other = beyond(config, e, which == 0 ? i : j, high);
           const PetscInt column = which == 0 ? other.index + PetscInt(n[0]) * j : i + PetscInt(n[0]) * other.index;
-          if (other.cell) {
+          if (const double link = cells.link(row, which, high); link > 0) {
+            PetscCall(MatSetValue(matrix, row, row, link, ADD_VALUES));
+            *held = true;
+          } else if (other.cell) {
             PetscCall(MatSetValue(matrix, row, column, -coupling, ADD_VALUES));
             PetscCall(MatSetValue(matrix, row, row, coupling, ADD_VALUES));
           } else if (other.wall) {
@@ -65,7 +121,7 @@ PetscErrorCode assemble(const Config &config, int d, Mat matrix, bool *held) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode develop(const Config &config, int d, SideProfile *profile) {
+PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideProfile *profile) {
   const SidePlane plane(d);
   const PetscInt cells = PetscInt(config.grid.cells[plane.a]) * config.grid.cells[plane.b];
   MatHandle matrix;
@@ -77,10 +133,12 @@ PetscErrorCode develop(const Config &config, int d, SideProfile *profile) {
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, cells, cells, 5, nullptr, matrix.put()));
   PetscCall(MatSetOption(matrix.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
-  PetscCall(assemble(config, d, matrix.get(), &held));
+  PetscCall(assemble(config, d, open, matrix.get(), &held));
   if (!held) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(matrix.get(), flow.put(), one.put()));
-  PetscCall(VecSet(one.get(), 1));
+  for (PetscInt cell = 0; cell < cells; ++cell) PetscCall(VecSetValue(one.get(), cell, open.open(cell), INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(one.get()));
+  PetscCall(VecAssemblyEnd(one.get()));
   PetscCall(KSPCreate(PETSC_COMM_SELF, solver.put()));
   PetscCall(KSPSetOperators(solver.get(), matrix.get(), matrix.get()));
   PetscCall(KSPSetType(solver.get(), KSPPREONLY));
@@ -90,22 +148,33 @@ PetscErrorCode develop(const Config &config, int d, SideProfile *profile) {
   PetscCall(VecGetArrayRead(flow.get(), &values));
   profile->assign(values, values + cells);
   PetscCall(VecRestoreArrayRead(flow.get(), &values));
-  double sum = 0;
-  for (const double value : *profile) sum += value;
-  for (double &value : *profile) value *= double(cells) / sum;
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode develop_profiles(const Config &config, BoxSides *sides) {
+PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid, BoxSides *sides,
+                              std::string *wrong) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; ++d)
-    for (int high = 0; high < 2; ++high) {
+    for (const bool high : {false, true}) {
       Side &side = (*sides)[d][high];
-      if (side.kind != SideKind::inflow || config.openings[d][high].profile != "developed") continue;
+      const bool developed = config.openings[d][high].profile == "developed";
+      if (side.kind != SideKind::inflow || !(developed || rigid)) continue;
+      OpenCells open;
+      PetscCall(find_open_cells(config, grid, rigid, d, high, &open));
       SideProfile profile;
-      PetscCall(develop(config, d, &profile));
+      if (developed) PetscCall(develop(config, d, open, &profile));
+      if (profile.empty() && side.profile) profile = *side.profile;
+      if (profile.empty()) profile.assign(open.all.size() / OpenCells::values, 1);
+      double sum = 0;
+      for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
+      if (!(std::fabs(sum) > 0)) {
+        *wrong = std::string("-boundary_") + "xyz"[d] + (high ? "max" : "min") +
+                 ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+        PetscFunctionReturn(0);
+      }
+      for (double &value : profile) value *= double(profile.size()) / sum;
       side.profile = std::make_shared<const SideProfile>(std::move(profile));
     }
   PetscFunctionReturn(0);

@@ -17,10 +17,9 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"buoyancy", "gravity", "sedimentation"},
        "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
        "species alone"},
-      {{"inlet", "outlet", "inflow", "outflow", "neumann", "dirichlet", "farfield"},
-       "a side of the box is periodic, a wall without slip that may move in its plane, or a plane of symmetry; "
-       "-body_force "
-       "drives a flow through"},
+      {{"inlet", "outlet", "neumann", "dirichlet", "farfield"},
+       "a side of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both sides of a "
+       "direction, -boundary_xmin and -boundary_xmax for each"},
       {{"prescribed", "torque"},
        "bodies go with the flow, or are rigid and stay where they are (-NAME_law rigid): a force or a path of a rigid "
        "one cannot be given"},

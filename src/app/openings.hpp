@@ -2,14 +2,17 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "field/rigid_faces.hpp"
 
 namespace eulastic {
 
 /// Kinds, courses and profiles of all sides, but developed ones; reads tables. Empty, or one line that says what is
 /// wrong.
 std::string resolve_openings(Config *config);
-/// Developed profiles, which need PETSc: the shape of the steady flow along the side, from one Poisson problem on its
-/// plane, to round-off; uniform where nothing holds the fluid. Every rank solves it.
-PetscErrorCode develop_profiles(const Config &config, BoxSides *sides);
+/// Profiles of inflow sides: 0 where rigid bodies (or null) cover them, the rest with the mean that is asked for. Developed
+/// ones: the shape of the steady flow along the side, from one Poisson problem on its plane, to round-off; uniform where
+/// nothing holds the fluid. Every rank solves it. Collective; `wrong`: one line, or left empty.
+PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid, BoxSides *sides,
+                              std::string *wrong);
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 #include "app/outputs.hpp"
 
+#include "app/series_columns.hpp"
 #include "base/events.hpp"
 #include "physics/limits.hpp"
 #include "physics/species_force.hpp"
@@ -10,29 +11,6 @@
 
 namespace eulastic {
 namespace {
-
-const std::vector<std::string> series_columns{"time",
-                                              "step",
-                                              "dt",
-                                              "kinetic_energy",
-                                              "elastic_energy",
-                                              "viscous_dissipation",
-                                              "bulk_velocity_x",
-                                              "bulk_velocity_y",
-                                              "bulk_velocity_z",
-                                              "speed_max",
-                                              "divergence_rms",
-                                              "divergence_max",
-                                              "solid_volume",
-                                              "volume_drift",
-                                              "force_power",
-                                              "wall_power",
-                                              "elastic_power",
-                                              "energy_lost",
-                                              "energy_lost_elastic",
-                                              "energy_lost_extended",
-                                              "surface_energy",
-                                              "surface_power"};
 
 bool wants(const OutputControl &output, const char *name) {
   const auto &fields = output.snapshot_fields;
@@ -79,10 +57,11 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscFunctionBeginUser;
   const MPI_Comm comm = grid_->comm();
   directory_ = directory;
-  PetscCall(series_.open(comm, directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
+  PetscCall(series_.open(comm, directory + "/series.csv", series_columns(crossed_sides(config_.sides, *grid_)),
+                         same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", solver_->has_rigid());
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", solver_->rigid() != nullptr);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -114,8 +93,9 @@ PetscErrorCode Outputs::measure() {
   const Real3 &f = fluid.body_force.force;
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
-  PetscCall(measure_flow(*grid_, state.velocity, *phases,
-                         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity}, &m.flow));
+  PetscCall(measure_flow(
+      *grid_, state.velocity, *phases,
+      {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
@@ -170,6 +150,9 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
   energy->rates.force_power += power;
   for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
+  PetscCall(
+      measure_side_flows(*grid_, config_.sides, state.time, fluid.density, state.velocity, state.pressure, &sides_));
+  for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
 }
 
@@ -223,28 +206,31 @@ PetscErrorCode Outputs::write_due(bool last) {
     const FlowMeasures &flow = measured_.flow;
     double solid = 0;
     for (const double volume : flow.phase_volume) solid += volume;
-    PetscCall(series_.write({state.time,
-                             double(state.step),
-                             state.dt,
-                             flow.kinetic_energy,
-                             flow.elastic_energy,
-                             flow.viscous_dissipation,
-                             flow.bulk_velocity[0],
-                             flow.bulk_velocity[1],
-                             flow.bulk_velocity[2],
-                             flow.speed_max,
-                             flow.divergence_rms,
-                             flow.divergence_max,
-                             solid,
-                             measured_.volume_drift,
-                             energy.rates.force_power,
-                             energy.rates.wall_power,
-                             energy.rates.elastic_power,
-                             energy_.lost(),
-                             energy_.lost_elastic(),
-                             energy_.lost_extended(),
-                             energy.surface,
-                             energy.surface_power}));
+    std::vector<double> row{state.time,
+                            double(state.step),
+                            state.dt,
+                            flow.kinetic_energy,
+                            flow.elastic_energy,
+                            flow.viscous_dissipation,
+                            flow.bulk_velocity[0],
+                            flow.bulk_velocity[1],
+                            flow.bulk_velocity[2],
+                            flow.speed_max,
+                            flow.divergence_rms,
+                            flow.divergence_max,
+                            solid,
+                            measured_.volume_drift,
+                            energy.rates.force_power,
+                            energy.rates.wall_power,
+                            energy.rates.elastic_power,
+                            energy_.lost(),
+                            energy_.lost_elastic(),
+                            energy_.lost_extended(),
+                            energy.surface,
+                            energy.surface_power};
+    if (!sides_.empty()) row.push_back(energy.rates.side_power);
+    for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
+    PetscCall(series_.write(row));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));
       ++bodies_rows_;
@@ -319,6 +305,8 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.viscous_dissipation = energy.dissipation;
   summary.force_power = energy.rates.force_power;
   summary.wall_power = energy.rates.wall_power;
+  summary.side_power = energy.rates.side_power;
+  for (const SideFlow &side : sides_) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
   summary.elastic_power = energy.rates.elastic_power;
   summary.energy_supplied = budget.supplied();
   summary.energy_dissipated = budget.dissipated();

@@ -6,6 +6,7 @@
 #include "app/guards.hpp"
 #include "app/sample_files.hpp"
 #include "diagnostics/energy_budget.hpp"
+#include "diagnostics/side_flows.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
@@ -66,6 +67,7 @@ private:
   std::unique_ptr<SnapshotFields> snapshot_fields_;
   Due series_due_, snapshot_due_;
   Measured measured_;
+  std::vector<SideFlow> sides_;  ///< as of the last measure_energy()
   EnergyBudget energy_;
   std::vector<double> first_volume_;
   long bodies_rows_ = 0, snapshots_before_ = 0;

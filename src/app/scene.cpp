@@ -85,11 +85,14 @@ PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solve
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
   BoxSides sides = config.sides;
-  PetscCall(develop_profiles(config, &sides));
   PetscCall(solver->create(grid, {config.method, config.fluid, sides}));
   PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
+  PetscCall(shape_profiles(config, grid, solver->rigid(), &sides, reason));
+  if (!reason->empty()) PetscFunctionReturn(0);
+  solver->set_profiles(sides);
   PetscCall(solver->prepare());
+  *reason = solver->crowded();
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 #include "app/option_values.hpp"
 #include "app/voxels.hpp"
 #include "bodies/seeding.hpp"
+#include "field/open_sides.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -88,7 +89,8 @@ std::string check_flow(const Config &config) {
   if (const std::string wrong = check_vector(config, "initial_velocity_mean", initial.mean); !wrong.empty())
     return wrong;
   for (int d = 0; d < 3; ++d)
-    if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0 && !(crossed(config, d, 0) && crossed(config, d, 1)))
+    if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0 &&
+        !(crossed(config, d, 0) && crossed(config, d, 1)))
       return std::string("-initial_velocity_mean: the ") + "xyz"[d] +
              " component must be 0 between sides of which one is closed";
   const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
@@ -164,6 +166,10 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (spec.viscosity && volume_crosses(config.sides))
+    return "-" + spec.name +
+           "_viscosity: the stress of a viscosity that varies knows no side that volume crosses; accepted: "
+           "without, or -boundary_* wall, symmetry, periodic";
   if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
     return wrong;
   for (const auto check : {check_membrane, check_rigid})

@@ -6,7 +6,7 @@ namespace eulastic {
 
 void EnergyBudget::advance(double time, const EnergyState &state) {
   const EnergyRates &r = state.rates;
-  const std::array<double, works> rate{r.force_power + r.wall_power, state.dissipation,
+  const std::array<double, works> rate{r.force_power + r.wall_power + r.side_power, state.dissipation,
                                        r.elastic_power + state.surface_power, r.extended_power};
   last_ = {state.kinetic, state.elastic + state.surface, r.extended_energy};
   if (time_ < 0) first_ = last_;

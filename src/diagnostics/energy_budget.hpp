@@ -20,7 +20,7 @@ public:
   /// Adds the works from the last state to this one. The first state begins the budget.
   void advance(double time, const EnergyState &state);
 
-  double supplied() const { return work_[0]; }    ///< by body force and walls
+  double supplied() const { return work_[0]; }    ///< by body force, walls and what comes in
   double dissipated() const { return work_[1]; }  ///< by viscosity
   /// supplied - dissipated - change of kinetic and elastic energy: what the numerics took; negative: made.
   double lost() const;

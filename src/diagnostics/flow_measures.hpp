@@ -5,6 +5,7 @@
 #pragma once
 
 #include "field/phase.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -13,6 +14,7 @@ struct FlowNumbers {
   double dt = 0;                                ///< time step
   double force = 0;                             ///< |f|, per mass
   const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
+  const BoxSides *sides = nullptr;              ///< null: volume crosses none
 };
 
 struct FlowMeasures {

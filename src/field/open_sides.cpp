@@ -38,7 +38,8 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
   for (const bool high : {false, true}) {
     const Side &side = sides[d][high];
     const int local = (high ? grid.cells()[d] : 0) - layout.begin[d];
-    if (side.kind != SideKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) continue;
+    if (side.kind != SideKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d])
+      continue;
     const double given = side.given.at(time);
     const Plane plane(layout, d);
     for (int k = plane.begin[2]; k < plane.end[2]; ++k)
@@ -51,8 +52,7 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
 void fill_ghosts_of_increment(const Grid &grid, View field, int width) {
   for (int d = 0; d < grid.dimension(); ++d)
     for (const bool high : {false, true})
-      if (grid.is_wall(d))
-        reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
+      if (grid.is_wall(d)) reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
 }
 
 void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, double time, double density,

@@ -1,5 +1,5 @@
 // Sides that volume crosses: what comes in through an inflow side, and the pressure on open ones (docs/method.md,
-// section 17). All that other rooms need of them beyond the ghosts of sides.hpp.
+// section 20). All that other rooms need of them beyond the ghosts of sides.hpp.
 #pragma once
 
 #include "field/sides.hpp"

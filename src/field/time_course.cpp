@@ -16,6 +16,14 @@ double TimeCourse::at(double time) const {
   return low + (high - low) * ((time - t0) / (t1 - t0));
 }
 
+double TimeCourse::rate(double time) const {
+  if (table.empty()) return frequency == 0 ? 0 : -value * frequency * std::sin(frequency * time + phase);
+  const auto after = std::upper_bound(table.begin(), table.end(), time,
+                                      [](double t, const std::array<double, 2> &row) { return t < row[0]; });
+  if (after == table.begin() || after == table.end()) return 0;
+  return ((*after)[1] - after[-1][1]) / ((*after)[0] - after[-1][0]);
+}
+
 std::array<double, 2> TimeCourse::range() const {
   if (table.empty()) {
     const double size = std::fabs(value);

@@ -123,8 +123,8 @@ public:
   std::vector<Segment> open_high_faces(int d) const { return is_open(d, true) ? high_faces(d) : std::vector<Segment>(); }
   /// All owned rows, whole.
   std::vector<Segment> rows() const;
-  /// One past the last owned face of component a along d: on an open high side the face on it as well.
-  int faces_end(int a, int d) const { return layout_.cells[d] + (a == d && touches_high(d) && is_open(d, true)); }
+  /// One past the last owned face of component a along d: with the face on the high side.
+  int faces_end(int a, int d) const { return layout_.cells[d] + (a == d && touches_high(d)); }
 
 private:
   PetscErrorCode ask_dm(Int3 *place);

@@ -22,6 +22,9 @@ std::string summary_text(const Summary &s) {
                          .add("rest_deformation", b.rest_deformation)
                          .add("force", b.force)
                          .add("torque", b.torque));
+  std::vector<Json> sides;
+  for (const Summary::SideRecord &side : s.sides)
+    sides.push_back(Json().add("side", side.side).add("flow_rate", side.flow_rate).add("pressure", side.pressure));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))
@@ -63,6 +66,8 @@ std::string summary_text(const Summary &s) {
       .add("energy_lost_extended", s.energy_lost_extended)
       .add("surface_energy", s.surface_energy)
       .add("surface_power", s.surface_power)
+      .add("side_power", s.side_power)
+      .add("sides", sides)
       .add("bulk_velocity", s.bulk_velocity)
       .add("state_hash", checksum_text(s.state_hash))
       .add("bodies", bodies)

@@ -34,6 +34,13 @@ void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visi
         if (const RigidFaces::Row row = faces.row(a, j, k); !row.empty()) visit(a, row, j, k);
 }
 
+// Whether the normal velocity is given there, by the side of the box.
+bool on_closed_side(const Grid &grid, int a, int i, int j, int k) {
+  if (!grid.is_wall(a)) return false;
+  const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
+  return (at == 0 && !grid.is_open(a, false)) || (at == grid.cells()[a] && !grid.is_open(a, true));
+}
+
 bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
 // The viscous rate at a cut face, and how much of it a regular face has.
@@ -119,6 +126,14 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
   });
 }
 
+void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field) {
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    double *out = field[a].row(j, k);
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) out[i] = 0;
+  });
+}
+
 void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity) {
   VerbScope scope(Verb::rigid);
@@ -188,14 +203,14 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k), *dv = rate[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
+      if (!owned(grid, a, cut->i) || on_closed_side(grid, a, cut->i, j, k)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
           mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
+        if (!on_closed_side(grid, a, i, j, k)) add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
   });
   std::vector<double> total(6 * faces.count);
   PetscCall(sums.reduce(grid.comm(), total.data()));

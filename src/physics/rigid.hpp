@@ -1,5 +1,5 @@
 // Rigid bodies in the momentum equation: faces inside have the velocity of the body, cut faces see its surface where it
-// crosses their links, in every viscous stage (docs/method.md, section 19). The projection knows nothing of them.
+// crosses their links, in every viscous stage (docs/method.md, section 19).
 #pragma once
 
 #include "field/phase.hpp"
@@ -27,6 +27,8 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
 /// increment.
 void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity);
+/// Owned faces inside bodies get 0.
+void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
 /// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes
 /// them before it, release() puts them where they belong after it.
 class RigidStage {

@@ -59,10 +59,13 @@ public:
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension.
   PetscErrorCode surface_energy(SurfaceEnergy *measured);
-  bool has_rigid() const { return rigid_ != nullptr; }
+  const RigidFaces *rigid() const { return rigid_.get(); }
+  /// Sides with profiles that know the bodies; before prepare().
+  void set_profiles(const BoxSides &sides) { spec_.sides = sides; }
   /// What the fluid exerts on every rigid body, in the order of the bodies; costs as much as the rate of momentum.
   PetscErrorCode rigid_loads(std::vector<RigidLoad> *loads);
-  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the step.
+  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the
+  /// step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
@@ -74,7 +77,8 @@ public:
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
-  /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp).
+  /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp), or if a
+  /// body is at a side that volume crosses.
   const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
@@ -90,8 +94,10 @@ private:
   double speed_scale(double dt) const;
   /// With the force that differences of given pressures are to a fluid at rest.
   Fluid driven_fluid() const;
-  /// Makes the flow at the start pass through the sides as it is given there, without a pressure.
-  PetscErrorCode make_solenoidal();
+  /// Makes the flow at the start pass through the sides as it is given there and, if there is no pressure yet, finds the
+  /// one that goes with it, but for forces of bodies.
+  PetscErrorCode start_flow();
+  PetscErrorCode project_start(bool is_rate, FieldBlock &velocity, FieldBlock &pressure);
   /// Viscosities, and with the largest tr B of every phase what they mean for the time step.
   ViscosityContrast contrast(const std::vector<double> &trace) const;
   /// Of the rotational update of p: the factor of D*, and that of the place's viscosity times D*.
@@ -109,6 +115,7 @@ private:
                                              const OccupiedRows *rows);
   PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
+  PetscErrorCode check_sides();
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
   PetscErrorCode find_rows(Phase &phase);

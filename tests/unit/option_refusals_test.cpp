@@ -1,5 +1,8 @@
 // Every class of wrong input is refused in one line that names the option and what is accepted.
 #include "support/command_line.hpp"
+#include "support/files.hpp"
+
+#include <fstream>
 
 using namespace eulastic;
 
@@ -50,11 +53,11 @@ TEST(OptionRefusals, WhatThereIsNot) {
       {{"-cell_density 2", {"unknown option -cell_density: \"density\" is not supported: bodies have", read}},
        {"-gravity 0,-9.81,0", {"\"gravity\" is not supported", "-body_force", read}},
        {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
-       {"-inflow 1", {"\"inflow\" is not supported", read}},
+       {"-outlet_pressure 1", {"\"outlet\" is not supported", "-boundary_xmin", read}},
        {"-cell_torque 1,0,0", {"\"torque\" is not supported", "-NAME_law rigid", read}},
        {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "-NAME_law membrane", read}},
        {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
-       {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not supported", "one of periodic, wall"}},
+       {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not a choice", "one of periodic, wall"}},
        {"-density 1", {"nearest known: -fluid_density"}},
        {"-surface_tension 1", {"nearest known: -cell_surface_tension"}},
        {"-fluid_viscosty 1", {"nearest known: -fluid_viscosity"}},
@@ -181,6 +184,38 @@ TEST(OptionRefusals, SpeciesNames) {
   EXPECT_EQ(parse_line(two + "-a_shear_shape sphere -a_shear_radius .2 -a_shear_shear_modulus 2").error, "");
 }
 
+TEST(OptionRefusals, SidesThatVolumeCrosses) {
+  const test::TemporaryDirectory files;
+  const auto file = [&](const char *name, const std::string &text) {
+    std::ofstream(files / name) << text;
+    return " " + files / name;
+  };
+  const std::string in = "-boundary_xmin inflow -boundary_xmax ", way = in + "outflow -inflow_xmin_velocity 1 ";
+  expect_refusals(
+      {{in + "outflow", {"-inflow_xmin_velocity: must be given", "-inflow_xmin_flow_rate"}},
+       {way + "-inflow_xmin_flow_rate 2", {"-inflow_xmin_flow_rate: given beside"}},
+       {in + "wall -inflow_xmin_velocity 1", {"-boundary_xmin: ", "no way out", "a pressure or outflow side"}},
+       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity 1",
+        {"no way out", "-boundary_xmin, -boundary_xmax"}},
+       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity -1 -inflow_xmax_frequency 2", {"no way out"}},
+       {"-boundary_xmin inflow", {"-boundary_xmin: one side alone"}},
+       {"-inflow_xmin_velocity 1", {"-inflow_xmin_velocity: has a meaning only with -boundary_xmin inflow"}},
+       {way + "-pressure_xmax_value 1", {"-pressure_xmax_value: has a meaning only with -boundary_xmax pressure"}},
+       {way + "-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity: has a meaning only with"}},
+       {way + "-inflow_xmin_profile nowhere", {"-inflow_xmin_profile: cannot read nowhere", "uniform, developed"}},
+       {way + "-inflow_xmin_profile" + file("short", "1 2 3\n"), {"has 3 numbers", "one per cell of the side"}},
+       {way + "-inflow_xmin_profile" + file("words", "1 two\n"), {"words line 1"}},
+       {in + "outflow -inflow_xmin_velocity nowhere", {"-inflow_xmin_velocity: cannot read nowhere"}},
+       {in + "outflow -inflow_xmin_velocity" + file("three", "0,1,2\n"), {"a row has 3 numbers", "time,value"}},
+       {in + "outflow -inflow_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
+       {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
+        {"-inflow_xmin_frequency: has no meaning beside a table"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
+       {way + "-cell_viscosity 2", {"-cell_viscosity: ", "volume crosses"}}});
+  EXPECT_EQ(parse_line(scene + " " + way).error, "");
+  EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
+}
+
 TEST(OptionRefusals, InconsistentScenes) {
   expect_refusals(
       {{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
@@ -193,7 +228,7 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-initial_velocity_amplitude 2", {"-initial_velocity_amplitude", "-initial_velocity"}},
        {"-pressure_pc_type mg", {"-pressure_pc_type", "-pressure_solver ksp"}},
        {"-pressure_solver smac -pressure_ksp_view", {"-pressure_ksp_view", "-pressure_solver ksp"}},
-       {"-initial_velocity_mean 0,1,0", {"-initial_velocity_mean", "not periodic"}},
+       {"-initial_velocity_mean 0,1,0", {"-initial_velocity_mean", "closed"}},
        {"-cell_interval 1,2", {"-cell_interval", "-cell_shape slab"}},
        {"-cell_axis x", {"-cell_axis"}},
        {"-cell_count 1,1,1", {"-cell_count", "-cell_placement lattice"}},

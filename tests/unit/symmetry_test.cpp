@@ -71,7 +71,10 @@ void run(const Setting &s, Scene &scene, int steps = 20) {  // to t = 1
   spec.fluid.viscosity = 0.5;
   spec.fluid.body_force.force = s.force;
   for (int d = 0; d < 3; ++d)
-    for (int side = 0; side < 2; ++side) spec.sides[d][side] = {s.side[d][side], {s.wall_velocity[d][side]}};
+    for (int side = 0; side < 2; ++side) {
+      spec.sides[d][side].kind = s.side[d][side];
+      spec.sides[d][side].motion.velocity = s.wall_velocity[d][side];
+    }
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   const int dim = scene.grid.dimension();
   Phase &phase = scene.add_phase(0, [&](double x, double y, double z) {

@@ -1,0 +1,104 @@
+#include "diagnostics/side_flows.hpp"
+
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+
+namespace eulastic {
+namespace {
+
+enum Sum { into_box, pressure_sum, power_sum, sums };
+
+// Sums over the faces of one side, if this rank has any.
+class SideSums {
+public:
+  SideSums(const Grid &grid, double density, const FieldBlock &velocity, const FieldBlock &pressure)
+      : grid_(grid), density_(density), velocity_(velocity), pressure_(pressure) {}
+
+  void add(const SideFlow &side, int first, ExactSums *all) const {
+    const int d = side.direction;
+    if (!(side.high ? grid_.touches_high(d) : grid_.touches_low(d))) return;
+    Int3 begin{}, end = grid_.owned();
+    begin[d] = side.high ? end[d] - 1 : 0;
+    end[d] = begin[d] + 1;
+    for (int k = begin[2]; k < end[2]; ++k)
+      for (int j = begin[1]; j < end[1]; ++j)
+        for (int i = begin[0]; i < end[0]; ++i) {
+          const double along = (&velocity_[d](i, j, k))[side.high ? velocity_[d].stride(d) : 0];
+          const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
+          const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
+          all->add(first + into_box, inward);
+          all->add(first + pressure_sum, p);
+          all->add(first + power_sum, inward * (p + 0.5 * density_ * speed_squared));
+        }
+  }
+
+private:
+  double pressure_on(const SideFlow &side, const Int3 &cell) const {
+    const ConstView p = pressure_[0];
+    const double *here = &p(cell[0], cell[1], cell[2]);
+    if (is_open(side.kind)) return side.pressure;
+    return 1.5 * here[0] - 0.5 * here[side.high ? -p.stride(side.direction) : p.stride(side.direction)];
+  }
+
+  double tangential_squared(int d, const Int3 &cell) const {
+    double sum = 0;
+    for (int c = 0; c < grid_.dimension(); ++c) {
+      if (c == d) continue;
+      const double *v = &velocity_[c](cell[0], cell[1], cell[2]), mean = 0.5 * (v[0] + v[velocity_[c].stride(c)]);
+      sum += mean * mean;
+    }
+    return sum;
+  }
+
+  const Grid &grid_;
+  double density_;
+  const FieldBlock &velocity_, &pressure_;
+};
+
+}  // namespace
+
+std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Grid &grid) {
+  std::vector<SideFlow> flows;
+  for (int d = 0; d < grid.dimension(); ++d)
+    for (const bool high : {false, true}) {
+      const SideKind kind = sides[d][high].kind;
+      if (!grid.is_wall(d) || !(is_open(kind) || kind == SideKind::inflow)) continue;
+      SideFlow flow;
+      flow.direction = d;
+      flow.high = high;
+      flow.kind = kind;
+      flows.push_back(flow);
+    }
+  return flows;
+}
+
+PetscErrorCode measure_side_flows(const Grid &grid, const BoxSides &sides, double time, double density,
+                                  const FieldBlock &velocity, const FieldBlock &pressure,
+                                  std::vector<SideFlow> *flows) {
+  PetscFunctionBeginUser;
+  *flows = crossed_sides(sides, grid);
+  if (flows->empty()) PetscFunctionReturn(0);
+  VerbScope scope(Verb::sums);
+  ExactSums all(sums * static_cast<int>(flows->size()));
+  std::vector<double> result(sums * flows->size());
+  const SideSums add(grid, density, velocity, pressure);
+  int first = 0;
+  for (SideFlow &flow : *flows) {
+    if (flow.kind == SideKind::pressure) flow.pressure = sides[flow.direction][flow.high].given.at(time);
+    add.add(flow, first, &all);
+    first += sums;
+  }
+  PetscCall(all.reduce(grid.comm(), result.data()));
+  const double *sum = result.data();
+  for (SideFlow &flow : *flows) {
+    const double area = grid.cell_volume() / grid.spacing()[flow.direction];
+    const double faces = grid.cell_count() / grid.cells()[flow.direction];
+    flow.flow_rate = sum[into_box] * area;
+    flow.power = sum[power_sum] * area;
+    if (!is_open(flow.kind)) flow.pressure = sum[pressure_sum] / faces;
+    sum += sums;
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,135 @@
+// Solver: the flow at the start, and bodies, where volume crosses sides of the box.
+#include "field/open_sides.hpp"
+#include "physics/correction.hpp"
+#include "physics/divergence.hpp"
+#include "physics/momentum.hpp"
+#include "solver/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// What comes in changes by per time.
+BoxSides rates_of(const BoxSides &sides, double time) {
+  BoxSides rates = sides;
+  for (auto &pair : rates)
+    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};
+  return rates;
+}
+
+// Whether there is any solid in the cells next to a side.
+bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers) {
+  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) return false;
+  Int3 begin{}, end = grid.owned();
+  if (high)
+    begin[d] = std::max(0, end[d] - layers);
+  else
+    end[d] = std::min(layers, end[d]);
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i)
+        if (fraction(i, j, k) > 0) return true;
+  return false;
+}
+
+}  // namespace
+
+// Nothing of a body passes a side: neither its fraction nor its stress is followed there.
+PetscErrorCode Solver::check_sides() {
+  constexpr int layers = 2;
+  int found = -1;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < now_.phases.size(); ++p)
+    for (int d = 0; d < grid_->dimension(); ++d)
+      for (const int high : {0, 1}) {
+        const SideKind kind = spec_.sides[d][high].kind;
+        if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow)) continue;
+        if (has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers))
+          found = std::max(found, int(p) * 6 + 2 * d + high);
+      }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, grid_->comm()));
+  if (found >= 0)
+    crowded_ = "-species " + now_.phases[found / 6].species + ": solid within " + std::to_string(layers) +
+               " cells of side " + "xyz"[found % 6 / 2] + (found % 2 ? "max" : "min") +
+               ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
+  PetscFunctionReturn(0);
+}
+
+Fluid Solver::driven_fluid() const {
+  Fluid fluid = spec_.fluid;
+  const Real3 drive = pressure_drive(spec_.sides, grid_->spec().length, fluid.density);
+  for (int d = 0; d < 3; ++d) fluid.body_force.force[d] = std::fabs(fluid.body_force.force[d]) + drive[d];
+  for (const Phase &phase : now_.phases) {
+    const BodyForce &own = phase.material.body_force;
+    for (int d = 0; d < 3; ++d) fluid.body_force.force[d] += std::fabs(own.force[d]);
+    if (own.acts()) fluid.body_force.frequency = std::max(fluid.body_force.frequency, own.frequency);
+  }
+  return fluid;
+}
+
+// v -= grad q and p += q for the q that makes v solenoidal, a velocity or how it changes in time; ghosts of v as given.
+PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBlock &pressure) {
+  const double density = spec_.fluid.density;
+  constexpr double dt = 1;
+  const int times = spec_.pressure == PressureKind::acm && spec_.acm_of_the_paper() ? 200 : 1;
+  WorkSpace::Lease of_velocity, increment;
+  FieldBlock none(*grid_, 1);  // without a pressure its relaxation has nothing to do
+  PetscFunctionBeginUser;
+  PetscCall(work_->take("divergence", 1, &of_velocity));
+  if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
+  FieldBlock &divergence = of_velocity.fields();
+  pressure_solver_->set_target(0);
+  for (int n = 0; n < times; ++n) {
+    PetscCall(exchange_->update(velocity, 1));
+    PetscCall(compute_divergence(*grid_, density, velocity, divergence));
+    PetscCall(exchange_->update(divergence, 1));
+    fill_ghosts_of_increment(*grid_, divergence[0], 1);
+    PetscCall(pressure_solver_->solve(dt, divergence, none, increment.fields()));
+    if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
+      PetscCall(correct_velocity(*grid_, density, dt, 0, *formula, divergence, velocity, none));
+    else
+      PetscCall(correct_velocity(*grid_, density, dt, 0, increment.fields(), divergence, velocity, none));
+    if (rigid_ && !spec_.acm_of_the_paper())
+      correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity);
+    if (rigid_ && is_rate) clear_rigid_faces(*grid_, *rigid_, velocity);
+    if (rigid_ && !is_rate) impose_rigid_motion(*grid_, *rigid_, now_.time, velocity);
+    for (const Segment &row : grid_->rows()) {
+      const double *q = none[0].row(row.j, row.k);
+      double *p = pressure[0].row(row.j, row.k);
+      for (int i = 0; i < row.i_end; ++i) p[i] += q[i];
+    }
+    none.clear();
+  }
+  PetscFunctionReturn(0);
+}
+
+// The first step would do both as well, with a pressure that grows as 1/dt; the next would start from that.
+PetscErrorCode Solver::start_flow() {
+  const int dim = grid_->dimension();
+  double largest = 0;
+  FieldBlock unused(*grid_, 1), rate(*grid_, dim), no_advection;
+  PetscFunctionBeginUser;
+  PetscCall(project_start(false, now_.velocity, unused));
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
+  for (const Segment &row : grid_->rows())
+    for (int i = 0; i < row.i_end; ++i) largest = std::max(largest, std::fabs(now_.pressure[0](i, row.j, row.k)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, grid_->comm()));
+  if (largest > 0) PetscFunctionReturn(0);  // of a file
+  fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time, spec_.fluid.density, now_.velocity, now_.pressure[0]);
+  const MomentumStep now{now_.time, 1, speed_scale(1), {}};
+  PetscCall(momentum_rate(*grid_, spec_.fluid, now, now_.velocity, now_.pressure, {}, no_advection, rate));
+  for (int d = 0; d < dim; ++d)
+    if (grid_->is_wall(d)) {
+      close_wall_faces(*grid_, rate[d], d);
+      set_inflow_faces(*grid_, rates_of(spec_.sides, now_.time), 0, rate[d], d);
+    }
+  const double nu = spec_.fluid.kinematic_viscosity();
+  if (rigid_) see_rigid_surfaces(*grid_, *rigid_, nu, nu, now_.time, now_.velocity, rate, nullptr);
+  PetscCall(project_start(true, rate, now_.pressure));
+  PetscCall(update_centre_ghosts(now_.pressure, 1));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

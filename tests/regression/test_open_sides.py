@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+"""Inflow, pressure and outflow sides: a published flow, what comes in goes out, the same on any ranks and after a restart."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+from read_run import Run  # noqa: E402
+
+BINARY = os.environ["EULASTIC"]
+MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+# Two ways in, one of them a pulse, two ways out, and walls that hold the fluid: in 2-D and in 3-D.
+FLAT = ("-grid_cells 50,34,1 -grid_length 5,3.4,1 -boundary_xmin inflow -boundary_xmax outflow -boundary_ymin wall "
+        "-boundary_ymax pressure -inflow_xmin_velocity 1 -inflow_xmin_frequency 3 -fluid_viscosity 0.05").split()
+DEEP = ("-grid_cells 20,12,14 -grid_length 2,1.2,1.4 -boundary_xmin inflow -boundary_xmax outflow -boundary_y wall "
+        "-boundary_z wall -boundary_zmax pressure -inflow_xmin_velocity 1 -inflow_xmin_profile developed "
+        "-inflow_xmin_frequency 3 -fluid_viscosity 0.05 -pressure_zmax_value .2").split()
+
+
+def points_of_zero(x, values):
+    """Where the values, linear between the points x, change their sign."""
+    at = numpy.nonzero(values[1:-1] * values[2:] < 0)[0] + 1
+    return x[at] - values[at] * (x[at + 1] - x[at]) / (values[at + 1] - values[at])
+
+
+class OpenSides(unittest.TestCase):
+    def setUp(self):
+        room = tempfile.TemporaryDirectory()
+        self.addCleanup(room.cleanup)
+        self.room = pathlib.Path(room.name)
+
+    def run_program(self, name, *options, ranks=1):
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        directory = self.room / name
+        done = subprocess.run([*command, BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
+                              env=environment, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return Run(directory)
+
+    def test_same_on_any_ranks_and_threads_and_after_a_restart(self):
+        for scene, end in ((FLAT, ".6"), (DEEP, ".2")):
+            for solver in ("acm", "smac"):
+                options = [*scene, "-pressure_solver", solver]
+                name = f"{len(scene)}_{solver}"
+                one = self.run_program(name, *options, "-time_end", end, "-checkpoint_interval", "1",
+                                       "-checkpoint_keep", "1").summary
+                for ranks in (2, 3, 4):
+                    other = self.run_program(f"{name}_{ranks}", *options, "-time_end", end, ranks=ranks).summary
+                    self.assertEqual(other["state_hash"], one["state_hash"], (solver, ranks))
+                    self.assertEqual(other["sides"], one["sides"])
+                threads = self.run_program(f"{name}_threads", *options, "-time_end", end, "-threads", "2").summary
+                self.assertEqual(threads["state_hash"], one["state_hash"])
+                self.run_program(f"{name}_half", *options, "-time_end", end, "-time_steps_max", "20",
+                                 "-checkpoint_interval", end)
+                rest = self.run_program(f"{name}_rest", *options, "-time_end", end, "-restart",
+                                        self.room / f"{name}_half", ranks=2).summary
+                self.assertEqual(rest["state_hash"], one["state_hash"])
+
+    def test_what_comes_in_goes_out(self):
+        for scene in (FLAT, DEEP):
+            for options in (("-method", "fast"), ("-pressure_solver", "smac"), ("-pressure_solver", "ksp")):
+                run = self.run_program("_".join(options) + str(len(scene)), *scene, *options, "-time_end", ".3")
+                rates = [numpy.asarray(run.series[name]) for name in run.series.dtype.names if name.startswith("flow_rate_")]
+                self.assertEqual(len(rates), 3)
+                largest = max(abs(rate).max() for rate in rates)
+                self.assertLess(abs(sum(rates)).max(), (1e-5 if "fast" in options else 1e-9) * largest, options)
+
+    def test_developed_flow_stays_as_it_is(self):
+        """In a duct, to round-off: the profile is the discrete one. The flow rate of a square duct to second order."""
+        scene = ("-grid_length 2,1,1 -boundary_xmin inflow -boundary_xmax outflow -boundary_y wall -boundary_z wall "
+                 "-inflow_xmin_profile developed -inflow_xmin_flow_rate 2 -fluid_viscosity 1 -pressure_solver smac "
+                 "-time_end 2 -time_step .01 -snapshot_interval 2 -snapshot_precision double").split()
+        error = []
+        for n in (8, 16):
+            run = self.run_program(f"duct{n}", *scene, "-grid_cells", f"8,{n},{n}")
+            with h5py.File(run.directory / "snapshot_000001.h5") as file:
+                u, p = file["velocity_x"][:], file["pressure"][:]
+            self.assertLess(abs(u[:, :, :8] - u[:, :, :1]).max(), 1e-10)
+            gradient = (p[n // 2, n // 2, 2] - p[n // 2, n // 2, 6]) / (4 * .25)
+            error.append(abs(2 * 28.454 / gradient - 1))  # Q = G/(28.454 mu) for a unit square
+        self.assertLess(error[1], 2e-2)
+        self.assertGreater(numpy.log2(error[0] / error[1]), 1.9)
+
+    def test_backward_facing_step(self):
+        """Gartling (1990), Re 800: the lower eddy ends at 6.10, the upper one lies between 4.85 and 10.48 channel heights; a coarse
+        grid. Cut through the upper eddy, where the flow turns back on the outlet, the lower one stays."""
+        n = 24
+        y = (numpy.arange(n) + .5) / n
+        profile = self.room / "profile.txt"
+        numpy.savetxt(profile, numpy.where(y > .5, (y - .5) * (1 - y), 0))
+        ends = {}
+        for length in (15, 8):
+            run = self.run_program(f"step{length}", "-grid_cells", f"{length * n},{n},1", "-grid_length", f"{length},1,1",
+                                   *("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow "
+                                     "-inflow_xmin_flow_rate .5 -fluid_viscosity 1.25e-3 -time_end 200 "
+                                     "-snapshot_interval 200").split(), "-inflow_xmin_profile", profile)
+            with h5py.File(run.directory / "snapshot_000001.h5") as file:
+                u = file["velocity_x"][0]
+            x = numpy.arange(u.shape[1]) / n
+            ends[length] = [*points_of_zero(x, u[0])[-1:], *points_of_zero(x, u[-1])]
+            print(f"    length {length}:", ", ".join(f"{end:.3f}" for end in ends[length]))
+        for found, published in zip(ends[15], (6.10, 4.85, 10.48)):
+            self.assertAlmostEqual(found / published, 1, delta=.08)
+        self.assertAlmostEqual(ends[8][0] / ends[15][0], 1, delta=2e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()
