@@ -24,10 +24,10 @@ struct EnergyNumbers {
 struct EnergyRates {
   double force_power = 0;
   double wall_power = 0;       ///< of moving walls, through viscosity and solids attached to them
-  double side_power = 0;       ///< of what comes in through sides; by measure_side_flows()
   double elastic_power = 0;    ///< integral of sigma_e : grad v: flow to solids
   double extended_power = 0;   ///< the part of it in cells where B is extended, and
   double extended_energy = 0;  ///< the strain energy there
+  double side_power = 0;       ///< of what comes in through sides; by measure_side_flows()
 };
 
 /// phi W (energy per volume) of the cells of a row, into out[0 .. cells).
