@@ -39,7 +39,7 @@ double fields(const Config &config) {
   const bool tension = std::any_of(config.species.begin(), config.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
   const bool membranes = std::any_of(config.species.begin(), config.species.end(),
-                                     [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
+                                     [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, !config.species.empty(), tension, membranes);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG

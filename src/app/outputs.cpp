@@ -81,7 +81,9 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscCall(series_.open(comm, directory + "/series.csv", series_columns, same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5");
+    const bool membranes = std::any_of(config_.species.begin(), config_.species.end(),
+                                       [](const SpeciesSpec &spec) { return spec.is_membrane(); });
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -119,7 +121,7 @@ PetscErrorCode Outputs::measure() {
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
-  PetscCall(solver_->surface_energy(&m.surface));
+  PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
@@ -169,7 +171,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
 
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
-  for (const BodyMeasure &body : measured_.bodies) {
+  for (std::size_t b = 0; b < measured_.bodies.size(); ++b) {
+    const BodyMeasure &body = measured_.bodies[b];
     BodyRecord record;
     record.id = body.label;
     record.species = config_.species[body.species].name;
@@ -181,6 +184,14 @@ std::vector<BodyRecord> Outputs::records() const {
     record.elastic_energy = body.elastic_energy;
     record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
     record.rest_deformation = body.rest_deformation;
+    if (b < measured_.surfaces.size()) {
+      const SurfaceMeasure &surface = measured_.surfaces[b];
+      record.surface_area = surface.area;
+      record.shear_energy = surface.shear_energy;
+      record.area_energy = surface.area_energy;
+      record.bending_energy = surface.bending_energy;
+      record.turning_rate = surface.turning_rate;
+    }
     records.push_back(record);
   }
   return records;

@@ -6,6 +6,7 @@
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
 #include "app/petsc_options.hpp"
+#include "app/red_cell.hpp"
 #include "app/unknown_option.hpp"
 #include "app/validate.hpp"
 
@@ -94,6 +95,11 @@ public:
     }
     return {};
   }
+  /// As if it were given, where it is not.
+  void preset(const std::string &name, const std::string &value) {
+    if (!given(name)) (void)index_.at(name)->read(value);
+    where_.emplace(name, "");
+  }
   bool given(const std::string &name) const { return where_.count(name) > 0; }
 
 private:
@@ -119,6 +125,9 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
     config->grid.boundary[d] = config->boundary.bounded(d) ? Boundary::wall : Boundary::periodic;
     for (int high = 0; high < 2; ++high) config->sides[d][high].kind = config->boundary.kind(d, high);
   }
+  for (const SpeciesSpec &spec : config->species)
+    if (spec.law == Law::red_cell)
+      for (const auto &[name, value] : red_cell_preset()) reader.preset(spec.name + "_" + name, value);
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
   for (const Source &source : sources)
     for (const Entry &entry : source) {

@@ -64,11 +64,19 @@ struct SpeciesSpec {
   Real3 orientation{};  ///< Euler angles in degrees: rotations about x, then y, then z
   bool random_orientation = false;
 
+  bool is_membrane() const { return law == Law::membrane || law == Law::red_cell; }
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
-    return {
-        at_rest, attached.value_or(is_attached(shape)), false, law, c1, c2, c3, viscosity.value_or(0), surface_tension,
-        membrane};
+    return {at_rest,
+            attached.value_or(is_attached(shape)),
+            false,
+            is_membrane() ? Law::membrane : law,
+            c1,
+            c2,
+            c3,
+            viscosity.value_or(0),
+            surface_tension,
+            membrane};
   }
 };
 

@@ -14,7 +14,8 @@ namespace eulastic {
 
 class BodiesFile {
 public:
-  BodiesFile(MPI_Comm comm, std::string path);
+  /// `membranes`: with what is known of those alone.
+  BodiesFile(MPI_Comm comm, std::string path, bool membranes = false);
 
   /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
@@ -26,6 +27,7 @@ public:
   PetscErrorCode resume(long *rows);
 
 private:
+  std::vector<double> scalars(const BodyRecord &body) const;  ///< of the columns behind the vectors
   struct Column {
     const char *name;
     int width;  ///< values per body; 0 = one per row
@@ -40,6 +42,7 @@ private:
   std::string path_;
   std::vector<BodyRecord> first_;  ///< who the bodies are
   std::vector<Column> columns_;
+  bool membranes_;
   std::size_t written_ = 0, waiting_ = 0;  ///< rows
 };
 

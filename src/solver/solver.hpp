@@ -50,9 +50,11 @@ public:
   /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
-  /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension.
-  PetscErrorCode surface_energy(SurfaceEnergy *measured);
-  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the step.
+  /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and
+  /// membranes. `bodies`: what is known of the surface of every body, if there are labels and membranes.
+  PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
+  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the
+  /// step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;

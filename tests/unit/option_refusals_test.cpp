@@ -52,7 +52,7 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
        {"-inflow 1", {"\"inflow\" is not supported", read}},
        {"-cell_rigid true", {"\"rigid\" is not supported", "elastic", read}},
-       {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "-NAME_law membrane", read}},
+       {"-cell_shell_thickness 1", {"\"shell\" is not supported", "-NAME_law membrane", read}},
        {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
        {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not supported", "one of periodic, wall"}},
        {"-cell_law rigid", {"-cell_law", "\"rigid\" is not supported", "mooney_rivlin"}},
@@ -237,20 +237,21 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_viscosity 2 -fluid_viscosity 0",
         {"-a_viscosity", "-fluid_viscosity > 0"}}},
       periodic);
-  expect_refusals({{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
-                   {"-a_law membrane", {"-a_surface_shear_modulus", "must be given"}},
-                   {"-a_law membrane -a_surface_shear_modulus 0", {"-a_surface_shear_modulus", "> 0"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-time_integrator staggered"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_initial_stretch 2,1,1",
-                    {"-a_initial_stretch", "-a_initial_area_stretch"}},
-                   {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
-                   {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
-                   {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
-                   {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
-                   {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
-                  periodic + "-species a -a_shape sphere -a_radius .1 ");
+  expect_refusals(
+      {{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
+       {"-a_law membrane", {"-a_surface_shear_modulus", "must be given"}},
+       {"-a_law membrane -a_surface_shear_modulus 0", {"-a_surface_shear_modulus", "> 0"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-time_integrator staggered"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_initial_stretch 2,1,1",
+        {"-a_initial_stretch", "-a_initial_area_stretch"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
+       {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
+       {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
+       {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
+       {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
+      periodic + "-species a -a_shape sphere -a_radius .1 ");
 }
 
 TEST(OptionRefusals, TwoDimensions) {
