@@ -1,5 +1,6 @@
 #include "physics/bending.hpp"
 
+#include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/bending.hpp"
@@ -11,8 +12,8 @@ namespace eulastic {
 namespace {
 
 constexpr double negligible = 1e-3;  // of the smoothed fraction and 1 - that
-// Ghosts: the force of one layer takes curvatures of two, and these the level of three.
-constexpr int force_ghosts = 1, curvature_ghosts = 2, level_ghosts = 3;
+// Of ghosts: the force takes curvatures one layer further, and these the level.
+constexpr int force_ghosts = 0, curvature_ghosts = 1, level_ghosts = 2, mean_ghosts = 1;
 constexpr double least_radius = 2;  // in cells
 
 struct Local {
@@ -35,14 +36,24 @@ EULASTIC_CLONES void level_row(const double *psi, int begin, int end, double *le
   for (int i = begin; i < end; ++i) level[i] = kernels::surface_level(psi[i]);
 }
 
-EULASTIC_CLONES void force_of_row(const double *psi, const double *force, const double *delta, std::ptrdiff_t s,
-                                  double factor, int n, double *out) {
+struct ForceRows {
+  const double *psi, *force, *weight, *delta;
+};
+EULASTIC_CLONES void force_of_row(const ForceRows &rows, std::ptrdiff_t s, double factor, int n, double *out) {
+  const double *psi = rows.psi, *force = rows.force, *weight = rows.weight, *delta = rows.delta;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    const double weight = delta[i] + delta[i - s];
-    const double f = factor * ((force[i] + force[i - s]) / weight) * (psi[i - s] - psi[i]);
-    out[i] = weight > 0 ? f : 0;
+    const double f = factor * ((force[i] + force[i - s]) / (weight[i] + weight[i - s])) * (psi[i - s] - psi[i]);
+    out[i] = delta[i] > 0 && delta[i - s] > 0 ? f : 0;
   }
+}
+
+// Whether one of the rows around is not idle.
+bool near_rows(const OccupiedRows &rows, int j, int k, int across, int deep) {
+  for (int m = -deep; m <= deep; ++m)
+    for (int o = -across; o <= across; ++o)
+      if (!rows.idle(j + o, k + m)) return true;
+  return false;
 }
 
 }  // namespace
@@ -51,24 +62,11 @@ EULASTIC_CLONES void force_of_row(const double *psi, const double *force, const 
 MembraneBending::Box MembraneBending::around(const Phase &phase, int ghosts) const {
   Box box;
   for (int d = 0; d < 3; ++d) {
-    const int near = d < grid_->dimension() && !phase.rows.inside() ? ghosts : 0;
+    const bool alone = phase.rows.inside() && !(d == 0 && grid_->wraps_x());
+    const int near = d < grid_->dimension() && !alone ? ghosts : 0;
     box.range[d] = {-near, grid_->owned()[d] + near};
   }
   return box;
-}
-
-// Nothing is known beyond the cells that find() comes to.
-void MembraneBending::clear(const Phase &phase, FieldBlock &fields) const {
-  const Int3 &n = grid_->owned();
-  const int far = curvature_ghosts + 1, deep = grid_->dimension() == 3 ? far : 0;
-  for (int k = -deep; k < n[2] + deep; ++k)
-    for (int j = -far; j < n[1] + far; ++j) {
-      bool near = false;
-      for (int m = -1; m <= 1 && !near; ++m)
-        for (int o = -1; o <= 1 && !near; ++o) near = !phase.rows.idle(j + o, k + m);
-      if (!near) continue;
-      for (const int f : {delta, force}) std::fill_n(fields[f].row(j, k) - far, n[0] + 2 * far, 0.0);
-    }
 }
 
 template <int Dim>
@@ -134,10 +132,35 @@ void MembraneBending::find_force(const Phase &phase, FieldBlock &fields) {
   });
 }
 
-void MembraneBending::find(const Phase &phase, ConstView smooth, FieldBlock &fields) {
+// What waves as short as cells make of the curvature is noise that would drive a flow for ever: force and delta are
+// averaged like the fraction that they come from.
+PetscErrorCode MembraneBending::smooth_force(const Phase &phase, FieldBlock &fields) {
+  PetscFunctionBeginUser;
+  const int far = mean_ghosts + smooth_reach, dim = grid_->dimension();
+  FieldBlock both = fields.part(delta, 2);
+  PetscCall(exchange_->update(both, far, &phase.rows));
+  for (const int f : {delta, force}) fill_wall_ghosts_even(*grid_, at_centre, fields[f], far, &phase.rows);
+  const Int3 &n = grid_->owned();
+  const int deep = dim == 3 ? mean_ghosts : 0, rows = n[1] + 2 * mean_ghosts, planes = n[2] + 2 * deep;
+  const int parts = row_parts(*grid_);
+  in_parallel(parts, parts, [&](int part) {
+    RowScratch scratch(*grid_, 1);
+    const Piece piece(std::size_t(rows) * planes, part, parts);
+    for (std::size_t r = piece.begin; r < piece.end; ++r) {
+      const int j = static_cast<int>(r % rows) - mean_ghosts, k = static_cast<int>(r / rows) - deep;
+      if (!near_rows(phase.rows, j, k, 1, deep)) continue;
+      for (const auto &[from, to] : {std::pair{force, mean}, {delta, weight}})
+        smooth_row(dim, fields[from], j, k, -mean_ghosts, n[0] + mean_ghosts, scratch.row(0), fields[to].row(j, k));
+    }
+  });
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, FieldBlock &fields) {
+  PetscFunctionBeginUser;
   const int dim = grid_->dimension();
   const Box box = around(phase, level_ghosts);
-  clear(phase, fields);
+  for (const int f : {delta, force}) clear_around(*grid_, phase.rows, mean_ghosts + smooth_reach, fields[f]);
   const int rows = box.range[1].end - box.range[1].begin, planes = box.range[2].end - box.range[2].begin;
   const int parts = row_parts(*grid_);
   in_parallel(parts, parts, [&](int part) {
@@ -160,11 +183,14 @@ void MembraneBending::find(const Phase &phase, ConstView smooth, FieldBlock &fie
     find_curvature<3>(phase, fields);
     find_force<3>(phase, fields);
   }
+  PetscCall(smooth_force(phase, fields));
+  PetscFunctionReturn(0);
 }
 
 void MembraneBending::force_row(const FieldBlock &fields, int a, int j, int k, double scale, double *out) const {
-  force_of_row(fields[smoothed].row(j, k), fields[force].row(j, k), fields[delta].row(j, k), fields[smoothed].stride(a),
-               scale / grid_->spacing()[a], grid_->owned()[0], out);
+  const ForceRows rows{fields[smoothed].row(j, k), fields[mean].row(j, k), fields[weight].row(j, k),
+                       fields[delta].row(j, k)};
+  force_of_row(rows, fields[smoothed].stride(a), scale / grid_->spacing()[a], grid_->owned()[0], out);
 }
 
 double MembraneBending::energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at) {

@@ -14,8 +14,8 @@
 
 namespace eulastic {
 
-/// Nothing inside evolves; faces feel stress as far around the body as phi is smoothed, and one more.
-inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 4};
+/// Nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
+inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
 
 class MembraneTransport {
 public:
@@ -26,7 +26,7 @@ public:
 
   /// `drifts`: as of SurfaceTension, for bending.
   MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
-      : grid_(&grid), work_(&work), surface_(grid, exchange), bending_(grid), drifts_(drifts) {}
+      : grid_(&grid), work_(&work), surface_(grid, exchange), bending_(grid, exchange), drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
   /// B_s of an undeformed membrane, or one stretched alike in all directions. Five ghosts of phi, here and below.

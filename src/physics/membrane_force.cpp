@@ -103,7 +103,7 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
     PetscCall(work_->take(bending ? "bending" : "stress of a membrane",
                           bending ? MembraneBending::work_fields : phase.tensor.count(), &lease));
     if (bending)
-      bending_.find(phase, smooth, fields);
+      PetscCall(bending_.find(phase, smooth, fields));
     else
       PetscCall(find_stress(phase, fields));
     VerbScope scope(Verb::membrane);

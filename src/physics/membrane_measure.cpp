@@ -54,7 +54,7 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
   if (phase.material.membrane.bending_modulus > 0) {
     WorkSpace::Lease lease;
     PetscCall(work_->take("bending", MembraneBending::work_fields, &lease));
-    bending_.find(phase, psi.fields()[0], lease.fields());
+    PetscCall(bending_.find(phase, psi.fields()[0], lease.fields()));
     for (std::size_t c = 0; c < bending.size(); ++c) {
       const SurfaceCells::Cell &cell = surface_.all()[c];
       if (cell.owned) bending[c] = cell.delta * MembraneBending::energy(phase.material, lease.fields(), cell.at);

@@ -106,18 +106,10 @@ SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const
   return cell;
 }
 
-// What smooths psi once more reads two cells around the rows of the phase.
-void SurfaceCells::clear_around(const Phase &phase, View psi) const {
-  const Int3 &n = grid_->owned();
-  const int far = phase.rows.inside() ? 0 : grid_->spec().ghosts, deep = grid_->dimension() == 3 ? far : 0;
-  const int half = smooth_reach, half_z = grid_->dimension() == 3 ? half : 0;
-  for (int k = -deep; k < n[2] + deep; ++k)
-    for (int j = -far; j < n[1] + far; ++j) {
-      bool near = false;
-      for (int m = -half_z; m <= half_z && !near; ++m)
-        for (int o = -half; o <= half && !near; ++o) near = !phase.rows.idle(j + o, k + m);
-      if (near) std::fill_n(psi.row(j, k) - far, n[0] + 2 * far, 0.0);
-    }
+// Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
+Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
+  const bool alone = phase.rows.inside() && !(d == 0 && grid_->wraps_x());
+  return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
 // psi, and the cells within reach of the surface.
@@ -127,7 +119,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
   const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
   const Int3 &n = grid_->owned();
   const ConstView phi = phase.fraction[0];
-  clear_around(phase, psi[0]);
+  clear_around(*grid_, phase.rows, ghosts, psi[0]);
   in_row_parts(*grid_, [&](const RowPart &part) {
     RowScratch scratch(*grid_, 1);
     for (int k = part.k_begin; k < part.k_end; ++k)
@@ -140,8 +132,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
   PetscCall(exchange_->update(psi, ghosts, &phase.rows));
   fill_wall_ghosts_even(*grid_, at_centre, psi[0], ghosts, &phase.rows);
   cells_.clear();
-  const int near = phase.rows.inside() ? 0 : layers + 1;
-  const auto range = [&](int d) { return grid_->points_near(d, false, d < dim ? near : 0); };
+  const auto range = [&](int d) { return near_box(phase, d, layers + 1); };
   const ConstView p = psi[0];
   for (int k = range(2).begin; k < range(2).end; ++k)
     for (int j = range(1).begin; j < range(1).end; ++j) {
@@ -168,9 +159,8 @@ void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
   first_[0] = 0;
   first_[1] = cells_.size();
   for (int l = 1; l <= layers; ++l) {
-    const int near = phase.rows.inside() ? 0 : layers + 1 - l;
     Grid::Range range[3];
-    for (int d = 0; d < 3; ++d) range[d] = grid_->points_near(d, false, d < dim ? near : 0);
+    for (int d = 0; d < 3; ++d) range[d] = near_box(phase, d, layers + 1 - l);
     for (std::size_t n = first_[l - 1]; n < first_[l]; ++n) {
       const Int3 middle = cells_[n].place;
       for (int z = dim == 3 ? -1 : 0; z <= (dim == 3 ? 1 : 0); ++z)

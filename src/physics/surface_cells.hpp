@@ -35,7 +35,7 @@ public:
   PetscErrorCode find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const;
 
 private:
-  void clear_around(const Phase &phase, View smooth) const;
+  Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
   Cell cell_at(ConstView smooth, const Int3 &place) const;
   void find_layers(const Phase &phase, ConstView smooth);
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
