@@ -134,16 +134,18 @@ public:
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate / modulus);
       const Membrane &membrane = spec.membrane;
-      if (spec.law == Law::membrane)
-        report.line("membrane of " + spec.name, "moduli of shear %.6g and of area %.6g, force per length",
-                    membrane.shear_modulus, membrane.largest_modulus() - membrane.shear_modulus);
+      if (spec.is_membrane())
+        report.line("membrane of " + spec.name, "moduli of shear %.6g and of area %.6g, of bending %.6g",
+                    membrane.shear_modulus, membrane.largest_modulus() - membrane.shear_modulus,
+                    membrane.bending_modulus);
       const Real3 &axes = spec.semi_axes;
       const double radius = spec.shape == Shape::ellipsoid ? std::cbrt(axes[0] * axes[1] * axes[2]) : spec.radius;
       if (spec.surface_tension > 0 && radius > 0 && speed > 0)
         report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate x radius / surface tension)",
                     config_.fluid.viscosity * scale.shear_rate * radius / spec.surface_tension);
-      if (spec.law == Law::membrane && radius > 0 && speed > 0)
-        report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate x radius / surface shear modulus)",
+      if (spec.is_membrane() && radius > 0 && speed > 0)
+        report.line("capillary number of " + spec.name,
+                    "%.6g (viscosity x shear rate x radius / surface shear modulus)",
                     config_.fluid.viscosity * scale.shear_rate * radius / membrane.shear_modulus);
     }
   }
@@ -169,6 +171,10 @@ public:
     if (contrast.surface_tension > 0) {
       report.limit("capillary wave", limits.capillary);
       report.limit("viscous surface", limits.capillary_viscous);
+    }
+    if (contrast.bending_modulus > 0) {
+      report.limit("bending wave", limits.bending);
+      report.limit("viscous bending", limits.bending_viscous);
     }
     report.limit("advective", limits.advective);
     if (!limits.scheme.staggered) report.limit("Euler 2 nu/U^2", limits.inertial);

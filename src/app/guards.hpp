@@ -25,7 +25,8 @@ struct Measured {
   SurfaceEnergy surface;
   std::vector<RigidLoad> loads;  ///< of the rigid ones among the bodies
   std::vector<BodyMeasure> bodies;
-  double volume_drift = 0;    ///< of the body that has changed most
+  std::vector<SurfaceMeasure> surfaces;  ///< of the same bodies; empty without membranes
+  double volume_drift = 0;               ///< of the body that has changed most
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
   int drifting_body = -1;     ///< its index
   double mach = 0;            ///< largest speed over the sound speed of artificial compressibility; 0 = there is none

@@ -40,7 +40,7 @@ double fields(const Config &config) {
   const bool tension = std::any_of(config.species.begin(), config.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
   const bool membranes = std::any_of(config.species.begin(), config.species.end(),
-                                     [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
+                                     [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
   const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};

@@ -23,8 +23,7 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"prescribed", "torque"},
        "bodies go with the flow, or are rigid and stay where they are (-NAME_law rigid): a force or a path of a rigid "
        "one cannot be given"},
-      {{"bending", "shell", "curvature"},
-       "membranes (-NAME_law membrane) resist shear and change of area and have no bending stiffness"},
+      {{"shell", "plate"}, "membranes (-NAME_law membrane) are thin: they resist shear, change of area and bending"},
       {{"marangoni", "surfactant", "wetting"},
        "-NAME_surface_tension is one number for a species, and surfaces meet walls at 90 degrees"},
       {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},

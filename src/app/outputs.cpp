@@ -61,7 +61,9 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
                          same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", solver_->rigid() != nullptr);
+    const bool membranes = std::any_of(config_.species.begin(), config_.species.end(),
+                                       [](const SpeciesSpec &spec) { return spec.is_membrane(); });
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, solver_->rigid() != nullptr);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -100,7 +102,7 @@ PetscErrorCode Outputs::measure() {
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
-  PetscCall(solver_->surface_energy(&m.surface));
+  PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
@@ -159,7 +161,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
   std::size_t rigid = 0;
-  for (const BodyMeasure &body : measured_.bodies) {
+  for (std::size_t b = 0; b < measured_.bodies.size(); ++b) {
+    const BodyMeasure &body = measured_.bodies[b];
     BodyRecord record;
     record.id = body.label;
     record.species = config_.species[body.species].name;
@@ -174,6 +177,14 @@ std::vector<BodyRecord> Outputs::records() const {
     if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
       record.force = measured_.loads[rigid].force;
       record.torque = measured_.loads[rigid++].torque;
+    }
+    if (b < measured_.surfaces.size()) {
+      const SurfaceMeasure &surface = measured_.surfaces[b];
+      record.surface_area = surface.area;
+      record.shear_energy = surface.shear_energy;
+      record.area_energy = surface.area_energy;
+      record.bending_energy = surface.bending_energy;
+      record.turning_rate = surface.turning_rate;
     }
     records.push_back(record);
   }

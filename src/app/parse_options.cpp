@@ -7,6 +7,7 @@
 #include "app/option_values.hpp"
 #include "app/openings.hpp"
 #include "app/petsc_options.hpp"
+#include "app/red_cell.hpp"
 #include "app/unknown_option.hpp"
 #include "app/validate.hpp"
 
@@ -95,6 +96,11 @@ public:
     }
     return {};
   }
+  /// As if it were given, where it is not.
+  void preset(const std::string &name, const std::string &value) {
+    if (!given(name)) (void)index_.at(name)->read(value);
+    where_.emplace(name, "");
+  }
   bool given(const std::string &name) const { return where_.count(name) > 0; }
 
 private:
@@ -118,6 +124,9 @@ std::string read_sources(const std::vector<Source> &sources, Config *config) {
     if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
   for (int d = 0; d < 3; ++d)
     config->grid.boundary[d] = config->boundary.bounded(d) ? Boundary::wall : Boundary::periodic;
+  for (const SpeciesSpec &spec : config->species)
+    if (spec.law == Law::red_cell)
+      for (const auto &[name, value] : red_cell_preset()) reader.preset(spec.name + "_" + name, value);
   if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
   if (std::string wrong = resolve_openings(config); !wrong.empty()) return wrong;
   for (const Source &source : sources)

@@ -6,6 +6,7 @@
 #include "app/memory.hpp"
 #include "app/overlap_warning.hpp"
 #include "app/petsc_options.hpp"
+#include "app/red_cell.hpp"
 #include "app/scene.hpp"
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
@@ -71,6 +72,7 @@ PetscErrorCode print_warnings(const Config &config, const Run &run) {
   print_warning(comm, overlap);
   print_warning(comm, run.outputs.unresolved_bodies());
   for (const std::string &warning : attachment_warnings(config)) print_warning(comm, warning);
+  for (const std::string &warning : thin_membrane_warnings(config)) print_warning(comm, warning);
   PetscFunctionReturn(0);
 }
 
@@ -206,6 +208,7 @@ PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
                                   refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
+  for (const std::string &line : red_cell_lines(config)) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);

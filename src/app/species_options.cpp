@@ -7,7 +7,7 @@ namespace {
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
                         "tube",   "constricted_tube", "voxels",    "state"};
-const Names law_names{"neo_hookean", "mooney_rivlin", "membrane", "rigid"};
+const Names law_names{"neo_hookean", "mooney_rivlin", "membrane", "red_cell", "rigid"};
 const Names membrane_names{"neo_hookean", "skalak"};
 const Names placement_names{"one", "list", "lattice", "random"};
 const Names contact_names{"separate", "merge"};
@@ -49,19 +49,22 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
 }
 
 void add_law(Rows &rows, SpeciesSpec &spec) {
-  const auto for_law = [&](std::size_t count, Law wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, {wanted});
+  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
   };
-  rows.choice("law", spec.law, law_names,
-              "constitutive law: sigma = G B, or 2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B, without the trace");
+  rows.choice(
+      "law", spec.law, law_names,
+      "constitutive law: sigma = G B, or 2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B, without the trace; or an "
+      "elastic membrane around a fluid; red_cell: a membrane with the numbers of a red blood cell in um, us and "
+      "1 mPa s, -NAME_shape biconcave and -NAME_viscosity 6, each for its option to overrule");
   rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
       .required = true;
-  for_law(1, Law::neo_hookean);
+  for_law(1, {Law::neo_hookean});
   rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
       .required = true;
   rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
   rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
-  for_law(3, Law::mooney_rivlin);
+  for_law(3, {Law::mooney_rivlin});
   rows.choice("membrane", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
   rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
             "shear modulus G_s of a membrane")
@@ -70,7 +73,12 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; neo_hookean: unused, it is 3 G_s");
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
             "area of a membrane at the start over that at rest");
-  for_law(4, Law::membrane);
+  rows.real("bending_modulus", spec.membrane.bending_modulus, not_negative, "energy",
+            "E_b of the bending energy E_b/2 (kappa - c0)^2 per area of a membrane, kappa the sum of its principal "
+            "curvatures");
+  rows.real("spontaneous_curvature", spec.membrane.spontaneous_curvature, any_number, "1/length",
+            "c0: of a ball with the radius 2/c0, in 2-D of a disc with 1/c0, it is that at rest");
+  for_law(6, {Law::membrane, Law::red_cell});
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
             "velocity V cos(frequency t + phase) of the surface of a rigid body that slides along itself: tube, slab, "
@@ -82,7 +90,7 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time",
             "angular frequency");
   rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
-  for_law(rows.rows.size() - first, Law::rigid);
+  for_law(rows.rows.size() - first, {Law::rigid});
 }
 
 void add_viscosity(Rows &rows, SpeciesSpec &spec) {

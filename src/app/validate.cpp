@@ -104,8 +104,9 @@ std::string check_flow(const Config &config) {
 }
 
 std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
-  if (spec.law != Law::membrane) return {};
-  const std::string law = "-" + spec.name + "_law: membrane needs ";
+  if (!spec.is_membrane()) return {};
+  const std::string name = spec.law == Law::red_cell ? "red_cell" : "membrane",
+                    law = "-" + spec.name + "_law: " + name + " needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
     return law +
            "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
@@ -116,6 +117,9 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.initial_stretch != Real3{1, 1, 1})
     return "-" + spec.name + "_initial_stretch: has no meaning for a membrane; accepted: -" + spec.name +
            "_initial_area_stretch";
+  if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
+    return "-" + spec.name + "_spontaneous_curvature: nothing bends back to it; accepted: 0, or -" + spec.name +
+           "_bending_modulus > 0";
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
+#include "bodies/unwrap.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "grid/threads.hpp"
@@ -64,28 +65,6 @@ PetscErrorCode sum_bodies(const Grid &grid, const Add &add, BodySums *sums) {
   for (const BodySums &some : others) sums->add(some);
   PetscCall(sums->reduce(grid.comm()));
   PetscFunctionReturn(0);
-}
-
-// References, those along periodic directions within the box: what offset() starts from.
-std::vector<Int3> within_box(const Grid &grid, std::vector<Int3> references) {
-  for (Int3 &cell : references)
-    for (int d = 0; d < grid.dimension(); ++d) {
-      const int n = grid.cells()[d];
-      if (!grid.is_wall(d)) cell[d] = (cell[d] % n + n) % n;
-    }
-  return references;
-}
-
-// Cells from a reference within the box to the nearest image of a local cell.
-Real3 offset(const Grid &grid, const Int3 &reference, const Int3 &cell) {
-  Real3 x{};
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const int n = grid.cells()[d], half = n / 2;
-    int distance = grid.layout().begin[d] + cell[d] - reference[d];
-    if (!grid.is_wall(d)) distance += distance < -half ? n : distance >= n - half ? -n : 0;
-    x[d] = distance;
-  }
-  return x;
 }
 
 // Eigenvalues of the symmetric matrix xx, yy, zz, yz, xz, xy, descending, by cyclic Jacobi rotations.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Real3 red_cell{0.207161, 2.002558, -1.122762};
+constexpr Real3 red_cell{red_cell_waist, 2.002558, -1.122762};
 // Bound of |d/dq [(1-q) P(q)^2]| on 0 <= q <= 1, P the polynomial above; beyond, level() is linear in q.
 constexpr double red_cell_slope = 1.23;
 

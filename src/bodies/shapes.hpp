@@ -9,6 +9,8 @@
 
 namespace eulastic {
 
+/// Thickness of a biconcave body on its axis, in radii.
+inline constexpr double red_cell_waist = 0.207161;
 /// Rows of R: box coordinates = R body coordinates.
 using Rotation = std::array<Real3, 3>;
 /// Rotation about x, then y, then z by angles in degrees; multiples of 90 are exact.

@@ -67,12 +67,13 @@ struct SpeciesSpec {
   Real3 orientation{};  ///< Euler angles in degrees: rotations about x, then y, then z
   bool random_orientation = false;
 
+  bool is_membrane() const { return law == Law::membrane || law == Law::red_cell; }
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
     return {at_rest,
             attached.value_or(is_attached(shape)),
             false,
-            law,
+            is_membrane() ? Law::membrane : law,
             c1,
             c2,
             c3,

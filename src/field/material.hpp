@@ -6,7 +6,8 @@
 
 namespace eulastic {
 
-enum class Law { neo_hookean, mooney_rivlin, membrane, rigid };
+/// red_cell: of options alone, a membrane with the numbers of a red blood cell.
+enum class Law { neo_hookean, mooney_rivlin, membrane, red_cell, rigid };
 using kernels::Membrane;
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I

@@ -117,14 +117,26 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool loads)
-    : comm_(comm),
-      path_(std::move(path)),
-      columns_{{"time", 0, {}, 0},           {"centroid", 3, {}, 0},           {"velocity", 3, {}, 0},
-               {"volume", 1, {}, 0},         {"taylor_deformation", 1, {}, 0}, {"inclination", 1, {}, 0},
-               {"elastic_energy", 1, {}, 0}, {"largest_stretch", 1, {}, 0},    {"rest_deformation", 1, {}, 0}} {
-  if (loads) columns_.insert(columns_.end(), {{"force", 3, {}, 0}, {"torque", 3, {}, 0}});
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool membranes, bool loads)
+    : comm_(comm), path_(std::move(path)), membranes_(membranes), loads_(loads) {
+  columns_ = {{"time", 0, {}, 0}, {"centroid", 3, {}, 0}, {"velocity", 3, {}, 0}};
+  for (const char *name :
+       {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch", "rest_deformation"})
+    columns_.push_back({name, 1, {}, 0});
+  for (const char *name : {"surface_area", "shear_energy", "area_energy", "bending_energy", "turning_rate"})
+    if (membranes) columns_.push_back({name, 1, {}, 0});
+  for (const char *name : {"force", "torque"})
+    if (loads) columns_.push_back({name, 3, {}, 0});
   (void)MPI_Comm_rank(comm, &rank_);
+}
+
+std::vector<double> BodiesFile::scalars(const BodyRecord &body) const {
+  std::vector<double> values{body.volume,         body.taylor_deformation, body.inclination,
+                             body.elastic_energy, body.largest_stretch,    body.rest_deformation};
+  if (membranes_)
+    values.insert(values.end(),
+                  {body.surface_area, body.shear_energy, body.area_energy, body.bending_energy, body.turning_rate});
+  return values;
 }
 
 PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodies) {
@@ -138,18 +150,16 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
     for (const BodyRecord &body : bodies) {
       columns_[1].waiting.insert(columns_[1].waiting.end(), body.centroid.begin(), body.centroid.end());
       columns_[2].waiting.insert(columns_[2].waiting.end(), body.velocity.begin(), body.velocity.end());
-      columns_[3].waiting.push_back(body.volume);
-      columns_[4].waiting.push_back(body.taylor_deformation);
-      columns_[5].waiting.push_back(body.inclination);
-      columns_[6].waiting.push_back(body.elastic_energy);
-      columns_[7].waiting.push_back(body.largest_stretch);
-      columns_[8].waiting.push_back(body.rest_deformation);
-      if (columns_.size() == 9) continue;
-      columns_[9].waiting.insert(columns_[9].waiting.end(), body.force.begin(), body.force.end());
-      columns_[10].waiting.insert(columns_[10].waiting.end(), body.torque.begin(), body.torque.end());
+      const std::vector<double> values = scalars(body);
+      for (std::size_t c = 0; c < values.size(); ++c) columns_[3 + c].waiting.push_back(values[c]);
+      for (std::size_t c = 0; loads_ && c < 2; ++c) {
+        const Real3 &load = c == 0 ? body.force : body.torque;
+        std::vector<double> &waiting = columns_[3 + values.size() + c].waiting;
+        waiting.insert(waiting.end(), load.begin(), load.end());
+      }
     }
     ++waiting_;
-    const std::size_t bytes = waiting_ * (1 + 18 * bodies.size()) * sizeof(double);
+    const std::size_t bytes = waiting_ * (1 + (12 + (membranes_ ? 5 : 0) + (loads_ ? 6 : 0)) * bodies.size()) * sizeof(double);
     if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
   }
   PetscCall(fail_together(comm_, problem));

@@ -14,8 +14,8 @@ namespace eulastic {
 
 class BodiesFile {
 public:
-  /// `loads`: with force and torque, where there are rigid bodies.
-  BodiesFile(MPI_Comm comm, std::string path, bool loads = false);
+  /// `membranes`: with what is known of those alone; `loads`: with force and torque, where there are rigid bodies.
+  BodiesFile(MPI_Comm comm, std::string path, bool membranes = false, bool loads = false);
 
   /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
@@ -27,6 +27,7 @@ public:
   PetscErrorCode resume(long *rows);
 
 private:
+  std::vector<double> scalars(const BodyRecord &body) const;  ///< of the columns behind the vectors
   struct Column {
     const char *name;
     int width;  ///< values per body; 0 = one per row
@@ -41,6 +42,7 @@ private:
   std::string path_;
   std::vector<BodyRecord> first_;  ///< who the bodies are
   std::vector<Column> columns_;
+  bool membranes_, loads_;
   std::size_t written_ = 0, waiting_ = 0;  ///< rows
 };
 

@@ -20,6 +20,11 @@ std::string summary_text(const Summary &s) {
                          .add("elastic_energy", b.elastic_energy)
                          .add("largest_stretch", b.largest_stretch)
                          .add("rest_deformation", b.rest_deformation)
+                         .add("surface_area", b.surface_area)
+                         .add("shear_energy", b.shear_energy)
+                         .add("area_energy", b.area_energy)
+                         .add("bending_energy", b.bending_energy)
+                         .add("turning_rate", b.turning_rate)
                          .add("force", b.force)
                          .add("torque", b.torque));
   std::vector<Json> sides;

@@ -94,7 +94,7 @@ EULASTIC_INLINE Tensor<Dim> project_surface(const Tensor<Dim> &B, const Vector<D
   return out;
 }
 
-/// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one.
+/// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one; `area`: J.
 struct MembraneState {
   double alpha, beta, energy, area;
 };
@@ -104,6 +104,12 @@ EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStr
     return {G / J, -G / (J * s.area_squared), 0.5 * G * (s.trace + 1 / s.area_squared - 3), J};
   const double I1 = s.trace - 2, I2 = s.area_squared - 1, C = m.area_modulus;
   return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
+}
+
+/// The part of the energy that the change of area alone would take, stretched alike in all directions of the surface.
+EULASTIC_INLINE double area_energy(const Membrane &m, const SurfaceStrain &s) noexcept {
+  const double J = __builtin_sqrt(s.area_squared);
+  return membrane_state(m, {2 * J, s.area_squared}).energy;
 }
 
 }  // namespace eulastic::kernels

@@ -11,6 +11,7 @@ struct Membrane {
   MembraneLaw law = MembraneLaw::neo_hookean;
   double shear_modulus = 0, area_modulus = 1;
   double initial_area_stretch = 1;
+  double bending_modulus = 0, spontaneous_curvature = 0;  ///< E_b (energy) and c0 (1/length; 2/R of a ball at rest)
   double largest_modulus() const {
     return shear_modulus * (1 + (law == MembraneLaw::neo_hookean ? 3 : 1 + 2 * area_modulus));
   }

@@ -194,6 +194,9 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
   const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
   limits.capillary = std::sqrt(over(fluid.density * shortest * shortest * shortest, 2 * pi * contrast.surface_tension));
   limits.capillary_viscous = over(shortest, contrast.capillary_speed);
+  const double wave_number = pi / (2 * shortest), cubed = wave_number * wave_number * wave_number;
+  limits.bending = std::sqrt(over(8 * fluid.density, contrast.bending_modulus * cubed * (wave_number * wave_number)));
+  limits.bending_viscous = over(8, contrast.bending_rate * cubed);
   limits.forcing = over(2 * pi, frequency);
   return limits;
 }
@@ -214,6 +217,8 @@ double TimeStepLimits::automatic(const char **name) const {
                          : Bound{elastic_share * elastic, "elastic wave"});
   const double wave = capillary_share * capillary, viscous_surface = capillary_viscous_share * capillary_viscous;
   bounds.push_back({scheme.rkl ? std::max(wave, viscous_surface) : wave, "capillary wave"});
+  const double bending_wave = capillary_share * bending, slow_bending = capillary_viscous_share * bending_viscous;
+  bounds.push_back({scheme.rkl ? std::max(bending_wave, slow_bending) : bending_wave, "bending wave"});
   if (!scheme.staggered) bounds.push_back({inertial_share * inertial, "Euler 2 nu/U^2"});
   const auto least =
       std::min_element(bounds.begin(), bounds.end(), [](const Bound &a, const Bound &b) { return a.dt < b.dt; });
@@ -229,6 +234,7 @@ const char *TimeStepLimits::broken(double dt) const {
     return dt >= viscous ? "viscous" : "viscous + elastic wave";
   }
   if (dt >= (scheme.rkl ? std::max(capillary, capillary_viscous) : capillary)) return "capillary wave";
+  if (dt >= (scheme.rkl ? std::max(bending, bending_viscous) : bending)) return "bending wave";
   if (dt >= advective / share) return "advective";
   if (!scheme.staggered && dt >= inertial) return "Euler 2 nu/U^2";
   return nullptr;

@@ -45,6 +45,8 @@ struct TimeStepLimits {
   double inertial;           ///< 2 nu/U^2, where Euler's anti-diffusion eats the viscosity
   double capillary;          ///< sqrt(rho h^3/(2 pi sigma)), the shortest capillary wave
   double capillary_viscous;  ///< h mu/sigma, of surfaces that follow their tension as viscosity lets them
+  double bending;            ///< sqrt(8 rho/(E_b k^5)), k = pi/(2 h): the shortest bending wave that is felt
+  double bending_viscous;    ///< 8 mu/(E_b k^3), of membranes that follow their bending as viscosity lets them
   double forcing;            ///< the shortest period of walls and body force
   /// The automatic step and the name of what sets it.
   double automatic(const char **name = nullptr) const;

@@ -2,26 +2,31 @@
 // the flow; docs/method.md, section 18.
 #pragma once
 
+#include "bodies/surface_measures.hpp"
 #include "field/work_space.hpp"
+#include "physics/bending.hpp"
 #include "physics/elastic_force.hpp"
 #include "physics/surface_cells.hpp"
 #include "physics/surface_tension.hpp"
 #include "physics/transport.hpp"
 
+#include <functional>
+
 namespace eulastic {
 
-/// Nothing inside evolves; faces feel stress as far around the body as phi is smoothed, and one more.
-inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 4};
+/// Nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
+inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
 
 class MembraneTransport {
 public:
   /// Ghosts of the velocity that `advance` reads.
   static constexpr int velocity_ghosts = 4;
   /// Of the work space, during each call.
-  static constexpr int work_fields(int dimension) { return 1 + (dimension == 2 ? 3 : 6); }
+  static constexpr int work_fields(int dimension) { return 1 + (dimension == 2 ? MembraneBending::work_fields : 6); }
 
-  MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work)
-      : grid_(&grid), work_(&work), surface_(grid, exchange) {}
+  /// `drifts`: as of SurfaceTension, for bending.
+  MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
+      : grid_(&grid), work_(&work), surface_(grid, exchange), bending_(grid, exchange), drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
   /// B_s of an undeformed membrane, or one stretched alike in all directions. Five ghosts of phi, here and below.
@@ -30,21 +35,30 @@ public:
   PetscErrorCode extend(Phase *phase);
   /// B_s over dt with the flow; phi has moved. Leaves layers and ghosts filled.
   PetscErrorCode advance(double dt, const FieldBlock &velocity, Phase *phase);
-  /// force += scale div(delta tau) at owned faces; with a factor also to `slope`.
-  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, FieldBlock &force,
+  /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`.
+  /// `balanced`: as of SurfaceTension, for bending; the divergence of a stress adds up to nothing.
+  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
                            const ForceSlope &slope = {});
-  /// Adds energy and power.
-  PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured);
+  /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
+  PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured,
+                         std::vector<SurfaceSample> *samples = nullptr);
 
 private:
-  /// delta tau at centres into `stress`, psi into `smooth`.
-  PetscErrorCode find_stress(const Phase &phase, WorkSpace::Lease *smooth, WorkSpace::Lease *stress);
+  /// delta tau at centres, of the cells in surface_.
+  PetscErrorCode find_stress(const Phase &phase, FieldBlock &stress);
+  /// Called with the part, whether it is of bending, component, j, k and the force on the owned faces of the row.
+  using ForceRow = std::function<void(int, bool, int, int, int, const double *)>;
+  PetscErrorCode for_force_rows(const Phase &phase, ConstView smooth, double scale, const ForceRow &use);
+  PetscErrorCode measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
+                               std::vector<SurfaceSample> *samples);
   template <int Dim>
   void stage(double dt, const FieldBlock &velocity, bool second, FieldBlock &tensor, FieldBlock &next) const;
 
   const Grid *grid_;
   WorkSpace *work_;
-  SurfaceCells surface_;  ///< of the phase that is worked on
+  SurfaceCells surface_;     ///< of the phase that is worked on
+  MembraneBending bending_;  ///< the same
+  bool drifts_;
 };
 
 }  // namespace eulastic

@@ -1,8 +1,9 @@
+// MembraneTransport: the force of membranes on the flow.
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/row_scratch.hpp"
 #include "physics/membrane.hpp"
 #include "physics/membrane_tensor.hpp"
+#include "physics/net_force.hpp"
 
 #include <algorithm>
 
@@ -36,6 +37,15 @@ EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inve
   divergence_row<3>(T, a, inverse, n, j, k, scale, out);
 }
 
+// To the force, and a factor times it to its change, where there is one.
+EULASTIC_CLONES void add_row(int n, const double *added, double factor, double *force, double *slope) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) force[i] += added[i];
+  if (!slope) return;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
+}
+
 // Rows in which faces feel a stress that lives in rows that are not idle, or the next ones.
 bool feels(const OccupiedRows &rows, int j, int k) {
   for (int m = -1; m <= 1; ++m)
@@ -47,13 +57,9 @@ bool feels(const OccupiedRows &rows, int j, int k) {
 }  // namespace
 
 // delta tau in owned cells and one layer of ghosts; 0 elsewhere on rows that feel it.
-PetscErrorCode MembraneTransport::find_stress(const Phase &phase, WorkSpace::Lease *psi, WorkSpace::Lease *lease) {
+PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) {
   PetscFunctionBeginUser;
-  PetscCall(work_->take("smoothed solid fraction", 1, psi));
-  PetscCall(work_->take("stress of a membrane", phase.tensor.count(), lease));
-  PetscCall(surface_.find(phase, psi->fields()));
   VerbScope scope(Verb::membrane);
-  FieldBlock &stress = lease->fields();
   const int dim = grid_->dimension();
   const Int3 &n = grid_->owned();
   for (int k = dim == 3 ? -1 : 0; k < n[2] + (dim == 3); ++k)
@@ -83,76 +89,64 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, WorkSpace::Lea
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, FieldBlock &force,
-                                            const ForceSlope &slope) {
+// Of the cells in surface_: that of the stress, then that of bending.
+PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView smooth, double scale,
+                                                 const ForceRow &use) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension(), n = grid_->owned()[0];
+  const int dim = grid_->dimension();
   const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
-  for (const Phase &phase : phases) {
-    if (!phase.material.is_membrane()) continue;
-    WorkSpace::Lease psi, lease;
-    PetscCall(find_stress(phase, &psi, &lease));
+  const int n = grid_->owned()[0];
+  for (const bool bending : {false, true}) {
+    if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
+    WorkSpace::Lease lease;
+    FieldBlock &fields = lease.fields();
+    PetscCall(work_->take(bending ? "bending" : "stress of a membrane",
+                          bending ? MembraneBending::work_fields : phase.tensor.count(), &lease));
+    if (bending)
+      PetscCall(bending_.find(phase, smooth, fields));
+    else
+      PetscCall(find_stress(phase, fields));
     VerbScope scope(Verb::membrane);
     in_row_parts(*grid_, [&](const RowPart &part) {
       RowScratch scratch(*grid_, 1);
-      double *added = scratch.row(0);
+      double *force = scratch.row(0);
       for (int k = part.k_begin; k < part.k_end; ++k)
         for (int j = part.j_begin; j < part.j_end; ++j) {
           if (phase.rows.idle(j, k)) continue;
           for (int a = 0; a < dim; ++a) {
-            (dim == 2 ? divergence_2d : divergence_3d)(lease.fields(), a, inverse, n, j, k, scale, added);
-            double *f = force[a].row(j, k), *change = slope.field ? (*slope.field)[a].row(j, k) : nullptr;
-            for (int i = 0; i < n; ++i) {
-              f[i] += added[i];
-              if (change) change[i] = kernels::fma(slope.factor, added[i], change[i]);
-            }
+            if (bending)
+              bending_.force_row(fields, a, j, k, scale, force);
+            else
+              (dim == 2 ? divergence_2d : divergence_3d)(fields, a, inverse, n, j, k, scale, force);
+            use(part.number, bending, a, j, k, force);
           }
         }
     });
-    scope.flops(double(phase.rows.cells()) * dim * 12 * dim);
+    scope.flops(double(phase.rows.cells()) * dim * (bending ? 6 : 12 * dim));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const FieldBlock &velocity,
-                                          SurfaceEnergy *measured) {
+PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
+                                            FieldBlock &force, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
-  const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const int n = grid_->owned()[0];
+  const bool bends = std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
+    return phase.material.is_membrane() && phase.material.membrane.bending_modulus > 0;
+  });
+  NetForce net(*grid_, balanced && drifts_ && bends);
   for (const Phase &phase : phases) {
     if (!phase.material.is_membrane()) continue;
-    WorkSpace::Lease psi, lease;
-    PetscCall(find_stress(phase, &psi, &lease));
-    VerbScope scope(Verb::sums);
-    const View energy = psi.fields()[0];  // in place of psi
-    for (const Segment &row : grid_->rows())
-      if (!phase.rows.idle(row.j, row.k)) std::fill_n(energy.row(row.j, row.k), n, 0.0);
-    for (const SurfaceCells::Cell &cell : surface_.all()) {
-      if (!cell.owned) continue;
-      const kernels::SurfaceStrain strain = dim == 2 ? kernels::surface_strain<2>(tensor_at<2>(phase.tensor, cell.at))
-                                                     : kernels::surface_strain<3>(tensor_at<3>(phase.tensor, cell.at));
-      const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
-      energy.origin[cell.at] = cell.delta * state.energy / state.area;
-    }
-    const auto add = [&](const RowPart &part, ExactSums &sums) {
-      std::vector<double> power(n), force(n);
-      for (const Segment &row : part.rows(*grid_)) {
-        if (phase.rows.idle(row.j, row.k)) continue;
-        std::fill(power.begin(), power.end(), 0.0);
-        for (int a = 0; a < dim; ++a) {
-          (dim == 2 ? divergence_2d : divergence_3d)(lease.fields(), a, inverse, n, row.j, row.k, 1, force.data());
-          const double *v = velocity[a].row(row.j, row.k);
-          for (int i = 0; i < n; ++i) power[i] = kernels::fma(-force[i], v[i], power[i]);
-        }
-        sums.add_row(0, power.data(), n, first);
-        sums.add_row(1, energy.row(row.j, row.k), n, first);
-      }
-    };
-    double sum[2];
-    PetscCall(sum_row_parts(*grid_, 2, add, sum));
-    measured->power += sum[0] * grid_->cell_volume();
-    measured->energy += sum[1] * grid_->cell_volume();
+    WorkSpace::Lease psi;
+    PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+    PetscCall(surface_.find(phase, psi.fields()));
+    PetscCall(for_force_rows(
+        phase, psi.fields()[0], scale, [&](int part, bool bending, int a, int j, int k, const double *added) {
+          add_row(n, added, slope.factor, force[a].row(j, k), slope.field ? (*slope.field)[a].row(j, k) : nullptr);
+          if (bending) net.add_row(part, a, added);
+        }));
   }
+  PetscCall(net.take_off(force));
   PetscFunctionReturn(0);
 }
 

@@ -6,39 +6,16 @@
 #include "grid/threads.hpp"
 #include "kernels/tensor.hpp"
 #include "physics/membrane_tensor.hpp"
+#include "physics/smooth_row.hpp"
 
 #include <algorithm>
 
 namespace eulastic {
 namespace {
 
-constexpr int half = 2;  // of the filter, in cells
-constexpr double weights[half + 1] = {6. / 16, 4. / 16, 1. / 16};
 constexpr double variance = 1.15;    // of filter and cell, in h^2
 constexpr double solid = 1e-5;       // a body's own cells have more, as labels do
 constexpr double negligible = 1e-6;  // of psi and 1 - psi
-
-// The mean of phi with binomial weights, of a row; pairs first, so that mirrored rows give the mirrored bits.
-EULASTIC_CLONES void smooth_row(int dim, ConstView phi, int j, int k, int begin, int end, double *across, double *out) {
-  const int first = begin - half, last = end + half;
-  std::fill(across + first, across + last, 0.0);
-  for (int m = 0; m <= (dim == 3 ? half : 0); ++m)
-    for (int n = 0; n <= half; ++n) {
-      const double w = (dim == 3 ? weights[m] : 1) * weights[n];
-      const double *low = phi.row(j - n, k - m), *high = phi.row(j + n, k - m);
-      const double *low2 = phi.row(j - n, k + m), *high2 = phi.row(j + n, k + m);
-      const double share = (m == 0 ? 0.5 : 1) * (n == 0 ? 0.5 : 1) * w;
-#pragma omp simd
-      for (int i = first; i < last; ++i)
-        across[i] = kernels::fma(share, (low[i] + high2[i]) + (high[i] + low2[i]), across[i]);
-    }
-#pragma omp simd
-  for (int i = begin; i < end; ++i) {
-    double sum = weights[0] * across[i];
-    for (int n = 1; n <= half; ++n) sum = kernels::fma(weights[n], across[i - n] + across[i + n], sum);
-    out[i] = sum;
-  }
-}
 
 // Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
 template <int Dim>
@@ -95,7 +72,7 @@ bool is_nearest(const SurfaceCells::Cell &cell, const Real3 &spacing) {
 
 // psi is (1 - erf)/2 of the distance over its width s: with y = sqrt(2 pi) (1/2 - psi) that is y + y^3/6 + 7/120 y^5 +
 // ... times s. Central differences are too small by (n_d h_d/s)^2 (1 - (distance/s)^2)/6, which turns normals towards
-// the axes.
+// the axes; their size is right on the whole, as differences across a surface add up to 1.
 SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const {
   constexpr double root_two_pi = 2.5066282746310002;
   Cell cell{};
@@ -120,11 +97,19 @@ SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const
   normalise(gradient);
   const double slope = width > 0 ? (u * u < 3 ? 1 - u * u : -2) / (6 * width) : 0;
   for (int d = 0; d < 3; ++d) gradient[d] /= 1 - slope * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+  const double unmended = cell.delta;
   normalise(gradient);
+  cell.delta = unmended;
   cell.distance = u * __builtin_sqrt(width);
   cell.owned = true;
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];
   return cell;
+}
+
+// Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
+Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
+  const bool alone = phase.rows.inside() && !(d == 0 && grid_->wraps_x());
+  return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
 // psi, and the cells within reach of the surface.
@@ -134,6 +119,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
   const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
   const Int3 &n = grid_->owned();
   const ConstView phi = phase.fraction[0];
+  clear_around(*grid_, phase.rows, ghosts, psi[0]);
   in_row_parts(*grid_, [&](const RowPart &part) {
     RowScratch scratch(*grid_, 1);
     for (int k = part.k_begin; k < part.k_end; ++k)
@@ -146,8 +132,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
   PetscCall(exchange_->update(psi, ghosts, &phase.rows));
   fill_wall_ghosts_even(*grid_, at_centre, psi[0], ghosts, &phase.rows);
   cells_.clear();
-  const int near = phase.rows.inside() ? 0 : layers + 1;
-  const auto range = [&](int d) { return grid_->points_near(d, false, d < dim ? near : 0); };
+  const auto range = [&](int d) { return near_box(phase, d, layers + 1); };
   const ConstView p = psi[0];
   for (int k = range(2).begin; k < range(2).end; ++k)
     for (int j = range(1).begin; j < range(1).end; ++j) {
@@ -174,9 +159,8 @@ void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
   first_[0] = 0;
   first_[1] = cells_.size();
   for (int l = 1; l <= layers; ++l) {
-    const int near = phase.rows.inside() ? 0 : layers + 1 - l;
     Grid::Range range[3];
-    for (int d = 0; d < 3; ++d) range[d] = grid_->points_near(d, false, d < dim ? near : 0);
+    for (int d = 0; d < 3; ++d) range[d] = near_box(phase, d, layers + 1 - l);
     for (std::size_t n = first_[l - 1]; n < first_[l]; ++n) {
       const Int3 middle = cells_[n].place;
       for (int z = dim == 3 ? -1 : 0; z <= (dim == 3 ? 1 : 0); ++z)
@@ -218,6 +202,37 @@ PetscErrorCode SurfaceCells::extend(const Phase &phase, FieldBlock &tensor) cons
                                                                   stride, tensor);
     });
   PetscCall(exchange(phase, tensor, Grid::stencil_width));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SurfaceCells::find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const {
+  PetscFunctionBeginUser;
+  const View all = scratch[0];
+  for (std::size_t c = 0; c < nearest(); ++c)
+    if (cells_[c].owned) all.origin[cells_[c].at] = phase.label[0].origin[cells_[c].at];
+  PetscCall(exchange_->update(scratch, layers, &phase.rows));
+  const Layout &layout = grid_->layout();
+  const int *number = number_.data() + layout.origin;
+  labels->assign(cells_.size(), 0);
+  const auto within = [&](const Int3 &place, int ghosts) {
+    bool inside = true;
+    for (int d = 0; d < grid_->dimension(); ++d)
+      inside = inside && place[d] >= -ghosts && place[d] < layout.cells[d] + ghosts;
+    return inside;
+  };
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const Cell &cell = cells_[c];
+    if (!within(cell.place, layers - cell.layer)) continue;
+    int &label = (*labels)[c];
+    if (cell.layer == 0) label = static_cast<int>(all.origin[cell.at]);
+    const int depth = grid_->dimension() == 3 ? 1 : 0;
+    for (int z = -depth; z <= depth && cell.layer > 0; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const int at = number[cell.at + x + y * layout.sy + z * layout.sz];
+          if (label == 0 && at >= 0 && cells_[at].layer < cell.layer) label = (*labels)[at];
+        }
+  }
   PetscFunctionReturn(0);
 }
 

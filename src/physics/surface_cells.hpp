@@ -22,7 +22,7 @@ public:
   };
 
   SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
-  /// `smooth`: a field of work space. Five ghosts of phi.
+  /// `smooth`: a field of work space, 0 within two cells around the rows of the phase. Five ghosts of phi.
   PetscErrorCode find(const Phase &phase, FieldBlock &smooth);
   /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
   /// every layer.
@@ -30,8 +30,12 @@ public:
   std::size_t nearest() const { return first_[1]; }  ///< how many
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
   PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
+  /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one
+  /// before. `scratch`: a field of work space.
+  PetscErrorCode find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const;
 
 private:
+  Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
   Cell cell_at(ConstView smooth, const Int3 &place) const;
   void find_layers(const Phase &phase, ConstView smooth);
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;

@@ -5,6 +5,8 @@
 #include "field/sides.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/height_curvature.hpp"
+#include "kernels/plane_area.hpp"
+#include "physics/net_force.hpp"
 
 #include <algorithm>
 
@@ -161,14 +163,7 @@ EULASTIC_INLINE double area_at(const Curvature &c, const double *q) {
     face[d] = (Dim == 2 ? 1 : h[(d + 2) % 3]) * h[(d + 1) % Dim];
     if (__builtin_fabs(*q - q[-c.stride[d]]) == 1) area += face[d];
   }
-  if (!(*q > 0 && *q < 1)) return area;
-  const kernels::InterfaceNormal n = kernels::interface_normal<Dim>(q, c.stride[0], c.stride[1], c.stride[2]);
-  const double m[3] = {__builtin_fabs(n.a), __builtin_fabs(n.b), __builtin_fabs(n.c)};
-  if (!(m[0] + m[1] + m[2] > 0)) return area;
-  const double slope = kernels::volume_slope<Dim>(kernels::plane_constant<Dim>(*q, m[0], m[1], m[2]), m[0], m[1], m[2]);
-  double square = 0;
-  for (int d = 0; d < Dim; ++d) square = kernels::fma(m[d] * face[d], m[d] * face[d], square);
-  return area + slope * __builtin_sqrt(square);
+  return *q > 0 && *q < 1 ? area + kernels::plane_area<Dim>(q, c.stride, face) : area;
 }
 
 // Pieces of the band on an owned row.
@@ -231,8 +226,8 @@ PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fi
 PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
                                          FieldBlock &force, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
-  Real3 net{};
+  const int dim = grid_->dimension(), n = grid_->owned()[0];
+  NetForce net(*grid_, balanced && drifts_);
   WorkSpace::Lease lease;
   PetscCall(work_->take("curvature", work_fields, &lease));
   for (const Phase &phase : phases) {
@@ -241,7 +236,7 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
     PetscCall(find_curvature(phase, lease.fields()));
     VerbScope scope(Verb::surface_tension);
     const Curvature curvature(*grid_, phase, lease.fields());
-    const auto add = [&](const RowPart &part, ExactSums &sums) {
+    in_row_parts(*grid_, [&](const RowPart &part) {
       std::vector<double> added(n);
       for (int d = 0; d < dim; ++d) {
         const Faces faces{curvature, d, scale * sigma / grid_->spacing()[d]};
@@ -251,29 +246,13 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
           for_owned(*grid_, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
           add_row(n, added.data(), slope.factor, force[d].row(j, k),
                   slope.field ? (*slope.field)[d].row(j, k) : nullptr);
-          if (balanced && drifts_) sums.add_row(d, added.data(), n, first);
+          net.add_row(part.number, d, added.data());
         });
       }
-    };
-    const int parts = row_parts(*grid_);
-    std::vector<ExactSums> sums(parts, ExactSums(dim));
-    in_parallel(parts, parts, [&](int part) { add(row_part(*grid_, part, parts), sums[part]); });
-    scope.flops(band_.points() * dim * (slope.field ? 9 : 7));
-    if (!(balanced && drifts_)) continue;
-    double sum[3];
-    PetscCall(reduce_parts(grid_->comm(), sums, sum));
-    for (int d = 0; d < dim; ++d) net[d] += sum[d];
-  }
-  for (int d = 0; d < dim && balanced && drifts_; ++d) {
-    if (grid_->is_wall(d)) continue;
-    const double mean = net[d] / grid_->cell_count();
-    in_row_parts(*grid_, [&](const RowPart &part) {
-      for_rows_in_blocks(part, [&](int j, int k) {
-        double *row = force[d].row(j, k);
-        for (int i = 0; i < n; ++i) row[i] -= mean;
-      });
     });
+    scope.flops(band_.points() * dim * (slope.field ? 9 : 7));
   }
+  PetscCall(net.take_off(force));
   PetscFunctionReturn(0);
 }
 

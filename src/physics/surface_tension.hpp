@@ -10,8 +10,9 @@ namespace eulastic {
 
 /// Of all phases together; 2-D: per unit depth.
 struct SurfaceEnergy {
-  double energy = 0;  ///< sum of sigma times the area of the planes that transport cuts cells with
-  double power = 0;   ///< minus that of the force: flow to surfaces
+  double energy =
+      0;  ///< sum of sigma times the area of the planes that transport cuts cells with, and that of membranes
+  double power = 0;  ///< minus that of the forces: flow to surfaces
 };
 
 class SurfaceTension {

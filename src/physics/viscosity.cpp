@@ -89,6 +89,9 @@ void ViscosityContrast::add(const Material &material, double stiffness) {
       std::max(material.surface_tension, material.is_membrane() ? share * material.membrane.largest_modulus() : 0);
   surface_tension = std::max(surface_tension, tension);
   if (tension > 0) capillary_speed = std::max(capillary_speed, 2 * tension / (own + fluid));
+  const double bending = material.is_membrane() ? material.membrane.bending_modulus : 0;
+  bending_modulus = std::max(bending_modulus, bending);
+  bending_rate = std::max(bending_rate, 2 * bending / (own + fluid));
   if (!(stiffness > 0)) return;
   const double weakest = own > 2 * fluid ? 4 * fluid * (1 - fluid / own) : own;
   kelvin_voigt = std::min(kelvin_voigt, 2 * weakest / stiffness);

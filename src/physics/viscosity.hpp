@@ -20,6 +20,8 @@ struct ViscosityContrast {
   double kelvin_voigt = std::numeric_limits<double>::infinity();  ///< least 2 mu/(rho c^2) of any cell with solid
   double surface_tension = 0;                                     ///< the largest
   double capillary_speed = 0;  ///< the largest sigma over the mean viscosity on both sides of a surface
+  double bending_modulus = 0;  ///< the largest
+  double bending_rate = 0;     ///< the largest E_b over the mean viscosity on both sides of a surface
 
   explicit ViscosityContrast(const Fluid &f) : fluid(f.viscosity), least(f.viscosity), most(f.viscosity) {}
   /// A body, with the largest rho c^2 in it.

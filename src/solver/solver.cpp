@@ -99,7 +99,7 @@ PetscErrorCode Solver::prepare() {
   if (SurfaceTension::exists(now_.phases))
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
-    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_);
+    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_, drifts());
   PetscCall(work_->reserve(work_fields(
       spec_, grid_->dimension(),
       {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
@@ -210,7 +210,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
     const double scale = -1 / (dt * spec_.fluid.density);
     PetscCall(compute_elastic_force(*grid_, scale, now_.phases, slope_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
-    if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, slope_));
+    if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, false, slope_));
   }
   PetscCall(transport(now_.phases, dt));
   PetscFunctionReturn(0);
@@ -259,7 +259,7 @@ PetscErrorCode Solver::predict(double dt) {
                           slope));
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
-  if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, rate.fields(), slope));
+  if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
   std::vector<double> cut;
   if (rigid_) {

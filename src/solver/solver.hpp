@@ -57,8 +57,9 @@ public:
   /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
   PetscErrorCode viscosity_now(const FieldBlock **viscosity);
-  /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension.
-  PetscErrorCode surface_energy(SurfaceEnergy *measured);
+  /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and
+  /// membranes. `bodies`: what is known of the surface of every body, if there are labels and membranes.
+  PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
   const RigidFaces *rigid() const { return rigid_.get(); }
   /// Sides with profiles that know the bodies; before prepare().
   void set_profiles(const BoxSides &sides) { spec_.sides = sides; }

@@ -39,14 +39,18 @@ bool Solver::drifts() const {
   return true;
 }
 
-PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured) {
+PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies) {
   PetscFunctionBeginUser;
   *measured = {};
   if (!surface_tension_ && !membranes_) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
   if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
-  if (membranes_) PetscCall(membranes_->measure(*phases, now_.velocity, measured));
+  if (!membranes_) PetscFunctionReturn(0);
+  std::vector<SurfaceSample> samples;
+  PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
+  if (bodies && bodies_.bodies() > 0)
+    PetscCall(measure_surfaces(*grid_, *phases, samples, bodies_.references(), bodies));
   PetscFunctionReturn(0);
 }
 

@@ -25,6 +25,7 @@ void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 struct End {
   std::uint64_t hash = 0;
   SurfaceEnergy surface;
+  std::vector<SurfaceMeasure> bodies;
   long phases = 0;
 };
 
@@ -52,7 +53,7 @@ End run(MPI_Comm comm, const Case &c) {
   capsule.law = Law::membrane;
   capsule.radius = 1.1;
   if (c.viscosity > 0) capsule.viscosity = c.viscosity;
-  capsule.membrane = {c.law, 2, 1.5, 1.1};
+  capsule.membrane = {c.law, 2, 1.5, 1.1, 0.02, 0.5};
   const double z = flat ? 0.125 : grid.length[2] / 2;
   const std::vector<BodyPlace> places{{{0.6, 1.7, z}, {}}, {{3.2, 2.2, z}, {}}};
   Phase phase;
@@ -70,7 +71,7 @@ End run(MPI_Comm comm, const Case &c) {
   End end;
   end.phases = static_cast<long>(scene.solver.state().phases.size());
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
-  EXPECT_EQ(scene.solver.surface_energy(&end.surface), 0);
+  EXPECT_EQ(scene.solver.surface_energy(&end.surface, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
   return end;
 }
@@ -81,6 +82,15 @@ TEST_P(Capsules, SameBitsAsOnOneRank) {
   const End all = run(PETSC_COMM_WORLD, GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
   EXPECT_EQ(all.hash, alone.hash);
   EXPECT_EQ(std::memcmp(&all.surface, &alone.surface, sizeof all.surface), 0);
+  ASSERT_EQ(all.bodies.size(), 2u);
+  EXPECT_EQ(std::memcmp(all.bodies.data(), alone.bodies.data(), 2 * sizeof(SurfaceMeasure)), 0);
+  double sum = 0;
+  for (const SurfaceMeasure &body : all.bodies) {
+    EXPECT_GT(body.area, 0.1);
+    EXPECT_GT(body.bending_energy, 0);
+    sum += body.shear_energy + body.area_energy + body.bending_energy;
+  }
+  EXPECT_NEAR(sum, all.surface.energy, 1e-9 * sum);
   EXPECT_EQ(all.phases, 2);  // near each other
 }
 

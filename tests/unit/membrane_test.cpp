@@ -184,7 +184,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     Ball ball(dim);
     WorkSpace work(ball.grid);
     ASSERT_EQ(work.reserve(MembraneTransport::work_fields(dim)), 0);
-    MembraneTransport membrane(ball.grid, *ball.exchange, work);
+    MembraneTransport membrane(ball.grid, *ball.exchange, work, false);
     ball.phases[0].material.law = Law::membrane;
     ball.phases[0].material.membrane.shear_modulus = 2;
     FieldBlock velocity(ball.grid, dim);
@@ -199,7 +199,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
       const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
       EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
       FieldBlock force(ball.grid, dim);
-      ASSERT_EQ(membrane.add_force(ball.phases, 1, force), 0);
+      ASSERT_EQ(membrane.add_force(ball.phases, 1, false, force), 0);
       // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
       double virial = 0, largest = 0;
       ball.each_owned([&](int i, int j, int k) {

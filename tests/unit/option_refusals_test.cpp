@@ -55,7 +55,7 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
        {"-outlet_pressure 1", {"\"outlet\" is not supported", "-boundary_xmin", read}},
        {"-cell_torque 1,0,0", {"\"torque\" is not supported", "-NAME_law rigid", read}},
-       {"-cell_bending_stiffness 1", {"\"bending\" is not supported", "-NAME_law membrane", read}},
+       {"-cell_shell_thickness 1", {"\"shell\" is not supported", "-NAME_law membrane", read}},
        {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
        {"-boundary_x outflow", {"-boundary_x", "\"outflow\" is not a choice", "one of periodic, wall"}},
        {"-density 1", {"nearest known: -fluid_density"}},

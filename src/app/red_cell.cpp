@@ -1,0 +1,57 @@
+#include "app/red_cell.hpp"
+
+#include "bodies/shapes.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace eulastic {
+
+const std::vector<std::pair<std::string, std::string>> &red_cell_preset() {
+  static const std::vector<std::pair<std::string, std::string>> preset{
+      {"shape", "biconcave"}, {"membrane", "skalak"},        {"surface_shear_modulus", "0.0053"},
+      {"area_modulus", "20"}, {"bending_modulus", "0.0002"}, {"viscosity", "6"}};
+  return preset;
+}
+
+std::vector<std::string> red_cell_lines(const Config &config) {
+  std::vector<std::string> lines;
+  for (const SpeciesSpec &spec : config.species) {
+    if (spec.law != Law::red_cell) continue;
+    const Membrane &m = spec.membrane;
+    char text[400];
+    std::snprintf(text, sizeof text,
+                  "red cells %s: surface shear modulus %g, modulus of area %g (a real one is 1000 times as stiff), "
+                  "bending modulus %g, viscosity %g of %g outside",
+                  spec.name.c_str(), m.shear_modulus, m.largest_modulus() - m.shear_modulus, m.bending_modulus,
+                  spec.viscosity.value_or(config.fluid.viscosity), config.fluid.viscosity);
+    lines.emplace_back(text);
+  }
+  return lines;
+}
+
+std::vector<std::string> thin_membrane_warnings(const Config &config) {
+  constexpr double cells = 3;
+  std::vector<std::string> warnings;
+  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
+  double spacing = 0;
+  for (int d = 0; d < dimension; ++d) spacing = std::max(spacing, config.grid.length[d] / config.grid.cells[d]);
+  for (const SpeciesSpec &spec : config.species) {
+    if (!spec.is_membrane()) continue;
+    const auto &axes = spec.semi_axes;
+    double thickness = 2 * spec.radius;
+    if (spec.shape == Shape::ellipsoid) thickness = 2 * *std::min_element(axes.begin(), axes.begin() + dimension);
+    if (spec.shape == Shape::biconcave) thickness = 2 * spec.radius * red_cell_waist;
+    if (!(thickness > 0 && thickness < cells * spacing)) continue;
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not tell both sides "
+        "from each other; a spacing of at most %.3g would do",
+        spec.name.c_str(), thickness, thickness / spacing, thickness / cells);
+    warnings.emplace_back(text);
+  }
+  return warnings;
+}
+
+}  // namespace eulastic

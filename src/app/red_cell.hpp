@@ -1,0 +1,19 @@
+// -NAME_law red_cell: options with the numbers of a red blood cell; and what a run says of membranes at its start.
+#pragma once
+
+#include "app/config.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace eulastic {
+
+/// Options of a species without its name, and their values: in um, us and 1 mPa s, G_s and E_b of Mills et al. (2004).
+const std::vector<std::pair<std::string, std::string>> &red_cell_preset();
+/// One line on the numbers of every species of red cells.
+std::vector<std::string> red_cell_lines(const Config &config);
+/// One line on every species of membranes that is somewhere thinner than three cells: the grid sees both sides as one.
+std::vector<std::string> thin_membrane_warnings(const Config &config);
+
+}  // namespace eulastic

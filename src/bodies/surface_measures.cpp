@@ -1,0 +1,142 @@
+#include "bodies/surface_measures.hpp"
+
+#include "base/events.hpp"
+#include "bodies/body_sums.hpp"
+#include "bodies/unwrap.hpp"
+#include "field/exact_sum.hpp"
+#include "kernels/plane_area.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// Sums of one body: the weight delta h, its first and second moments in cells, momentum and v x, energies.
+constexpr int weight = 0, first_moment = 1, second_moment = 4, momentum = 10, moment_of_velocity = 13, energies = 22;
+constexpr int area = 25, all_sums = 26;
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+
+using Matrix = std::array<Real3, 3>;
+
+// x M = C by elimination with the largest pivots on the diagonal; M is symmetric and not negative.
+bool divide(Matrix C, Matrix M, int dimension, Matrix *quotient) {
+  for (int p = 0; p < dimension; ++p) {
+    if (!(M[p][p] > 1e-9)) return false;
+    for (int q = p + 1; q < dimension; ++q) {
+      const double factor = M[p][q] / M[p][p];  // of column p, off column q
+      for (int r = 0; r < dimension; ++r) M[r][q] -= factor * M[r][p];
+      for (int r = 0; r < dimension; ++r) C[r][q] -= factor * C[r][p];
+    }
+  }
+  for (int p = dimension - 1; p >= 0; --p)
+    for (int r = 0; r < dimension; ++r) {
+      double sum = C[r][p];
+      for (int q = p + 1; q < dimension; ++q) sum -= (*quotient)[r][q] * M[q][p];
+      (*quotient)[r][p] = sum / M[p][p];
+    }
+  return true;
+}
+
+double turning_rate(const BodySums &sums, int b, const Real3 &spacing, int dimension, double speed) {
+  const double all = sums.value(b, weight);
+  if (!(all > 0)) return 0;
+  Matrix M{}, C{}, A{};
+  const auto mean = [&](int s) { return sums.value(b, s) / all; };
+  for (int c = 0; c < 6; ++c) {
+    const auto [p, q] = pairs[c];
+    M[p][q] = M[q][p] = mean(second_moment + c) - mean(first_moment + p) * mean(first_moment + q);
+  }
+  for (int v = 0; v < dimension; ++v)
+    for (int x = 0; x < dimension; ++x)
+      C[v][x] = mean(moment_of_velocity + 3 * v + x) - mean(momentum + v) * mean(first_moment + x);
+  if (!divide(C, M, dimension, &A)) return 0;
+  const double xx = A[0][0] / spacing[0], xy = A[0][1] / spacing[1], yx = A[1][0] / spacing[0],
+               yy = A[1][1] / spacing[1];
+  const double strain = 0.5 * (xx - yy), square = -(strain * strain + xy * yx);
+  return square > 0 ? std::copysign(std::sqrt(square), yx - xy) * speed : 0;
+}
+
+// Of the surface of a labelled cell: its plane, or faces between full and empty cells.
+template <int Dim>
+double area_of(ConstView phi, const double *q, const Real3 &h) {
+  const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
+  double sum = 0, face[3];
+  for (int d = 0; d < Dim; ++d) {
+    face[d] = (Dim == 2 ? 1 : h[(d + 2) % 3]) * h[(d + 1) % Dim];
+    for (const std::ptrdiff_t s : {-stride[d], stride[d]})
+      if (*q == 1 && q[s] == 0) sum += face[d];
+  }
+  return *q > 0 && *q < 1 ? kernels::plane_area<Dim>(q, stride, face) : sum;
+}
+
+struct Scales {
+  double speed, shear, area, bending;
+  explicit Scales(const std::vector<double> &v) : speed(v[0]), shear(v[1]), area(v[2]), bending(v[3]) {}
+};
+
+double scaled(double value, double scale) { return scale > 0 ? value / scale : 0; }
+
+}  // namespace
+
+PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
+                                const std::vector<SurfaceSample> &samples, const std::vector<Int3> &references,
+                                std::vector<SurfaceMeasure> *result) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::bodies);
+  const int dim = grid.dimension(), bodies = static_cast<int>(references.size());
+  const Real3 &h = grid.spacing();
+  const double face = *std::min_element(h.begin(), h.begin() + dim);
+  double unit = 1;  // of areas
+  for (int d = 0; d < dim - 1; ++d) unit *= face;
+  std::vector<std::vector<double>> found(1, std::vector<double>(4, 0.0));
+  for (const SurfaceSample &s : samples) {
+    for (int d = 0; d < dim; ++d) found[0][0] = std::max(found[0][0], std::fabs(s.velocity[d]));
+    found[0][1] = std::max(found[0][1], std::fabs(s.shear_energy));
+    found[0][2] = std::max(found[0][2], std::fabs(s.area_energy));
+    found[0][3] = std::max(found[0][3], std::fabs(s.bending_energy));
+  }
+  std::vector<double> most;
+  PetscCall(reduce_maxima(grid.comm(), found, &most));
+  const Scales scale(most);
+  const std::vector<Int3> near = within_box(grid, references);
+  BodySums sums(bodies, all_sums);
+  for (const SurfaceSample &s : samples) {
+    const int b = s.label - 1;
+    if (b < 0 || b >= bodies) continue;
+    const Real3 x = offset(grid, near[b], s.place);
+    const double w = s.delta * face;
+    sums.add(b, weight, w);
+    for (int d = 0; d < dim; ++d) {
+      const double v = scaled(s.velocity[d], scale.speed);
+      sums.add(b, first_moment + d, w * x[d]);
+      sums.add(b, momentum + d, w * v);
+      for (int e = 0; e < dim; ++e) sums.add(b, moment_of_velocity + 3 * d + e, w * (v * x[e]));
+    }
+    for (int c = 0; c < 6; ++c) sums.add(b, second_moment + c, w * (x[pairs[c][0]] * x[pairs[c][1]]));
+    sums.add(b, energies, scaled(s.shear_energy, scale.shear));
+    sums.add(b, energies + 1, scaled(s.area_energy, scale.area));
+    sums.add(b, energies + 2, scaled(s.bending_energy, scale.bending));
+  }
+  for (const Phase &phase : phases) {
+    if (!phase.material.is_membrane() || !phase.label) continue;
+    const ConstView phi = phase.fraction[0], label = phase.label[0];
+    for (const Segment &row : grid.rows()) {
+      if (phase.rows.idle(row.j, row.k)) continue;
+      const double *q = phi.row(row.j, row.k);
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        const int b = static_cast<int>(label(i, row.j, row.k)) - 1;
+        if (b >= 0 && b < bodies) sums.add(b, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, q + i, h) / unit);
+      }
+    }
+  }
+  PetscCall(sums.reduce(grid.comm()));
+  result->assign(bodies, {});
+  for (int b = 0; b < bodies; ++b)
+    (*result)[b] = {sums.value(b, area) * unit, sums.value(b, energies) * scale.shear,
+                    sums.value(b, energies + 1) * scale.area, sums.value(b, energies + 2) * scale.bending,
+                    turning_rate(sums, b, h, dim, scale.speed)};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,32 @@
+// What is known of the surface of every membrane: its area, energies, and how fast it goes round.
+#pragma once
+
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+/// A cell at a surface.
+struct SurfaceSample {
+  int label;
+  Int3 place;      ///< local
+  double delta;    ///< of the surface, 1/length
+  Real3 velocity;  ///< at its centre
+  double shear_energy, area_energy, bending_energy;
+};
+
+struct SurfaceMeasure {
+  double area = 0;  ///< of the planes that transport cuts cells with; 2-D: length
+  double shear_energy = 0, area_energy = 0, bending_energy = 0;
+  /// Angular velocity at which material goes round in the xy plane, positive from x to y: the frequency of the linear
+  /// flow that is nearest to that of the surface; 0 where that only strains. Of tank-treading and tumbling alike,
+  /// whatever the shape.
+  double turning_rate = 0;
+};
+
+/// Of every body of a membrane, by label - 1 for as many as there are in `references`, unwrapped cells near the bodies
+/// (BodyTracker). One ghost of phi. Exact sums; two Allreduces.
+PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
+                                const std::vector<SurfaceSample> &samples, const std::vector<Int3> &references,
+                                std::vector<SurfaceMeasure> *bodies);
+
+}  // namespace eulastic

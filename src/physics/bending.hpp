@@ -1,0 +1,51 @@
+// The bending of membranes: force and energy of E_b/2 (kappa - c0)^2 per area, kappa the sum of the principal
+// curvatures, from a solid fraction that is smoothed twice; docs/method.md, section 18.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
+
+namespace eulastic {
+
+class MembraneBending {
+public:
+  static constexpr int work_fields = 6;
+
+  MembraneBending(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
+  /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
+  /// around the rows of the phase.
+  PetscErrorCode find(const Phase &phase, ConstView smooth, FieldBlock &fields);
+  /// The force along `a` on the owned faces of a row, times `scale`, into out[0 .. cells); of the last find().
+  void force_row(const FieldBlock &fields, int a, int j, int k, double scale, double *out) const;
+  /// Energy per area at a cell; 0 where no curvature is known.
+  static double energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at);
+
+private:
+  /// The last two are the means of force and delta around.
+  enum Field { smoothed, curvature, delta, force, level, weight, mean = level };
+  struct Box {
+    Grid::Range range[3];
+    bool holds(const Int3 &place) const {
+      bool inside = true;
+      for (int d = 0; d < 3; ++d) inside = inside && place[d] >= range[d].begin && place[d] < range[d].end;
+      return inside;
+    }
+  };
+  struct Cell {
+    std::ptrdiff_t at;  ///< offset from the origin
+    bool forced;        ///< owned, or a ghost next to that: what faces feel
+  };
+  Box around(const Phase &phase, int ghosts) const;
+  template <int Dim>
+  void find_curvature(const Phase &phase, FieldBlock &fields);
+  template <int Dim>
+  void find_force(const Phase &phase, FieldBlock &fields);
+
+  PetscErrorCode smooth_force(const Phase &phase, FieldBlock &fields);
+
+  const Grid *grid_;
+  GhostExchange *exchange_;
+  std::vector<Cell> cells_;  ///< where there is a curvature
+};
+
+}  // namespace eulastic

@@ -1,0 +1,89 @@
+// MembraneTransport: energies and power of membranes.
+#include "base/events.hpp"
+#include "field/exact_sum.hpp"
+#include "physics/membrane.hpp"
+#include "physics/membrane_tensor.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+// Per volume of a cell.
+struct Energies {
+  double shear, area;
+  double total() const { return shear + area; }
+};
+template <int Dim>
+Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
+  const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor, cell.at));
+  const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
+  const double area = kernels::area_energy(phase.material.membrane, strain), weight = cell.delta / state.area;
+  return {weight * (state.energy - area), weight * area};
+}
+
+Real3 centre_velocity(const FieldBlock &velocity, std::ptrdiff_t at) {
+  Real3 v{};
+  for (int d = 0; d < velocity.count(); ++d) {
+    const double *face = velocity[d].origin + at;
+    v[d] = 0.5 * (face[0] + face[velocity[d].stride(d)]);
+  }
+  return v;
+}
+
+}  // namespace
+
+PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
+                                                std::vector<SurfaceSample> *samples) {
+  PetscFunctionBeginUser;
+  enum Sum { power, stored, sums };
+  const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
+  WorkSpace::Lease psi;
+  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+  PetscCall(surface_.find(phase, psi.fields()));
+  std::vector<ExactSums> sum(row_parts(*grid_), ExactSums(sums));
+  const double volume = grid_->cell_volume();
+  PetscCall(for_force_rows(phase, psi.fields()[0], 1, [&](int part, bool, int a, int j, int k, const double *force) {
+    std::vector<double> product(n);
+    const double *v = velocity[a].row(j, k);
+    for (int i = 0; i < n; ++i) product[i] = -force[i] * v[i];
+    sum[part].add_row(power, product.data(), n, first);
+  }));
+  VerbScope scope(Verb::sums);
+  std::vector<double> bending(surface_.all().size(), 0.0);
+  if (phase.material.membrane.bending_modulus > 0) {
+    WorkSpace::Lease lease;
+    PetscCall(work_->take("bending", MembraneBending::work_fields, &lease));
+    PetscCall(bending_.find(phase, psi.fields()[0], lease.fields()));
+    for (std::size_t c = 0; c < bending.size(); ++c) {
+      const SurfaceCells::Cell &cell = surface_.all()[c];
+      if (cell.owned) bending[c] = cell.delta * MembraneBending::energy(phase.material, lease.fields(), cell.at);
+    }
+  }
+  std::vector<int> label;
+  if (samples && phase.label) PetscCall(surface_.find_labels(phase, psi.fields(), &label));
+  for (std::size_t c = 0; c < bending.size(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) continue;
+    const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
+    sum[0].add(stored, energies.total() + bending[c]);
+    if (!label.empty())
+      samples->push_back({label[c], cell.place, cell.delta, centre_velocity(velocity, cell.at), energies.shear * volume,
+                          energies.area * volume, bending[c] * volume});
+  }
+  double total[sums];
+  PetscCall(reduce_parts(grid_->comm(), sum, total));
+  measured->power += total[power] * volume;
+  measured->energy += total[stored] * volume;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const FieldBlock &velocity,
+                                          SurfaceEnergy *measured, std::vector<SurfaceSample> *samples) {
+  PetscFunctionBeginUser;
+  for (const Phase &phase : phases)
+    if (phase.material.is_membrane()) PetscCall(measure_phase(phase, velocity, measured, samples));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,30 @@
+#include "physics/net_force.hpp"
+
+#include "grid/blocks.hpp"
+
+namespace eulastic {
+
+NetForce::NetForce(const Grid &grid, bool wanted) : grid_(&grid) {
+  if (wanted) sums_.assign(row_parts(grid), ExactSums(grid.dimension()));
+}
+
+PetscErrorCode NetForce::take_off(FieldBlock &force) {
+  PetscFunctionBeginUser;
+  if (sums_.empty()) PetscFunctionReturn(0);
+  double sum[3];
+  PetscCall(reduce_parts(grid_->comm(), sums_, sum));
+  const int n = grid_->owned()[0];
+  for (int d = 0; d < grid_->dimension(); ++d) {
+    if (grid_->is_wall(d)) continue;
+    const double mean = sum[d] / grid_->cell_count();
+    in_row_parts(*grid_, [&](const RowPart &part) {
+      for_rows_in_blocks(part, [&](int j, int k) {
+        double *row = force[d].row(j, k);
+        for (int i = 0; i < n; ++i) row[i] -= mean;
+      });
+    });
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

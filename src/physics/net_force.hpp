@@ -1,0 +1,26 @@
+// Forces of surfaces add up to nothing; their discretisation does within its error, and where no wall holds the fluid
+// that would move all of it for ever. docs/method.md, section 17.
+#pragma once
+
+#include "field/exact_sum.hpp"
+
+namespace eulastic {
+
+/// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
+class NetForce {
+public:
+  /// Not `wanted`: does nothing.
+  NetForce(const Grid &grid, bool wanted);
+  /// Row of component d that part `part` of row_parts(grid) has added.
+  void add_row(int part, int d, const double *added) {
+    if (!sums_.empty()) sums_[part].add_row(d, added, grid_->owned()[0], grid_->layout().begin[0]);
+  }
+  /// Takes the mean off in periodic directions. Collective.
+  PetscErrorCode take_off(FieldBlock &force);
+
+private:
+  const Grid *grid_;
+  std::vector<ExactSums> sums_;
+};
+
+}  // namespace eulastic
