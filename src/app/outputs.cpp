@@ -145,7 +145,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                               viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
   PetscCall(
-      measure_side_flows(*grid_, config_.sides, state.time, fluid.density, state.velocity, state.pressure, &sides_));
+      measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure, &sides_));
   for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
 }
