@@ -36,11 +36,13 @@ struct BoundaryControl {
 
 /// What is said of one inflow or pressure side. Numbers over time are a number or a file, as given; empty: not given.
 struct OpeningSpec {
-  std::string profile = "uniform";    ///< uniform, developed, or a file
-  std::string velocity, flow_rate;    ///< into the box
-  double frequency = 0, phase = 0;    ///< of these
-  double value = 0;                   ///< the pressure
-  std::string table;                  ///< file of the pressure over time
+  std::string profile = "uniform";  ///< uniform, developed, or a file
+  std::string velocity, flow_rate;  ///< into the box
+  double frequency = 0, phase = 0;  ///< of these
+  double value = 0;                 ///< the pressure
+  std::string table;                ///< file of the pressure over time
+  double resistance = 0;            ///< behind the side
+  Real3 windkessel{};               ///< or resistance, capacity, resistance; 0,0,0: none
 
   bool from_file() const { return profile != "uniform" && profile != "developed"; }
 };

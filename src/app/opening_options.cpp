@@ -43,6 +43,10 @@ void add_pressure(Rows &rows, Config &config, const std::string &side, int d, in
   Option &table = rows.path("pressure_" + side + "_table", spec.table, "the pressure over time, in place of the value");
   table.accepted = "a path to a table of time,value";
   table.is_input = true;
+  rows.real("pressure_" + side + "_resistance", spec.resistance, not_negative, "pressure time/volume",
+            "the pressure rises by this times the flow rate out of the box");
+  rows.real("pressure_" + side + "_windkessel", spec.windkessel, not_negative, "",
+            "R,C,R: resistance, then capacity that the second resistance drains (volume/pressure); 0,0,0 = none");
   only_on(rows, first, config, SideKind::pressure, side, d, high);
 }
 

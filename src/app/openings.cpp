@@ -20,7 +20,8 @@ std::string read_numbers(const std::string &path, std::vector<std::vector<double
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     line.erase(std::min(line.find('#'), line.size()));
-    std::replace_if(line.begin(), line.end(), [](char c) { return c == ',' || c == '\r' || c == '\t'; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == '\r' || c == '\t'; }, ' ');
     std::istringstream words(line);
     std::vector<double> row;
     for (std::string word; words >> word;) {
@@ -123,6 +124,17 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
+std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
+  const auto &[first, capacity, second] = spec.windkessel;
+  *load = {spec.resistance, 0, 0};
+  if (spec.windkessel == Real3{}) return {};
+  if (spec.resistance > 0) return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
+  if (!(capacity > 0 && second > 0))
+    return name + "_windkessel: capacity and second resistance must be > 0; accepted: R,C,R, or 0,0,0";
+  *load = {first, capacity, second};
+  return {};
+}
+
 // Without an open side what comes in must go out at the same time.
 std::string check_balance(const Config &config) {
   std::vector<double> times{0};
@@ -145,7 +157,8 @@ std::string check_balance(const Config &config) {
     each([&](const TimeCourse &course, int d, int) { sum += course.at(time) * area_of_side(config, d); });
     if (std::fabs(sum) > 1e-12 * largest)
       return names + ": " + to_text(sum) + " volume/time comes in at time " + to_text(time) +
-             " and has no way out; accepted: a pressure or outflow side, or inflow sides whose flow rates have the sum 0";
+             " and has no way out; accepted: a pressure or outflow side, or inflow sides whose flow rates have the sum "
+             "0";
   }
   return {};
 }
@@ -164,6 +177,8 @@ std::string resolve_openings(Config *config) {
       if (side.kind != SideKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
       side.given = {spec.value, 0, 0, {}};
+      if (std::string wrong = resolve_load(spec, "-pressure_" + name_of(d, high), &side.load); !wrong.empty())
+        return wrong;
       if (spec.table.empty()) continue;
       if (std::string wrong = read_table(spec.table, &side.given); !wrong.empty())
         return "-pressure_" + name_of(d, high) + "_table: " + wrong;

@@ -153,7 +153,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   energy->rates.force_power += power;
   for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
   PetscCall(
-      measure_side_flows(*grid_, config_.sides, state.time, fluid.density, state.velocity, state.pressure, &sides_));
+      measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure, &sides_));
   for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
 }

@@ -52,6 +52,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
+  if (OutletLoads *loads = solver.loads()) reals["outlet_loads"] = loads->numbers();
   if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
@@ -90,6 +91,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.energy.set_numbers(reals["energy_budget"]);
   position->energy = {reals["guarded_energy"][0], reals["guarded_energy"][1]};
   o.mach_max = reals["mach_max"][0];
+  if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
   s.step = integers["step"][0];
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];

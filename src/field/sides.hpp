@@ -1,11 +1,11 @@
 // What happens at the faces of the box, and the ghosts behind them.
 //
-// Solid fraction and everything centred reflect evenly. Normal velocity is 0 on a wall or a plane of symmetry and reflects
-// oddly; it is given on an inflow side and reflects oddly about that; on open sides (pressure and outflow) it is an
-// unknown, and all of the velocity reflects evenly. The pressure is open_sides.hpp's there.
-// Wall: the tangential velocity reflects oddly about the wall's; tensor components that live on the wall itself (edges)
-// are evolved there and reflect evenly about it. Symmetry: what is behind is the mirror image, so the tangential
-// velocity reflects evenly, and tensor components on the plane are 0 and reflect oddly.
+// Solid fraction and everything centred reflect evenly. Normal velocity is 0 on a wall or a plane of symmetry and
+// reflects oddly; it is given on an inflow side and reflects oddly about that; on open sides (pressure and outflow) it
+// is an unknown, and all of the velocity reflects evenly. The pressure is open_sides.hpp's there. Wall: the tangential
+// velocity reflects oddly about the wall's; tensor components that live on the wall itself (edges) are evolved there
+// and reflect evenly about it. Symmetry: what is behind is the mirror image, so the tangential velocity reflects
+// evenly, and tensor components on the plane are 0 and reflect oddly.
 #pragma once
 
 #include "field/field_block.hpp"
@@ -32,11 +32,18 @@ constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kin
 /// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
 using SideProfile = std::vector<double>;
 
+/// What is behind a pressure side: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, Q what leaves.
+struct OutletLoad {
+  double resistance = 0, capacity = 0, drain = 0;
+  bool exists() const { return resistance > 0 || capacity > 0; }
+};
+
 struct Side {
   SideKind kind = SideKind::wall;
-  WallMotion motion;  ///< of a wall
-  TimeCourse given;   ///< inflow: what the profile is multiplied by; pressure: the pressure
+  WallMotion motion;                           ///< of a wall
+  TimeCourse given;                            ///< inflow: what the profile is multiplied by; pressure: the pressure
   std::shared_ptr<const SideProfile> profile;  ///< of an inflow side
+  OutletLoad load;                             ///< of a pressure side
 };
 
 /// [direction][low, high]; without meaning in periodic directions.

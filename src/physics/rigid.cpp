@@ -126,6 +126,14 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
   });
 }
 
+void open_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field) {
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(grid, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
+  });
+  clear_rigid_faces(grid, faces, field);
+}
+
 void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field) {
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = field[a].row(j, k);

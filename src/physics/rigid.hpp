@@ -27,6 +27,8 @@ void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time,
 /// increment.
 void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity);
+/// Scales owned cut faces by how far they are open to the increment; faces inside get 0.
+void open_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
 /// Owned faces inside bodies get 0.
 void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
 /// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes

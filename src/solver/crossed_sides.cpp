@@ -91,10 +91,8 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
       PetscCall(correct_velocity(*grid_, density, dt, 0, *formula, divergence, velocity, none));
     else
       PetscCall(correct_velocity(*grid_, density, dt, 0, increment.fields(), divergence, velocity, none));
-    if (rigid_ && !spec_.acm_of_the_paper())
-      correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity);
+    respect_rigid(now_.time, dt, increment.fields(), velocity);
     if (rigid_ && is_rate) clear_rigid_faces(*grid_, *rigid_, velocity);
-    if (rigid_ && !is_rate) impose_rigid_motion(*grid_, *rigid_, now_.time, velocity);
     for (const Segment &row : grid_->rows()) {
       const double *q = none[0].row(row.j, row.k);
       double *p = pressure[0].row(row.j, row.k);

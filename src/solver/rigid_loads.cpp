@@ -1,10 +1,16 @@
-// Solver: what the fluid exerts on rigid bodies.
+// Solver: rigid bodies in the projection, and what the fluid exerts on them.
 #include "physics/momentum.hpp"
 #include "physics/species_force.hpp"
 #include "physics/viscous_stress.hpp"
 #include "solver/solver.hpp"
 
 namespace eulastic {
+
+void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const {
+  if (!rigid_) return;
+  if (!spec_.acm_of_the_paper()) correct_cut_faces(*grid_, *rigid_, dt / spec_.fluid.density, increment, velocity);
+  impose_rigid_motion(*grid_, *rigid_, time, velocity);
+}
 
 PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;

@@ -56,6 +56,7 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   now_.pressure = FieldBlock(grid, 1);
   velocity_star_ = FieldBlock(grid, dim);
   PetscCall(work_->reserve(work_fields(spec, dim, {grid.any_open()})));
+  if (!OutletLoads::none(spec.sides)) loads_ = std::make_unique<OutletLoads>(spec.sides);
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -85,6 +86,7 @@ PetscErrorCode Solver::prepare() {
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (volume_crosses(spec_.sides)) PetscCall(start_flow());
+  if (loads_) PetscCall(find_responses());
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const int dim = grid_->dimension();
@@ -225,7 +227,8 @@ PetscErrorCode Solver::predict(double dt) {
     fluid.viscosity = 0;  // the stress of the varying one is added
   }
   MomentumStep step{now_.time, dt, speed_scale(dt), {}};
-  fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt, fluid.density,
+  if (loads_) PetscCall(begin_loads(dt));
+  fill_ghosts_of_given_pressure(*grid_, sides_now(), now_.time + (spec_.staggered() ? 0.5 : 1) * dt, fluid.density,
                                 now_.velocity, now_.pressure[0]);
   if (spec_.staggered()) {
     step.force_time += 0.5 * dt;
@@ -311,9 +314,8 @@ PetscErrorCode Solver::project(double dt) {
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
-  if (rigid_ && !spec_.acm_of_the_paper())
-    correct_cut_faces(*grid_, *rigid_, dt / density, increment.fields(), velocity_star_);
-  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
+  respect_rigid(now_.time + dt, dt, increment.fields(), velocity_star_);
+  if (loads_) PetscCall(settle_loads(dt, divergence, increment.fields()));
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);

@@ -15,6 +15,7 @@
 #include "physics/surface_tension.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "solver/method.hpp"
+#include "solver/outlet_loads.hpp"
 #include "solver/state.hpp"
 
 #include <memory>
@@ -87,6 +88,10 @@ public:
   double sound_speed() const { return pressure_solver_->sound_speed(); }
   /// What the pressure solver remembers of earlier steps, or null.
   FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
+  /// The sides with the pressures that loads have now.
+  BoxSides sides_now() const { return loads_ ? loads_->with_pressures(spec_.sides) : spec_.sides; }
+  /// Of what is behind pressure sides, or null.
+  OutletLoads *loads() { return loads_.get(); }
 
 private:
   PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
@@ -95,8 +100,8 @@ private:
   double speed_scale(double dt) const;
   /// With the force that differences of given pressures are to a fluid at rest.
   Fluid driven_fluid() const;
-  /// Makes the flow at the start pass through the sides as it is given there and, if there is no pressure yet, finds the
-  /// one that goes with it, but for forces of bodies.
+  /// Makes the flow at the start pass through the sides as it is given there and, if there is no pressure yet, finds
+  /// the one that goes with it, but for forces of bodies.
   PetscErrorCode start_flow();
   PetscErrorCode project_start(bool is_rate, FieldBlock &velocity, FieldBlock &pressure);
   /// Viscosities, and with the largest tr B of every phase what they mean for the time step.
@@ -111,12 +116,20 @@ private:
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
+  /// After correct_velocity(): cut faces have their part of the increment, those inside rigid bodies their velocity.
+  void respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const;
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                              const OccupiedRows *rows);
   PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides();
+  PetscErrorCode find_responses();
+  /// Volume that leaves through loaded sides per time.
+  PetscErrorCode measure_loads(const FieldBlock &velocity, std::vector<double> *flow);
+  /// Pressures on loaded sides for a step, and after it with what the flow has become.
+  PetscErrorCode begin_loads(double dt);
+  PetscErrorCode settle_loads(double dt, const FieldBlock &divergence, FieldBlock &increment);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
   PetscErrorCode find_rows(Phase &phase);
@@ -134,9 +147,10 @@ private:
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I
   std::unique_ptr<WorkSpace> work_;
-  FieldBlock flow_;       ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
-  FieldBlock slope_;      ///< of the elastic force in time
-  FieldBlock viscosity_;  ///< of the step, where bodies have their own; else empty
+  FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
+  FieldBlock slope_;  ///< of the elastic force in time
+  std::unique_ptr<OutletLoads> loads_;  ///< null where no side has one
+  FieldBlock viscosity_;                ///< of the step, where bodies have their own; else empty
   ExteriorLayers layers_;
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;

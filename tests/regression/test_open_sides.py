@@ -22,7 +22,7 @@ FLAT = ("-grid_cells 50,34,1 -grid_length 5,3.4,1 -boundary_xmin inflow -boundar
         "-boundary_ymax pressure -inflow_xmin_velocity 1 -inflow_xmin_frequency 3 -fluid_viscosity 0.05").split()
 DEEP = ("-grid_cells 20,12,14 -grid_length 2,1.2,1.4 -boundary_xmin inflow -boundary_xmax outflow -boundary_y wall "
         "-boundary_z wall -boundary_zmax pressure -inflow_xmin_velocity 1 -inflow_xmin_profile developed "
-        "-inflow_xmin_frequency 3 -fluid_viscosity 0.05 -pressure_zmax_value .2").split()
+        "-inflow_xmin_frequency 3 -fluid_viscosity 0.05 -pressure_zmax_value .2 -pressure_zmax_windkessel 1,.1,2").split()
 
 
 def points_of_zero(x, values):
@@ -89,6 +89,29 @@ class OpenSides(unittest.TestCase):
             error.append(abs(2 * 28.454 / gradient - 1))  # Q = G/(28.454 mu) for a unit square
         self.assertLess(error[1], 2e-2)
         self.assertGreater(numpy.log2(error[0] / error[1]), 1.9)
+
+    def test_resistances_share_the_flow(self):
+        """Far above that of the box they share it 3 to 1, whatever the time step; the pressures are those of the flow rates."""
+        scene = ("-grid_cells 24,16,1 -grid_length 3,1,1 -fluid_viscosity .1 -boundary_ymax wall -boundary_ymin inflow "
+                 "-boundary_xmin pressure -boundary_xmax pressure -inflow_ymin_velocity .5 -time_end 1").split()
+        for solver in ("acm", "smac"):
+            for resistance in (1e3, 1e5):
+                sides = self.run_program(f"{solver}{resistance}", *scene, "-pressure_solver", solver,
+                                         "-pressure_xmin_resistance", f"{resistance}", "-pressure_xmax_resistance",
+                                         f"{3 * resistance}").summary["sides"]
+                out = {side["side"]: -side["flow_rate"] for side in sides}
+                self.assertAlmostEqual(out["xmin"] + out["xmax"], 1.5, delta=1e-5)
+                self.assertAlmostEqual(out["xmin"] / out["xmax"], 3, delta=20 / resistance)
+                self.assertAlmostEqual(sides[0]["pressure"] / resistance, out["xmin"], delta=1e-5)
+
+    def test_windkessel_fills(self):
+        """p = Q (R + R' (1 - exp(-t/(R' C)))) at the middle of the step, for a flow that is given."""
+        run = self.run_program("windkessel", *("-grid_cells 24,16,1 -grid_length 3,1,1 -fluid_viscosity .1 -boundary_y wall "
+                                               "-boundary_xmin inflow -boundary_xmax pressure -inflow_xmin_velocity .5 "
+                                               "-pressure_xmax_windkessel 2,.3,5 -time_end 3").split())
+        middle = run.series.time - .5 * run.series.dt
+        exact = .5 * (2 + 5 * (1 - numpy.exp(-middle / 1.5)))
+        self.assertLess(abs(run.series.pressure_xmax - exact)[5:].max(), 2e-4)
 
     def test_backward_facing_step(self):
         """Gartling (1990), Re 800: the lower eddy ends at 6.10, the upper one lies between 4.85 and 10.48 channel heights; a coarse

@@ -211,6 +211,10 @@ TEST(OptionRefusals, SidesThatVolumeCrosses) {
        {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
         {"-inflow_xmin_frequency: has no meaning beside a table"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
+        {"-pressure_xmax_windkessel: capacity"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
+        {"-pressure_xmax_resistance: given beside"}},
        {way + "-cell_viscosity 2", {"-cell_viscosity: ", "volume crosses"}}});
   EXPECT_EQ(parse_line(scene + " " + way).error, "");
   EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");

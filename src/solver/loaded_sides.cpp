@@ -1,0 +1,88 @@
+// Solver: what is behind pressure sides takes part in a step.
+#include "field/exact_sum.hpp"
+#include "field/open_sides.hpp"
+#include "physics/correction.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+namespace {
+
+// work(i, j, k) for the faces of this rank on a side.
+template <class Work>
+void for_faces(const Grid &grid, int d, bool high, const Work &work) {
+  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) return;
+  Int3 begin{}, end = grid.owned();
+  begin[d] = high ? end[d] : 0;
+  end[d] = begin[d] + 1;
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i) work(i, j, k);
+}
+
+// Behind the side it stands on, a pressure of 1 there.
+void raise_ghosts(const Grid &grid, int d, bool high, View pressure) {
+  const std::ptrdiff_t inward = high ? -pressure.stride(d) : pressure.stride(d);
+  const std::ptrdiff_t ghost = high ? 0 : -pressure.stride(d);  // of the cell above the face
+  for_faces(grid, d, high, [&](int i, int j, int k) {
+    double *at = &pressure(i, j, k) + ghost;
+    *at = 2 - at[inward];
+  });
+}
+
+}  // namespace
+
+PetscErrorCode Solver::measure_loads(const FieldBlock &velocity, std::vector<double> *flow) {
+  ExactSums sums(loads_->count());
+  PetscFunctionBeginUser;
+  for (int n = 0; n < loads_->count(); ++n) {
+    const auto [d, high] = loads_->side(n);
+    const ConstView v = velocity[d];
+    const int outward = high ? 1 : -1;
+    for_faces(*grid_, d, high, [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
+  }
+  flow->resize(loads_->count());
+  PetscCall(sums.reduce(grid_->comm(), flow->data()));
+  for (int n = 0; n < loads_->count(); ++n) (*flow)[n] *= grid_->cell_volume() / grid_->spacing()[loads_->side(n)[0]];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::find_responses() {
+  PetscFunctionBeginUser;
+  for (int n = 0; n < loads_->count(); ++n) {
+    const auto [d, high] = loads_->side(n);
+    FieldBlock pressure(*grid_, 1), velocity(*grid_, grid_->dimension());
+    const double push = (high ? -2 : 2) / (spec_.fluid.density * grid_->spacing()[d]);
+    View v = velocity[d];
+    for_faces(*grid_, d, high, [&](int i, int j, int k) { v(i, j, k) = push; });
+    if (rigid_) open_faces(*grid_, *rigid_, velocity);
+    PetscCall(project_start(true, velocity, pressure));
+    PetscCall(exchange_->update(pressure, 1));
+    fill_ghosts_of_increment(*grid_, pressure[0], 1);
+    raise_ghosts(*grid_, d, high, pressure[0]);
+    std::vector<double> flow;
+    PetscCall(measure_loads(velocity, &flow));
+    loads_->set_response(n, std::move(pressure), flow);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::begin_loads(double dt) {
+  std::vector<double> flow;
+  PetscFunctionBeginUser;
+  PetscCall(measure_loads(now_.velocity, &flow));
+  loads_->begin(spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt,
+                spec_.staggered() ? 0.5 * (now_.dt + dt) : dt, flow);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::settle_loads(double dt, const FieldBlock &divergence, FieldBlock &increment) {
+  std::vector<double> flow;
+  PetscFunctionBeginUser;
+  PetscCall(measure_loads(velocity_star_, &flow));
+  loads_->add_up(*grid_, loads_->settle(dt, flow), increment);
+  PetscCall(correct_velocity(*grid_, spec_.fluid.density, dt, 0, increment, divergence, velocity_star_, now_.pressure));
+  respect_rigid(now_.time + dt, dt, increment, velocity_star_);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,107 @@
+#include "solver/outlet_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eulastic {
+namespace {
+
+// The share of the flow at the end of a step in that of its middle: above 1/2, so that stiff loads are damped.
+constexpr double implicit = 0.6;
+
+}  // namespace
+
+bool OutletLoads::none(const BoxSides &sides) { return OutletLoads(sides).count() == 0; }
+
+OutletLoads::OutletLoads(const BoxSides &sides) {
+  for (int d = 0; d < 3; ++d)
+    for (const int high : {0, 1}) {
+      const Side &side = sides[d][high];
+      if (side.kind != SideKind::pressure || !side.load.exists()) continue;
+      Load load;
+      load.direction = d;
+      load.high = high;
+      load.spec = side.load;
+      loads_.push_back(std::move(load));
+    }
+}
+
+void OutletLoads::set_response(int n, FieldBlock &&pressure, const std::vector<double> &flow) {
+  loads_[n].response = std::move(pressure);
+  loads_[n].flow = flow;
+}
+
+void OutletLoads::begin(const BoxSides &sides, double middle, double between, const std::vector<double> &flow) {
+  for (std::size_t n = 0; n < loads_.size(); ++n) {
+    Load &load = loads_[n];
+    const OutletLoad &spec = load.spec;
+    if (spec.capacity > 0) {  // C dp/dt = Q - p/R, p at half levels
+      const double drain = 0.5 * between / (spec.capacity * spec.drain);
+      load.capacity = ((1 - drain) * load.capacity + between / spec.capacity * flow[n]) / (1 + drain);
+    }
+    const double given = sides[load.direction][load.high].given.at(middle) + load.capacity;
+    load.pressure = given + spec.resistance * flow[n];
+    load.base = given + spec.resistance * (1 - implicit) * flow[n];
+  }
+}
+
+// Gaussian elimination; the matrix has a dominant diagonal, as a pressure pushes back most where it is.
+std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &flow) {
+  const std::size_t count = loads_.size();
+  std::vector<std::vector<double>> a(count, std::vector<double>(count + 1));
+  for (std::size_t s = 0; s < count; ++s) {
+    const Load &load = loads_[s];
+    const double share = implicit * load.spec.resistance;
+    for (std::size_t t = 0; t < count; ++t) a[s][t] = (s == t ? 1 : 0) - share * dt * loads_[t].flow[s];
+    a[s][count] = load.base + share * flow[s] - load.pressure;
+  }
+  for (std::size_t p = 0; p < count; ++p)
+    for (std::size_t s = p + 1; s < count; ++s) {
+      const double factor = a[s][p] / a[p][p];
+      for (std::size_t t = p; t <= count; ++t) a[s][t] -= factor * a[p][t];
+    }
+  std::vector<double> changes(count);
+  for (std::size_t s = count; s-- > 0;) {
+    double sum = a[s][count];
+    for (std::size_t t = s + 1; t < count; ++t) sum -= a[s][t] * changes[t];
+    changes[s] = sum / a[s][s];
+    loads_[s].pressure += changes[s];
+  }
+  return changes;
+}
+
+void OutletLoads::add_up(const Grid &grid, const std::vector<double> &changes, FieldBlock &increment) const {
+  const Int3 n = grid.owned();
+  const int last = grid.dimension() == 3 ? 1 : 0;
+  for (int k = -last; k < n[2] + last; ++k)
+    for (int j = -1; j < n[1] + 1; ++j) {
+      double *q = increment[0].row(j, k);
+      std::fill(q - 1, q + n[0] + 1, 0.0);
+      for (std::size_t t = 0; t < loads_.size(); ++t) {
+        const double *unit = loads_[t].response[0].row(j, k);
+        for (int i = -1; i < n[0] + 1; ++i) q[i] += changes[t] * unit[i];
+      }
+    }
+}
+
+BoxSides OutletLoads::with_pressures(const BoxSides &sides) const {
+  BoxSides now = sides;
+  for (const Load &load : loads_) now[load.direction][load.high].given = {load.pressure, 0, 0, {}};
+  return now;
+}
+
+std::vector<double> OutletLoads::numbers() const {
+  std::vector<double> numbers;
+  for (const Load &load : loads_) numbers.insert(numbers.end(), {load.capacity, load.pressure});
+  return numbers;
+}
+
+void OutletLoads::set_numbers(const std::vector<double> &numbers) {
+  for (std::size_t n = 0; n < loads_.size(); ++n) {
+    loads_[n].capacity = numbers[2 * n];
+    loads_[n].pressure = numbers[2 * n + 1];
+  }
+}
+
+}  // namespace eulastic
