@@ -41,7 +41,7 @@ std::vector<std::string> thin_membrane_warnings(const Config &config) {
     const auto &axes = spec.semi_axes;
     double thickness = 2 * spec.radius;
     if (spec.shape == Shape::ellipsoid) thickness = 2 * *std::min_element(axes.begin(), axes.begin() + dimension);
-    if (spec.shape == Shape::biconcave) thickness = 2 * spec.radius * red_cell_waist;
+    if (spec.shape == Shape::biconcave) thickness = spec.radius * red_cell_waist;
     if (!(thickness > 0 && thickness < cells * spacing)) continue;
     char text[300];
     std::snprintf(

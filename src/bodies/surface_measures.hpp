@@ -2,17 +2,9 @@
 #pragma once
 
 #include "field/phase.hpp"
+#include "field/surface_sample.hpp"
 
 namespace eulastic {
-
-/// A cell at a surface.
-struct SurfaceSample {
-  int label;
-  Int3 place;      ///< local
-  double delta;    ///< of the surface, 1/length
-  Real3 velocity;  ///< at its centre
-  double shear_energy, area_energy, bending_energy;
-};
 
 struct SurfaceMeasure {
   double area = 0;  ///< of the planes that transport cuts cells with; 2-D: length

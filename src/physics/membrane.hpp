@@ -2,7 +2,7 @@
 // the flow; docs/method.md, section 18.
 #pragma once
 
-#include "bodies/surface_measures.hpp"
+#include "field/surface_sample.hpp"
 #include "field/work_space.hpp"
 #include "physics/bending.hpp"
 #include "physics/elastic_force.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/measures.hpp"
+#include "bodies/surface_measures.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
 #include "physics/exterior.hpp"

@@ -108,6 +108,15 @@ class Cases(unittest.TestCase):
             self.assertGreater(numpy.linalg.norm(run.bodies.centroid[-1] - run.bodies.centroid[0], axis=1).max(), 0.3)
             self.assertLess(run.series.volume_drift.max(), largest, solver)
 
+    def test_membranes_of_red_cells_keep_volume_and_area(self):
+        run = self.run_case("channel_red_cells", "-grid_cells", "32,32,32", "-time_end", "120", ranks=2)
+        self.assertGreater(numpy.linalg.norm(run.bodies.centroid[-1] - run.bodies.centroid[0], axis=1).max(), 0.3)
+        self.assertLess(run.series.volume_drift.max(), 1e-4)
+        # Of planes in cells nearly as large as the waist is thin; .006 with 64 cells at t = 640.
+        self.assertLess(abs(run.bodies.surface_area[-1] / run.bodies.surface_area[0] - 1).max(), 0.06)
+        stored = sum(run.bodies[name][-1].sum() for name in ("shear_energy", "area_energy", "bending_energy"))
+        self.assertAlmostEqual(stored / run.series.surface_energy[-1], 1, delta=1e-9)
+
     def test_nothing_of_bodies_when_off(self):
         run = self.run_case("channel_rbc", "-grid_cells", "16,16,16", "-time_steps_max", "2", "-body_series", "false",
                             name="unnamed")

@@ -1,29 +1,8 @@
 // Every class of wrong input is refused in one line that names the option and what is accepted.
-#include "support/command_line.hpp"
-#include "support/files.hpp"
-
-#include <fstream>
+#include "support/refusals.hpp"
 
 using namespace eulastic;
-
-namespace {
-
-struct Refusal {
-  std::string added;              ///< to the valid scene
-  std::vector<std::string> says;  ///< pieces of the message
-};
-
-void expect_refusals(const std::vector<Refusal> &refusals, const std::string &base = scene) {
-  for (const Refusal &refusal : refusals) {
-    const ParseResult result = parse_line(base + " " + refusal.added);
-    EXPECT_FALSE(result.error.empty()) << refusal.added;
-    EXPECT_EQ(result.error.find('\n'), std::string::npos);
-    for (const std::string &piece : refusal.says)
-      EXPECT_NE(result.error.find(piece), std::string::npos) << refusal.added << " says: " << result.error;
-  }
-}
-
-}  // namespace
+using namespace eulastic::test;
 
 TEST(OptionRefusals, UnknownNames) {
   expect_refusals(
@@ -184,42 +163,6 @@ TEST(OptionRefusals, SpeciesNames) {
   EXPECT_EQ(parse_line(two + "-a_shear_shape sphere -a_shear_radius .2 -a_shear_shear_modulus 2").error, "");
 }
 
-TEST(OptionRefusals, SidesThatVolumeCrosses) {
-  const test::TemporaryDirectory files;
-  const auto file = [&](const char *name, const std::string &text) {
-    std::ofstream(files / name) << text;
-    return " " + files / name;
-  };
-  const std::string in = "-boundary_xmin inflow -boundary_xmax ", way = in + "outflow -inflow_xmin_velocity 1 ";
-  expect_refusals(
-      {{in + "outflow", {"-inflow_xmin_velocity: must be given", "-inflow_xmin_flow_rate"}},
-       {way + "-inflow_xmin_flow_rate 2", {"-inflow_xmin_flow_rate: given beside"}},
-       {in + "wall -inflow_xmin_velocity 1", {"-boundary_xmin: ", "no way out", "a pressure or outflow side"}},
-       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity 1",
-        {"no way out", "-boundary_xmin, -boundary_xmax"}},
-       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity -1 -inflow_xmax_frequency 2", {"no way out"}},
-       {"-boundary_xmin inflow", {"-boundary_xmin: one side alone"}},
-       {"-inflow_xmin_velocity 1", {"-inflow_xmin_velocity: has a meaning only with -boundary_xmin inflow"}},
-       {way + "-pressure_xmax_value 1", {"-pressure_xmax_value: has a meaning only with -boundary_xmax pressure"}},
-       {way + "-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity: has a meaning only with"}},
-       {way + "-inflow_xmin_profile nowhere", {"-inflow_xmin_profile: cannot read nowhere", "uniform, developed"}},
-       {way + "-inflow_xmin_profile" + file("short", "1 2 3\n"), {"has 3 numbers", "one per cell of the side"}},
-       {way + "-inflow_xmin_profile" + file("words", "1 two\n"), {"words line 1"}},
-       {in + "outflow -inflow_xmin_velocity nowhere", {"-inflow_xmin_velocity: cannot read nowhere"}},
-       {in + "outflow -inflow_xmin_velocity" + file("three", "0,1,2\n"), {"a row has 3 numbers", "time,value"}},
-       {in + "outflow -inflow_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
-       {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
-        {"-inflow_xmin_frequency: has no meaning beside a table"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
-        {"-pressure_xmax_windkessel: capacity"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
-        {"-pressure_xmax_resistance: given beside"}},
-       {way + "-cell_viscosity 2", {"-cell_viscosity: ", "volume crosses"}}});
-  EXPECT_EQ(parse_line(scene + " " + way).error, "");
-  EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
-}
-
 TEST(OptionRefusals, InconsistentScenes) {
   expect_refusals(
       {{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
@@ -298,19 +241,6 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
        {"-a_shear_modulus 2 -a_c3 1", {"-a_c3", "-a_law mooney_rivlin"}}},
       periodic + "-species a -a_shape sphere -a_radius .1 ");
-}
-
-// What would not stay where it is.
-TEST(OptionRefusals, RigidBodiesThatMove) {
-  expect_refusals(
-      {{"-a_shape tube -a_radius .2 -a_axis x -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
-       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
-       {"-a_shape cylinder -a_radius .2 -a_axis z -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
-       {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0", {"-a_angular_velocity", "accepted:"}},
-       {"-a_shape slab -a_interval 0,.1 -a_axis y -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
-       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
-        {"-a_velocity", "sides of the box"}}},
-      "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
 }
 
 TEST(OptionRefusals, TwoDimensions) {

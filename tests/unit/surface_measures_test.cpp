@@ -1,4 +1,5 @@
 // What bodies.h5 says of membranes: areas, energies, and how fast they go round.
+#include "bodies/surface_measures.hpp"
 #include "physics/membrane.hpp"
 #include "support/interface_scene.hpp"
 

@@ -1,0 +1,17 @@
+// What a cell near a membrane says of it.
+#pragma once
+
+#include "grid/grid.hpp"
+
+namespace eulastic {
+
+/// A cell at a surface.
+struct SurfaceSample {
+  int label;
+  Int3 place;      ///< local
+  double delta;    ///< of the surface, 1/length
+  Real3 velocity;  ///< at its centre
+  double shear_energy, area_energy, bending_energy;
+};
+
+}  // namespace eulastic

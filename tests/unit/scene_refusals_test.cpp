@@ -1,0 +1,57 @@
+// Sides and rigid bodies that do not make a scene are refused in one line that names the option and what is accepted.
+#include "support/files.hpp"
+#include "support/refusals.hpp"
+
+#include <fstream>
+
+using namespace eulastic;
+using namespace eulastic::test;
+
+TEST(SceneRefusals, SidesThatVolumeCrosses) {
+  const test::TemporaryDirectory files;
+  const auto file = [&](const char *name, const std::string &text) {
+    std::ofstream(files / name) << text;
+    return " " + files / name;
+  };
+  const std::string in = "-boundary_xmin inflow -boundary_xmax ", way = in + "outflow -inflow_xmin_velocity 1 ";
+  expect_refusals(
+      {{in + "outflow", {"-inflow_xmin_velocity: must be given", "-inflow_xmin_flow_rate"}},
+       {way + "-inflow_xmin_flow_rate 2", {"-inflow_xmin_flow_rate: given beside"}},
+       {in + "wall -inflow_xmin_velocity 1", {"-boundary_xmin: ", "no way out", "a pressure or outflow side"}},
+       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity 1",
+        {"no way out", "-boundary_xmin, -boundary_xmax"}},
+       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity -1 -inflow_xmax_frequency 2", {"no way out"}},
+       {"-boundary_xmin inflow", {"-boundary_xmin: one side alone"}},
+       {"-inflow_xmin_velocity 1", {"-inflow_xmin_velocity: has a meaning only with -boundary_xmin inflow"}},
+       {way + "-pressure_xmax_value 1", {"-pressure_xmax_value: has a meaning only with -boundary_xmax pressure"}},
+       {way + "-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity: has a meaning only with"}},
+       {way + "-inflow_xmin_profile nowhere", {"-inflow_xmin_profile: cannot read nowhere", "uniform, developed"}},
+       {way + "-inflow_xmin_profile" + file("short", "1 2 3\n"), {"has 3 numbers", "one per cell of the side"}},
+       {way + "-inflow_xmin_profile" + file("words", "1 two\n"), {"words line 1"}},
+       {in + "outflow -inflow_xmin_velocity nowhere", {"-inflow_xmin_velocity: cannot read nowhere"}},
+       {in + "outflow -inflow_xmin_velocity" + file("three", "0,1,2\n"), {"a row has 3 numbers", "time,value"}},
+       {in + "outflow -inflow_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
+       {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
+        {"-inflow_xmin_frequency: has no meaning beside a table"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
+        {"-pressure_xmax_windkessel: capacity"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
+        {"-pressure_xmax_resistance: given beside"}},
+       {way + "-cell_viscosity 2", {"-cell_viscosity: ", "volume crosses"}}});
+  EXPECT_EQ(parse_line(scene + " " + way).error, "");
+  EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
+}
+
+// What would not stay where it is.
+TEST(SceneRefusals, RigidBodiesThatMove) {
+  expect_refusals(
+      {{"-a_shape tube -a_radius .2 -a_axis x -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
+       {"-a_shape cylinder -a_radius .2 -a_axis z -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0", {"-a_angular_velocity", "accepted:"}},
+       {"-a_shape slab -a_interval 0,.1 -a_axis y -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
+       {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
+        {"-a_velocity", "sides of the box"}}},
+      "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
+}
