@@ -1,7 +1,7 @@
 #include "app/memory.hpp"
 
-#include "field/open_sides.hpp"
 #include "bodies/expected_colours.hpp"
+#include "field/open_sides.hpp"
 #include "io/fail_together.hpp"
 #include "solver/solver.hpp"
 
@@ -41,7 +41,8 @@ double fields(const Config &config) {
                                    [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
   const bool membranes = std::any_of(config.species.begin(), config.species.end(),
                                      [](const SpeciesSpec &spec) { return spec.law == Law::membrane; });
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, opens(config.sides), !config.species.empty(), tension, membranes);
+  double sum = 2 * dimension + 1 +
+               Solver::work_fields(method, dimension, opens(config.sides), !config.species.empty(), tension, membranes);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {

@@ -102,7 +102,8 @@ PetscErrorCode Outputs::measure() {
   PetscCall(solver_->surface_energy(&m.surface));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
+    const bool left = m.bodies[b].volume == 0 && grid_->any_open();
+    const double drift = first_volume_[b] > 0 && !left ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
     m.volume_drift = std::max(m.volume_drift, drift);
     if (drift <= m.resolved_drift || !resolved(first_volume_[b])) continue;
     m.resolved_drift = drift;
@@ -144,8 +145,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                               &config_.sides, state.time,      solver_->evolved_fraction(),
                               viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
-  PetscCall(
-      measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure, &sides_));
+  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
+                               &sides_));
   for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
 }
