@@ -1,8 +1,7 @@
 #include "app/guards.hpp"
 
-#include "field/open_sides.hpp"
-
 #include "diagnostics/places.hpp"
+#include "field/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>

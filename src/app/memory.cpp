@@ -1,7 +1,7 @@
 #include "app/memory.hpp"
 
-#include "field/open_sides.hpp"
 #include "bodies/expected_colours.hpp"
+#include "field/open_sides.hpp"
 #include "io/fail_together.hpp"
 #include "solver/solver.hpp"
 

@@ -106,7 +106,8 @@ PetscErrorCode Outputs::measure() {
   if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    const double drift = first_volume_[b] > 0 ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
+    const bool left = m.bodies[b].volume == 0 && grid_->any_open();
+    const double drift = first_volume_[b] > 0 && !left ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
     m.volume_drift = std::max(m.volume_drift, drift);
     if (drift <= m.resolved_drift || !resolved(first_volume_[b])) continue;
     m.resolved_drift = drift;

@@ -13,7 +13,7 @@ struct TimeCourse {
   double phase = 0;                          ///< rad
   std::vector<std::array<double, 2>> table;  ///< time, value; times ascend. Empty: none
   double at(double time) const;
-  double rate(double time) const;  ///< its change per time; of a table that of the piece that begins then
+  double rate(double time) const;       ///< its change per time; of a table that of the piece that begins then
   std::array<double, 2> range() const;  ///< least and largest at any time
   double largest() const;               ///< of its size, at any time
 };

@@ -118,7 +118,8 @@ public:
         rows(task.stage, row(task.stage, Dim == 3 ? task.j_begin : slice, slice), Dim == 3 ? task.j_end : slice + 1);
       return;
     }
-    const int first_row = Dim == 3 ? -sides_.low(1, most_) : 0, end_row = Dim == 3 ? n[1] + sides_.beyond[1] + depth_ - 1 : 1;
+    const int first_row = Dim == 3 ? -sides_.low(1, most_) : 0,
+              end_row = Dim == 3 ? n[1] + sides_.beyond[1] + depth_ - 1 : 1;
     const int first_slice = task.begin - (task.low ? sides_.low(last, most_) : 0);
     const int end_slice = task.end + (task.high ? sides_.beyond[last] + depth_ - 1 : 0);
     for (int block = first_row; block < end_row; block += block_rows)

@@ -154,7 +154,8 @@ std::vector<Segment> Grid::high_faces(int d) const {
   std::vector<Segment> faces;
   if (!touches_high(d)) return faces;
   const Int3 &n = layout_.cells;
-  const int k0 = d == 2 ? n[2] : 0, k1 = d == 2 ? n[2] + 1 : n[2], j0 = d == 1 ? n[1] : 0, j1 = d == 1 ? n[1] + 1 : n[1];
+  const int k0 = d == 2 ? n[2] : 0, k1 = d == 2 ? n[2] + 1 : n[2], j0 = d == 1 ? n[1] : 0,
+            j1 = d == 1 ? n[1] + 1 : n[1];
   for (int k = k0; k < k1; ++k)
     for (int j = j0; j < j1; ++j) faces.push_back({d == 0 ? n[0] : 0, d == 0 ? n[0] + 1 : n[0], j, k});
   return faces;

@@ -24,8 +24,8 @@ struct GridSpec {
   std::array<Boundary, 3> boundary{};  ///< both sides of a direction alike; ignored in z when 2-D
   /// [direction][low, high]: volume crosses a side on which the pressure is given, and the faces on it move
   std::array<std::array<bool, 2>, 3> open{};
-  Int3 processors{0, 0, 0};            ///< ranks per direction, 0 = chosen here
-  int ghosts = 5;                      ///< layers in memory: WENO5 reads three, B outside bodies takes five
+  Int3 processors{0, 0, 0};  ///< ranks per direction, 0 = chosen here
+  int ghosts = 5;            ///< layers in memory: WENO5 reads three, B outside bodies takes five
 };
 
 /// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the
@@ -120,7 +120,9 @@ public:
   /// comes there.
   std::vector<Segment> high_faces(int d) const;
   /// The same of an open side, else none.
-  std::vector<Segment> open_high_faces(int d) const { return is_open(d, true) ? high_faces(d) : std::vector<Segment>(); }
+  std::vector<Segment> open_high_faces(int d) const {
+    return is_open(d, true) ? high_faces(d) : std::vector<Segment>();
+  }
   /// All owned rows, whole.
   std::vector<Segment> rows() const;
   /// One past the last owned face of component a along d: with the face on the high side.

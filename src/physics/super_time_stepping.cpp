@@ -98,9 +98,9 @@ EULASTIC_INLINE void stage_beside_rigid(const Int3 &n, const kernels::RklStage &
 
 // Sides of the box as stages see them.
 struct StageSides : Sides {
-  bool fixed[3][2];   // here, and the normal velocity on it is given
-  bool open[3][2];    // here, and it is an unknown
-  bool any_beside;    // anything but closed sides that stay so: beside_row() has something to do
+  bool fixed[3][2];  // here, and the normal velocity on it is given
+  bool open[3][2];   // here, and it is an unknown
+  bool any_beside;   // anything but closed sides that stay so: beside_row() has something to do
   const Grid *grid;
   const BoxSides *box;
 
@@ -121,8 +121,8 @@ EULASTIC_INLINE bool is_on_wall(const StageSides &sides, int a, const Segment &r
   return (a == 1 && sides.fixed[1][0] && row.j == 0) || (a == 2 && sides.fixed[2][0] && row.k == 0);
 }
 
-// What a stage reads beside its points `at` in the direction that its component is normal to: what is given on an inflow
-// side, the mirror image about an open one.
+// What a stage reads beside its points `at` in the direction that its component is normal to: what is given on an
+// inflow side, the mirror image about an open one.
 [[gnu::noinline]] void beside_row(const StageSides &sides, const double (&inflow)[3][2], int a, View w,
                                   const Segment &at) {
   const Int3 &n = sides.grid->owned();

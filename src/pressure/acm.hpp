@@ -27,8 +27,8 @@ AcmCoefficients acm_coefficients(const AcmSums &sums);
 class AcmSolver : public PressureSolver {
 public:
   explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
-  /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and ghosts of
-  /// the pressure behind sides are lost.
+  /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and
+  /// ghosts of the pressure behind sides are lost.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
   const kernels::AcmIncrement *formula() const override { return grid_->any_open() ? nullptr : &formula_; }

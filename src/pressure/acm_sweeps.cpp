@@ -87,7 +87,8 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     if (multigrid_) {
       const SweepTask next{grid_, nullptr, 1, state.recurs, state.residual, state.before};
       sums_.start(*grid_, next.directions());
-      for (FieldBlock *field : {&residual_, &correction, &scratch}) clear_open_ghosts(*grid_, (*field)[0], Multigrid::halo);
+      for (FieldBlock *field : {&residual_, &correction, &scratch})
+        clear_open_ghosts(*grid_, (*field)[0], Multigrid::halo);
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
                                     SweepTask rows = next;

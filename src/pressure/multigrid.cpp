@@ -74,7 +74,7 @@ struct Pass {
   ConstView rhs;
   View fields[2];
   int depth;
-  int open_end;  // of x: where the ghosts behind a high open side begin; -1: none
+  int open_end;                          // of x: where the ghosts behind a high open side begin; -1: none
   const Multigrid::RowsDone *rows_done;  // the stage after them
 };
 
@@ -116,7 +116,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
                     out);
       else
         kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
-      pass.sides->wrap(out.row(row.j, row.k));  // long before it is read
+      pass.sides->wrap(out.row(row.j, row.k));                                     // long before it is read
       if (s == 0 && pass.open_end >= 0) out.row(row.j, row.k)[pass.open_end] = 0;  // pairs may reach beyond the side
     }
   });
@@ -230,9 +230,15 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     else
       PetscCall(fine.exchange().update(solution, depth));
     const bool reports = rows_done && done + depth == stages;
-    const Pass pass{
-        &sides, &fine,     done == 0 ? &coarse : nullptr, factors.data() + done, rhs[0], {solution[0], scratch[0]},
-        depth,  fine.grid().is_open(0, true) && fine.grid().touches_high(0) ? fine.grid().owned()[0] : -1, &rows_done};
+    const Pass pass{&sides,
+                    &fine,
+                    done == 0 ? &coarse : nullptr,
+                    factors.data() + done,
+                    rhs[0],
+                    {solution[0], scratch[0]},
+                    depth,
+                    fine.grid().is_open(0, true) && fine.grid().touches_high(0) ? fine.grid().owned()[0] : -1,
+                    &rows_done};
     const StagePass order(fine.grid(), sides, depth + reports, 1, reports ? -1 : 0);
     order.for_tasks([&](const StagePass::Task &task) {
       (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);

@@ -1,5 +1,6 @@
-// A multigrid V-cycle for the Poisson equation with zero normal derivative on closed sides and 0 on open ones, where the
-// ghosts of all fields are 0, the value on the side itself: a fixed linear operator, without global sums, the same bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
+// A multigrid V-cycle for the Poisson equation with zero normal derivative on closed sides and 0 on open ones, where
+// the ghosts of all fields are 0, the value on the side itself: a fixed linear operator, without global sums, the same
+// bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
 //
 // One relaxation before the coarse grid (never stored: it is folded into the restriction), a few after it with the
 // steps of a Chebyshev polynomial; restriction by volume, linear interpolation; directions of unequal spacing are

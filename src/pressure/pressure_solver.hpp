@@ -10,10 +10,10 @@ class PressureSolver {
 public:
   virtual ~PressureSolver() = default;
 
-  /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on closed sides and 0 on
-  /// open ones.
-  /// `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer valid; a
-  /// solver may remove its mean where no side is open. `increment`: out, one ghost layer valid; unused where formula() is not null.
+  /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on closed sides and
+  /// 0 on open ones. `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer
+  /// valid; a solver may remove its mean where no side is open. `increment`: out, one ghost layer valid; unused where
+  /// formula() is not null.
   virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
                                FieldBlock &increment) = 0;
 

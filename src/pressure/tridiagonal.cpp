@@ -14,7 +14,8 @@ void TridiagonalLines::remove_mean(int lane) {
 // singular lane differs only in q_last = 0.
 void TridiagonalLines::solve(const double *shift) {
   const int last = cells_ - 1;
-  const double low = periodic_ ? 2 : open_[0] ? 3 : 1, high = periodic_ ? 2 : open_[1] ? 3 : 1, link = periodic_ ? 1 : 0;
+  const auto end = [&](int side) { return periodic_ ? 2 : open_[side] ? 3 : 1; };
+  const double low = end(0), high = end(1), link = periodic_ ? 1 : 0;
   const bool free = !open_[0] && !open_[1];
   double *y = row(0), *z = row(cells_), *m = row(2 * cells_);  // m: reciprocal pivots
   for (int l = 0; l < lanes; ++l)

@@ -1,5 +1,5 @@
-// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between sides: closed (q_{-1} = q_0)
-// or open (q_{-1} = -q_0).
+// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between sides: closed (q_{-1} =
+// q_0) or open (q_{-1} = -q_0).
 #pragma once
 
 #include <array>

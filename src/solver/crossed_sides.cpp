@@ -1,4 +1,6 @@
 // Solver: the flow at the start, and bodies, where volume crosses sides of the box.
+#include "bodies/labels.hpp"
+#include "bodies/leaving.hpp"
 #include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
@@ -19,41 +21,56 @@ BoxSides rates_of(const BoxSides &sides, double time) {
   return rates;
 }
 
-// Whether there is any solid in the cells next to a side.
-bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers) {
-  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) return false;
-  Int3 begin{}, end = grid.owned();
-  if (high)
-    begin[d] = std::max(0, end[d] - layers);
-  else
-    end[d] = std::min(layers, end[d]);
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i)
-        if (fraction(i, j, k) > 0) return true;
-  return false;
-}
+constexpr int layers = 2;  // cells beside a side that no body comes into
+
+// What cannot leave whole.
+bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_membrane(); }
 
 }  // namespace
 
-// Nothing of a body passes a side: neither its fraction nor its stress is followed there.
-PetscErrorCode Solver::check_sides() {
-  constexpr int layers = 2;
-  int found = -1;
+// A body leaves whole when it comes to an open side: neither its fraction nor its stress is followed through. At the
+// start it may not be there.
+PetscErrorCode Solver::check_sides(bool start) {
+  int found[2] = {-1, 0};  // what is held and where, whether any leave
   PetscFunctionBeginUser;
-  for (std::size_t p = 0; p < now_.phases.size(); ++p)
+  for (int p = 0; p < static_cast<int>(now_.phases.size()); ++p)
     for (int d = 0; d < grid_->dimension(); ++d)
       for (const int high : {0, 1}) {
         const SideKind kind = spec_.sides[d][high].kind;
         if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow)) continue;
-        if (has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers))
-          found = std::max(found, int(p) * 6 + 2 * d + high);
+        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers)) continue;
+        if (start || !is_open(kind) || is_held(now_.phases[p]))
+          found[0] = std::max(found[0], p * 6 + 2 * d + high);
+        else
+          found[1] = 1;
       }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, grid_->comm()));
-  if (found >= 0)
-    crowded_ = "-species " + now_.phases[found / 6].species + ": solid within " + std::to_string(layers) +
-               " cells of side " + "xyz"[found % 6 / 2] + (found % 2 ? "max" : "min") +
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, grid_->comm()));
+  const int held = found[0];
+  if (held >= 0)
+    crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(layers) +
+               " cells of side " + "xyz"[held % 6 / 2] + (held % 2 ? "max" : "min") +
                ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
+  if (held < 0 && found[1] > 0) PetscCall(take_out_bodies());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::take_out_bodies() {
+  std::vector<int> leaves(static_cast<std::size_t>(bodies_.bodies()) + 1, 0);
+  PetscFunctionBeginUser;
+  for (Phase &phase : now_.phases) {
+    if (is_held(phase)) continue;
+    PetscCall(carry_labels(*grid_, *exchange_, &phase));
+    for (int d = 0; d < grid_->dimension(); ++d)
+      for (const bool high : {false, true})
+        if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, layers, &phase, &leaves);
+  }
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_INT, MPI_MAX, grid_->comm()));
+  for (Phase &phase : now_.phases) {
+    if (is_held(phase)) continue;
+    take_out(*grid_, leaves, &phase);
+    PetscCall(settle(phase));
+  }
   PetscFunctionReturn(0);
 }
 

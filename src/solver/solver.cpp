@@ -117,7 +117,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(settle(phase));
     if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
-  if (volume_crosses(spec_.sides)) PetscCall(check_sides());
+  if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
   PetscFunctionReturn(0);
@@ -194,7 +194,7 @@ PetscErrorCode Solver::step(double dt) {
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
   if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
   PetscCall(follow_bodies(dt));
-  if (!now_.phases.empty() && volume_crosses(spec_.sides)) PetscCall(check_sides());
+  if (!now_.phases.empty() && volume_crosses(spec_.sides)) PetscCall(check_sides(false));
   now_.time += dt;
   now_.dt = dt;
   ++now_.step;

@@ -81,7 +81,7 @@ public:
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
   /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp), or if a
-  /// body is at a side that volume crosses.
+  /// body is at a side that volume crosses and cannot leave.
   const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
@@ -124,7 +124,8 @@ private:
                                              const OccupiedRows *rows);
   PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
-  PetscErrorCode check_sides();
+  PetscErrorCode check_sides(bool start);
+  PetscErrorCode take_out_bodies();
   PetscErrorCode find_responses();
   /// Volume that leaves through loaded sides per time.
   PetscErrorCode measure_loads(const FieldBlock &velocity, std::vector<double> *flow);

@@ -28,7 +28,8 @@ struct OpenScene : PoissonScene {
     } else {
       auto sweeps = std::make_unique<AcmSweepSolver>();
       const bool coarse = kind != Kind::descent;
-      EXPECT_EQ(sweeps->create(grid, *exchange, {coarse ? 60 : 4000, kind == Kind::remembering ? 2 : 0, coarse}, work), 0);
+      EXPECT_EQ(sweeps->create(grid, *exchange, {coarse ? 60 : 4000, kind == Kind::remembering ? 2 : 0, coarse}, work),
+                0);
       solver = std::move(sweeps);
     }
     set(noise, false);
@@ -69,9 +70,8 @@ TEST(OpenPressure, AllSolversFindTheSame) {
         OpenScene other(PETSC_COMM_SELF, spec, kind);
         other.solve(1e-9);
         EXPECT_LT(other.rms_residual(), 2e-9 * other.rms_divergence()) << open_name(spec) << " " << int(kind);
-        const double off = other.rms([&](int i, int j, int k) {
-          return other.increment[0](i, j, k) - exact.increment[0](i, j, k);
-        });
+        const double off =
+            other.rms([&](int i, int j, int k) { return other.increment[0](i, j, k) - exact.increment[0](i, j, k); });
         EXPECT_LT(off, 1e-7 * size) << open_name(spec) << " " << int(kind);
       }
     }

@@ -90,6 +90,33 @@ class OpenSides(unittest.TestCase):
         self.assertLess(error[1], 2e-2)
         self.assertGreater(numpy.log2(error[0] / error[1]), 1.9)
 
+    def test_a_disc_leaves(self):
+        """It is gone when it comes to the outlet, and one and a half channel heights upstream nobody notices: against a box
+        twice as long. A body that starts there is refused, one that cannot leave whole stops the run."""
+        scene = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 -inflow_xmin_profile "
+                 "developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 -fluid_viscosity .1 -species disc "
+                 "-disc_shape sphere -disc_radius .2 -disc_shear_modulus 2 -snapshot_interval 1.3 -time_end 1.3 "
+                 "-snapshot_precision double -pressure_solver smac").split()
+        box, there = {n: f"-grid_cells {80 * n},32,1 -grid_length {2.5 * n},1,1".split() for n in (1, 2)}, "-disc_centre"
+        velocity = {}
+        for n in (1, 2):
+            run = self.run_program(f"disc{n}", *scene, *box[n], there, ".8,.45,0")
+            volume = run.bodies.volume[:, 0]
+            self.assertEqual(volume[-1] == 0, n == 1)
+            self.assertAlmostEqual(volume[volume > 0].min() / volume[0], 1, delta=1e-3)
+            with h5py.File(run.directory / "snapshot_000001.h5") as file:
+                velocity[n] = numpy.stack([file[f"velocity_{c}"][0, :32, :32] for c in "xy"])
+        self.assertLess(abs(velocity[1] - velocity[2]).max(), 1e-3)
+        hashes = {self.run_program(f"ranks{ranks}", *scene, *box[1], there, ".8,.45,0", ranks=ranks).summary["state_hash"]
+                  for ranks in (1, 2, 3)}
+        self.assertEqual(len(hashes), 1)
+        for code, says, options in ((2, "accepted: bodies that stay further inside", (there, "2.3,.45,0")),
+                                    (3, "solid within 2 cells of side xmax", (there, ".8,.45,0", "-body_series", "false"))):
+            done = subprocess.run([BINARY, *scene, *box[1], *options, "-output_dir", self.room / f"refused{code}"],
+                                  capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(says, done.stderr)
+
     def test_resistances_share_the_flow(self):
         """Far above that of the box they share it 3 to 1, whatever the time step; the pressures are those of the flow rates."""
         scene = ("-grid_cells 24,16,1 -grid_length 3,1,1 -fluid_viscosity .1 -boundary_ymax wall -boundary_ymin inflow "

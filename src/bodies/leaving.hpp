@@ -1,0 +1,17 @@
+// Bodies that have come to a side of the box they leave through.
+#pragma once
+
+#include "field/phase.hpp"
+
+#include <vector>
+
+namespace eulastic {
+
+/// Whether this rank has any solid within `layers` cells of a side.
+bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers);
+/// Marks the labels of solid that this rank has there; what has no label (less than label_threshold) is gone at once.
+void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::vector<int> *leaves);
+/// Takes the marked bodies out of owned cells. What is around them is the caller's.
+void take_out(const Grid &grid, const std::vector<int> &leaves, Phase *phase);
+
+}  // namespace eulastic
