@@ -1,5 +1,5 @@
-// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of that
-// section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
+// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of
+// that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
 #include "app/openings.hpp"
 #include "base/petsc.hpp"
 
@@ -36,7 +36,8 @@ Beyond beyond(const Config &config, int e, int i, bool high) {
   return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
 }
 
-// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular one.
+// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular
+// one.
 struct OpenCells {
   static constexpr int values = 5;
   std::vector<double> all;

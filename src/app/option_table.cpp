@@ -237,7 +237,7 @@ void add_running(Rows &rows, Config &config) {
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
   rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
-               "with -check_only: as if the run had so many ranks; 0 = those of mpiexec, as a run has");
+                "with -check_only: as if the run had so many ranks; 0 = those of mpiexec, as a run has");
   rows.boolean("print_options", config.print_options, "validate, print every option as resolved and stop");
   rows.add("options_file", "", "options of another file; those of this file win").accepted =
       "only in an options file; a path, from the directory of this file";

@@ -153,8 +153,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
   energy->rates.force_power += power;
   for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
-  PetscCall(
-      measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure, &sides_));
+  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
+                               &sides_));
   for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
 }

@@ -2,10 +2,10 @@
 
 #include "app/help_text.hpp"
 #include "app/not_supported.hpp"
+#include "app/openings.hpp"
 #include "app/option_source.hpp"
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
-#include "app/openings.hpp"
 #include "app/petsc_options.hpp"
 #include "app/red_cell.hpp"
 #include "app/unknown_option.hpp"

@@ -14,7 +14,7 @@ EULASTIC_INLINE auto with_law(const Material &m, const Use &use) {
       return use(kernels::MooneyRivlin{2 * m.c1, 2 * m.c2, 4 * m.c3});
     case Law::membrane:  // a fluid inside
     case Law::red_cell:
-    case Law::rigid:     // no stress: the velocity is given
+    case Law::rigid:  // no stress: the velocity is given
     case Law::neo_hookean:
       break;
   }

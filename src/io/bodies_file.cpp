@@ -159,7 +159,8 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
       }
     }
     ++waiting_;
-    const std::size_t bytes = waiting_ * (1 + (12 + (membranes_ ? 5 : 0) + (loads_ ? 6 : 0)) * bodies.size()) * sizeof(double);
+    const std::size_t bytes =
+        waiting_ * (1 + (12 + (membranes_ ? 5 : 0) + (loads_ ? 6 : 0)) * bodies.size()) * sizeof(double);
     if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
   }
   PetscCall(fail_together(comm_, problem));

@@ -218,7 +218,8 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        if (!on_closed_side(grid, a, i, j, k)) add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
+        if (!on_closed_side(grid, a, i, j, k))
+          add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
   });
   std::vector<double> total(6 * faces.count);
   PetscCall(sums.reduce(grid.comm(), total.data()));

@@ -12,7 +12,7 @@ namespace eulastic {
 namespace {
 
 constexpr double round_off = 1e-12;  // of the first residual: further on directions are noise
-constexpr int patience = 12;  // iterations without progress: round-off
+constexpr int patience = 12;         // iterations without progress: round-off
 
 template <int Dim>
 EULASTIC_INLINE void laplacian_rows(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,

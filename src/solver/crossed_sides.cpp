@@ -37,7 +37,8 @@ PetscErrorCode Solver::check_sides(bool start) {
     for (int d = 0; d < grid_->dimension(); ++d)
       for (const int high : {0, 1}) {
         const SideKind kind = spec_.sides[d][high].kind;
-        if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow)) continue;
+        if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow))
+          continue;
         if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers)) continue;
         if (start || !is_open(kind) || is_held(now_.phases[p]))
           found[0] = std::max(found[0], p * 6 + 2 * d + high);

@@ -4,8 +4,8 @@
 #include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
-#include "physics/viscous_stress.hpp"
 #include "physics/transport.hpp"
+#include "physics/viscous_stress.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
@@ -100,9 +100,9 @@ PetscErrorCode Solver::prepare() {
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
     membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_, drifts());
-  PetscCall(work_->reserve(work_fields(
-      spec_, grid_->dimension(),
-      {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
+  PetscCall(work_->reserve(
+      work_fields(spec_, grid_->dimension(),
+                  {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
   if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
