@@ -1,4 +1,4 @@
-"""S13 to S15: rigid bodies; docs/method.md, section 19."""
+"""S13 to S17: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
 import math
 
 from .bodies import fast_at
@@ -37,6 +37,11 @@ def tube_options(across, _):
             "grain_centre": "0,0.513,0.487", "fluid_inertia": "true", "time_end": .5, "time_step": .005, "snapshot_interval": 0}
 
 
+def gradient(run):
+    p = run.probes.pressure.reshape(-1, 2)[-1]
+    return float((p[1] - p[0]) / .3)
+
+
 CASES = (
     array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
     Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
@@ -50,4 +55,21 @@ CASES = (
           Measure("torque on the outer one", lambda run: float(run.bodies.torque[-1, 1, 2]), {"fast": .01},
                   "asked for: 1 %", TORQUE, True)),
          lambda run: ((run.bodies.time, -run.bodies.torque[:, 0, 2]), None), ("t", "torque")),
+    Case("S16", "Cylinder in a channel, Re = 20", "cylinder_in_channel",
+         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "time_end": 8, "snapshot_interval": 0}, fast_at((10, 20, 40)),
+         fast_at((10,)),
+         (Measure("drag coefficient", lambda run: float(run.bodies.force[-1, 0, 0]) * 500,
+                  {"fast": lambda n: .01 * max(1, 40 / n)}, "asked for: 1 % at 40 cells in the diameter", 5.5795, True),
+          Measure("lift coefficient", lambda run: float(run.bodies.force[-1, 0, 1]) * 500, {}, "a fifth of a per cent of the drag",
+                  .01062, True)),
+         lambda run: ((run.bodies.time[1:], 500 * run.bodies.force[1:, 0, 0]), None), ("t", "drag coefficient")),
+    Case("S17", "Rigid tube from an inlet to an outlet", "sphere_array",
+         lambda across, _: {**tube_options(across, _), "grid_cells": f"{24 * across // 20},{round(across / ACROSS)},{round(across / ACROSS)}",
+                            "grid_length": f"{24 * across // 20 / round(across / ACROSS)},1,1", "body_force": "0,0,0",
+                            "boundary_xmin": "inflow", "boundary_xmax": "pressure", "inflow_xmin_profile": "developed",
+                            "inflow_xmin_flow_rate": .1, "probe_points": "0.3,0.513,0.487:0.6,0.513,0.487"},
+         fast_at((10, 20, 40)), fast_at((10, 20)),
+         (Measure("pressure gradient", gradient, {"fast": lambda across: .01 * (20 / across)**1.8},
+                  "asked for: 1 % at 20 cells across, order 1.8", -12.8 / (math.pi * ACROSS**4), True, order={"fast": 1.8}),),
+         lambda run: ((run.series.time, run.series.flow_rate_xmax), None), ("t", "flow rate at the outlet")),
 )

@@ -9,6 +9,7 @@ namespace eulastic {
 namespace {
 
 constexpr int images = 27;           // of a body: itself and its neighbours across periodic sides
+constexpr double inward = 1e-6;      // in cells
 constexpr double shortest = 1e-3;    // of a link, in spacings
 constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
 
@@ -85,6 +86,10 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
               place[0] += x.shift;
               place[1] += y.shift;
               place[2] += z.shift;
+              // A body that begins on a side of the box covers it.
+              const int at = own.begin[a] + local[a];
+              if (grid_.is_wall(a) && at == 0) place[a] += inward;
+              if (grid_.is_wall(a) && at == grid_.cells()[a]) place[a] -= inward;
               double &mark = inside(local[0], local[1], local[2]);
               if (mark == 0 && body.level(place) < 0) mark = image;
             }

@@ -6,7 +6,7 @@
 namespace eulastic {
 namespace {
 
-enum Sum { into_box, pressure_sum, power_sum, sums };
+enum Sum { into_box, pressure_sum, power_sum, faces_sum, sums };
 
 // Sums over the faces of one side, if this rank has any.
 class SideSums {
@@ -14,7 +14,8 @@ public:
   SideSums(const Grid &grid, double density, const FieldBlock &velocity, const FieldBlock &pressure)
       : grid_(grid), density_(density), velocity_(velocity), pressure_(pressure) {}
 
-  void add(const SideFlow &side, int first, ExactSums *all) const {
+  /// `profile`: of an inflow side, 0 where it is covered; or null.
+  void add(const SideFlow &side, const SideProfile *profile, int first, ExactSums *all) const {
     const int d = side.direction;
     if (!(side.high ? grid_.touches_high(d) : grid_.touches_low(d))) return;
     Int3 begin{}, end = grid_.owned();
@@ -27,7 +28,10 @@ public:
           const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
           const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
           all->add(first + into_box, inward);
-          all->add(first + pressure_sum, p);
+          if (!profile || profile->empty() || (*profile)[index_on_side(d, {i, j, k})] != 0) {
+            all->add(first + pressure_sum, p);
+            all->add(first + faces_sum, 1);
+          }
           all->add(first + power_sum, inward * (p + 0.5 * density_ * speed_squared));
         }
   }
@@ -38,6 +42,13 @@ private:
     const double *here = &p(cell[0], cell[1], cell[2]);
     if (is_open(side.kind)) return side.pressure;
     return 1.5 * here[0] - 0.5 * here[side.high ? -p.stride(side.direction) : p.stride(side.direction)];
+  }
+
+  /// x before y before z, over all cells of a side of direction d.
+  std::size_t index_on_side(int d, const Int3 &cell) const {
+    const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+    const Int3 &begin = grid_.layout().begin;
+    return (begin[a] + cell[a]) + std::size_t(grid_.cells()[a]) * (begin[b] + cell[b]);
   }
 
   double tangential_squared(int d, const Int3 &cell) const {
@@ -85,17 +96,16 @@ PetscErrorCode measure_side_flows(const Grid &grid, const BoxSides &sides, doubl
   int first = 0;
   for (SideFlow &flow : *flows) {
     if (flow.kind == SideKind::pressure) flow.pressure = sides[flow.direction][flow.high].given.at(time);
-    add.add(flow, first, &all);
+    add.add(flow, sides[flow.direction][flow.high].profile.get(), first, &all);
     first += sums;
   }
   PetscCall(all.reduce(grid.comm(), result.data()));
   const double *sum = result.data();
   for (SideFlow &flow : *flows) {
     const double area = grid.cell_volume() / grid.spacing()[flow.direction];
-    const double faces = grid.cell_count() / grid.cells()[flow.direction];
     flow.flow_rate = sum[into_box] * area;
     flow.power = sum[power_sum] * area;
-    if (!is_open(flow.kind)) flow.pressure = sum[pressure_sum] / faces;
+    if (!is_open(flow.kind)) flow.pressure = sum[pressure_sum] / sum[faces_sum];
     sum += sums;
   }
   PetscFunctionReturn(0);

@@ -12,7 +12,7 @@ struct SideFlow {
   bool high = false;
   SideKind kind = SideKind::inflow;
   double flow_rate = 0;  ///< volume into the box per time; 2-D: per depth
-  double pressure = 0;   ///< given, or the mean over the side, extrapolated from two cells
+  double pressure = 0;   ///< given, or the mean over the open part of the side, extrapolated from two cells
   double power = 0;      ///< of pressure and kinetic energy that come in; without what viscosity does on the side
   std::string name() const { return std::string{"xyz"[direction]} + (high ? "max" : "min"); }
 };

@@ -117,6 +117,41 @@ class OpenSides(unittest.TestCase):
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(says, done.stderr)
 
+    def test_rigid_tube_from_an_inlet_to_an_outlet(self):
+        """What comes in is the flow that the tube has: it stays as it is along it, and pressure falls as Poiseuille says. With a
+        load at the outlet, too; the same on any ranks and after a restart."""
+        radius, length = .385, .7
+        scene = (f"-grid_cells 14,20,20 -grid_length {length},1,1 -boundary_xmin inflow -boundary_xmax pressure "
+                 "-inflow_xmin_profile developed -inflow_xmin_flow_rate .1 -species pipe -pipe_shape tube -pipe_axis x "
+                 f"-pipe_law rigid -pipe_radius {radius} -pipe_centre 0,0.513,0.487 -time_step .01 -snapshot_precision double").split()
+        drop = .1 * 8 * length / (numpy.pi * radius**4)
+        for solver in ("acm", "smac"):
+            run = self.run_program(solver, *scene, "-pressure_solver", solver, "-time_end", ".5", "-snapshot_interval", ".5",
+                                   "-pressure_xmax_resistance", "30")
+            with h5py.File(run.directory / "snapshot_000001.h5") as file:
+                u = file["velocity_x"][...]
+            self.assertLess(abs(u - u[:, :, :1]).max() / u.max(), 5e-4)
+            inlet, outlet = run.summary["sides"]
+            self.assertAlmostEqual(outlet["flow_rate"], -.1, delta=1e-7)
+            self.assertAlmostEqual(outlet["pressure"], 3, delta=1e-6)
+            self.assertAlmostEqual((inlet["pressure"] - outlet["pressure"]) / drop, 1, delta=.02)
+            for ranks in (2, 3):
+                other = self.run_program(f"{solver}{ranks}", *scene, "-pressure_solver", solver, "-time_end", ".5",
+                                         "-snapshot_interval", ".5", "-pressure_xmax_resistance", "30", ranks=ranks)
+                self.assertEqual(other.summary["state_hash"], run.summary["state_hash"])
+        half = [*scene, "-pressure_xmax_resistance", "30", "-time_end", ".5"]
+        self.run_program("half", *half, "-time_steps_max", "20", "-checkpoint_interval", ".5")
+        rest = self.run_program("rest", *half, "-restart", self.room / "half", ranks=2).summary
+        self.assertEqual(rest["state_hash"], self.run_program("whole", *half).summary["state_hash"])
+
+    def test_inlet_that_a_rigid_body_covers(self):
+        done = subprocess.run([BINARY, *("-grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 "
+                                         "-species plug -plug_shape slab -plug_axis x -plug_interval 0,.2 -plug_law rigid "
+                                         "-time_end 1").split(), "-output_dir", self.room / "plug"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("-boundary_xmin: inflow, but rigid bodies cover", done.stderr)
+
     def test_resistances_share_the_flow(self):
         """Far above that of the box they share it 3 to 1, whatever the time step; the pressures are those of the flow rates."""
         scene = ("-grid_cells 24,16,1 -grid_length 3,1,1 -fluid_viscosity .1 -boundary_ymax wall -boundary_ymin inflow "
