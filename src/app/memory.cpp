@@ -51,6 +51,10 @@ double fields(const Config &config) {
     sum += method.acm_memory;
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
+  if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
+    sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
+  for (const auto &pair : config.sides)
+    for (const Side &side : pair) sum += side.kind == SideKind::pressure && side.load.exists();  // its response
   if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
   if (config.species.empty()) return sum;
   double tensor = 0;

@@ -27,6 +27,12 @@ OutletLoads::OutletLoads(const BoxSides &sides) {
     }
 }
 
+std::size_t OutletLoads::bytes() const {
+  std::size_t sum = 0;
+  for (const Load &load : loads_) sum += load.response.bytes();
+  return sum;
+}
+
 void OutletLoads::set_response(int n, FieldBlock &&pressure, const std::vector<double> &flow) {
   loads_[n].response = std::move(pressure);
   loads_[n].flow = flow;

@@ -12,6 +12,7 @@ public:
   static bool none(const BoxSides &sides);
 
   explicit OutletLoads(const BoxSides &sides);
+  std::size_t bytes() const;
   int count() const { return static_cast<int>(loads_.size()); }
   /// The side of a load: direction, high.
   std::array<int, 2> side(int n) const { return {loads_[n].direction, loads_[n].high}; }

@@ -176,7 +176,8 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
-                    viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0);
+                    viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0) +
+                    (loads_ ? loads_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
