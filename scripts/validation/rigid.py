@@ -1,5 +1,7 @@
-"""S13 to S17: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
+"""S13 to S18: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
 import math
+
+import numpy
 
 from .bodies import fast_at
 from .case import Case, Measure
@@ -42,6 +44,37 @@ def gradient(run):
     return float((p[1] - p[0]) / .3)
 
 
+WOMERSLEY, VISCOSITY = 5, .1  # number R sqrt(frequency/nu)
+FREQUENCY = VISCOSITY * (WOMERSLEY / (ACROSS / 2))**2
+PERIODS = 6
+
+
+def bessel(order, z):
+    """J_0 or J_1 by its power series."""
+    return sum((-1)**m * (z / 2)**(2 * m + order) / (math.factorial(m) * math.factorial(m + order)) for m in range(60))
+
+
+def womersley_flow():
+    """Complex mean velocity of the box under a force cos(frequency t): Womersley (1955)."""
+    z = WOMERSLEY * 1j**1.5
+    return (1 - 2 * bessel(1, z) / (z * bessel(0, z))) / (1j * FREQUENCY) * math.pi * (ACROSS / 2)**2
+
+
+def pulse(run):
+    """The same, of the last period: least squares."""
+    t, u = run.series.time, run.series.bulk_velocity_x
+    last = t > t[-1] * (1 - 1 / PERIODS)
+    waves = numpy.stack([numpy.cos(FREQUENCY * t[last]), -numpy.sin(FREQUENCY * t[last])], axis=1)
+    real, imaginary = numpy.linalg.lstsq(waves, u[last], rcond=None)[0]
+    return complex(real, imaginary)
+
+
+def pulse_options(across, _):
+    period = 2 * math.pi / FREQUENCY
+    return {**tube_options(across, _), "fluid_viscosity": VISCOSITY, "body_force_frequency": FREQUENCY, "time_end": PERIODS * period,
+            "time_step": period / (2 * across), "series_interval": period / (2 * across)}
+
+
 CASES = (
     array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
     Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
@@ -72,4 +105,10 @@ CASES = (
          (Measure("pressure gradient", gradient, {"fast": lambda across: .01 * (20 / across)**1.8},
                   "asked for: 1 % at 20 cells across, order 1.8", -12.8 / (math.pi * ACROSS**4), True, order={"fast": 1.8}),),
          lambda run: ((run.series.time, run.series.flow_rate_xmax), None), ("t", "flow rate at the outlet")),
+    Case("S18", "Pulse in a rigid tube, Womersley number 5", "sphere_array", pulse_options, fast_at((10, 20, 40)), fast_at((10, 20)),
+         (Measure("amplitude and phase of the flow rate: error", lambda run: abs(pulse(run) / womersley_flow() - 1),
+                  {"fast": lambda across: .01 * (20 / across)**1.7}, "1 % at 20 cells across and 40 steps a period, second order in both",
+                  order={"fast": 1.7}),),
+         lambda run: ((run.series.time, run.series.bulk_velocity_x),
+                      (run.series.time, (womersley_flow() * numpy.exp(1j * FREQUENCY * run.series.time)).real)), ("t", "mean velocity")),
 )
