@@ -183,14 +183,12 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
       PetscCall(other_->solve(dt, residual, pressure, correction));
       ++iterations_;
     }
-    double along = 0, before = 0;  // <z, r> and, of the next direction, <z, change of r>
     if (n == 0 || last == 0) {
       direction.copy_from(correction);
-      PetscCall(products(correction, residual, correction, residual, &along, &ignored));
-    } else {
-      // `image` still holds A p of the step before: r has changed by -alpha A p.
-      PetscCall(products(correction, residual, correction, image, &along, &before));
-      combine_all(*grid_, before == 0 ? 0 : -before / last, 1, correction, direction);
+    } else {  // `image` still is A p of the direction before
+      double coupling;
+      PetscCall(products(correction, image, residual, residual, &coupling, &ignored));
+      combine_all(*grid_, -coupling / last, 1, correction, direction);
     }
     apply(dt, direction, image);
     double curvature, projection;
