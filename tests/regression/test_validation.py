@@ -90,15 +90,19 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.verdict(.4, "fast"), "**FAIL**")
 
     def test_the_page_has_no_other_misses(self):
-        rows = [line for line in (ROOT / "docs/validation.md").read_text().splitlines() if line.startswith(("| S", "| F", "| R"))]
-        self.assertGreater(len(rows), 100)
-        known = {(case.name, measure.what) for case in CASES for measure in case.measures if measure.misses}
+        """A row misses its tolerance where a bound is kept for that, and classic wherever one is."""
+        rows = [line for line in (ROOT / "docs/validation.md").read_text().splitlines()
+                if line.startswith(tuple(f"| {letter}" for letter in "FSRVL"))]
+        self.assertGreater(len(rows), 200)
+        known = {(case.name, what): tuple(methods) for case in CASES for measure in case.measures
+                 for what, methods in ((measure.what, measure.misses), (measure.what + ": order", measure.order_misses)) if methods}
         for row in rows:
-            cells = [cell.strip().replace("\\|", "|") for cell in row.replace("\\|", "\0").split("|")[1:-1]]
-            cells = [cell.replace("\0", "|") for cell in cells]
+            cells = [cell.strip().replace("\0", "|") for cell in row.replace("\\|", "\0").split("|")[1:-1]]
+            missed, kept = cells[-1] == "misses, as documented", cells[2].startswith(known.get((cells[0], cells[1]), ("none",)))
             self.assertNotIn("FAIL", row)
-            self.assertEqual(cells[-1] == "misses, as documented",
-                             (cells[0], cells[1]) in known and cells[2].startswith("classic"), row)
+            self.assertLessEqual(missed, kept, row)
+            if cells[2].startswith("classic"):
+                self.assertEqual(missed, kept, row)
 
     def test_full_runs_with_misses_pass(self):
         with tempfile.TemporaryDirectory() as room:
