@@ -28,6 +28,7 @@ struct BoundaryControl {
   SideKind kind(int d, int high) const {
     if (side[d][high] == SideChoice::same)
       return both[d] == BoundaryChoice::symmetry ? SideKind::symmetry : SideKind::wall;
+    static_assert(int(SideChoice::outflow) - 1 == int(SideKind::outflow), "the same order");
     return static_cast<SideKind>(static_cast<int>(side[d][high]) - 1);
   }
   bool is(SideKind wanted, int d, int high) const { return bounded(d) && kind(d, high) == wanted; }

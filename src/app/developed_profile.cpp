@@ -13,7 +13,6 @@ namespace {
 
 using MatHandle = Handle<Mat, MatDestroy>;
 using KspHandle = Handle<KSP, KSPDestroy>;
-using VecHandle = Handle<Vec, VecDestroy>;
 
 // The two directions of a side of direction d, x before y before z.
 struct SidePlane {
@@ -52,10 +51,11 @@ PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const Rig
   const int na = config.grid.cells[plane.a], nb = config.grid.cells[plane.b];
   const Int3 &n = grid.owned(), &begin = grid.layout().begin;
   PetscFunctionBeginUser;
-  cells->all.assign(std::size_t(OpenCells::values) * na * nb, rigid ? 0 : 1);
-  for (std::size_t v = 0; !rigid && v < cells->all.size(); ++v)
-    if (v % OpenCells::values != 0) cells->all[v] = 0;
-  if (!rigid) PetscFunctionReturn(0);
+  cells->all.assign(std::size_t(OpenCells::values) * na * nb, 0);
+  if (!rigid) {
+    for (std::size_t v = 0; v < cells->all.size(); v += OpenCells::values) cells->all[v] = 1;
+    PetscFunctionReturn(0);
+  }
   const auto values = [&](const Int3 &local) {
     const std::size_t cell = (begin[plane.a] + local[plane.a]) + std::size_t(na) * (begin[plane.b] + local[plane.b]);
     return cells->all.data() + OpenCells::values * cell;

@@ -96,7 +96,7 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
       }
 }
 
-// Half a body, between two cells, is where phi changes sign about 1/2.
+// Of a file a face is inside where phi, averaged to it, is above 1/2.
 void RigidBuilder::mark_file(int a, ConstView phi, int index) {
   const View inside = inside_[a][0], level = inside_[a][1];
   const std::ptrdiff_t step = phi.stride(a);
@@ -127,72 +127,66 @@ double RigidBuilder::crossing(int image, const Real3 &outside, const Real3 &insi
   return std::max(shortest, 0.5 * (low + high));
 }
 
-// Its surfaces move at `speed` or less.
-RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers, double &speed) const {
-  const Int3 &n = grid_.owned(), &N = grid_.cells(), &begin = grid_.layout().begin;
-  const ConstView inside = inside_[a][0], level = inside_[a][1];
-  const Real3 &h = grid_.spacing();
-  double regular = 0;
-  for (int d = 0; d < grid_.dimension(); ++d) regular += 2 / (h[d] * h[d]);
+// What a fluid face sees of the bodies around it; not cut where it sees none.
+RigidFaces::Cut RigidBuilder::cut_at(int a, int i, int j, int k) const {
+  const Int3 &N = grid_.cells(), &begin = grid_.layout().begin, local{i, j, k};
+  const double *inside = inside_[a][0].row(j, k) + i, *level = inside_[a][1].row(j, k) + i;
+  RigidFaces::Cut cut;
+  cut.i = i;
+  double diagonal = 0, regular = 0;
+  Real3 least{}, place{};  // wrapped into the box, like that of the owner
+  for (int d = 0; d < grid_.dimension(); ++d) {
+    const int g = begin[d] + local[d];
+    least[d] = (d == a ? 0 : 0.5) - 0.5 * N[d];
+    place[d] = least[d] + (grid_.is_wall(d) ? g : (g % N[d] + N[d]) % N[d]);
+  }
+  for (int d = 0; d < grid_.dimension(); ++d)
+    for (int high = 0; high < 2; ++high) {
+      const double h = grid_.spacing()[d], one = high ? 1 : -1;
+      const std::ptrdiff_t step = high ? inside_[a][0].stride(d) : -inside_[a][0].stride(d);
+      const int link = 2 * d + high, body = static_cast<int>(inside[step]) - 1;
+      cut.link[link] = 1 / (h * h);
+      regular += cut.link[link];
+      if (body >= 0) {
+        // The neighbour's own place is in the box: its image may be that of another side.
+        Real3 neighbour = place, here = place;
+        neighbour[d] += one;
+        if (!grid_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
+        if (!grid_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
+        here[d] = neighbour[d] - one;
+        const double part = crossing(body, here, neighbour, level[0], level[step]);
+        cut.walls |= 1U << link;
+        cut.body = body;
+        cut.link[link] /= part;
+        here[d] += one * part;
+        cut.turn[link] = faces_->velocity(a, faces_->bodies[body], here, grid_.spacing(), 0, 1);
+      }
+      diagonal += cut.link[link];
+    }
+  cut.share = std::min(1.0, regular / diagonal);
+  cut.open = std::max(least_open, cut.share);
+  return cut;
+}
+
+RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers) const {
+  const Int3 &n = grid_.owned();
   RigidFaces::Component c;
   for (int k = -layers[2]; k < n[2] + layers[2]; ++k)
     for (int j = -layers[1]; j < n[1] + layers[1]; ++j) {
       c.first_cut.push_back(c.cuts.size());
       c.first_run.push_back(c.runs.size());
-      const double *row = inside.row(j, k);
+      const double *inside = inside_[a][0].row(j, k);
       bool all = true;
       for (int i = -layers[0]; i < n[0] + layers[0]; ++i) {
-        if (row[i] != 0) {
-          const int body = static_cast<int>(row[i]) - 1;
-          const bool goes_on =
-              c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body;
-          if (goes_on)
-            ++c.runs.back().end;
-          else
-            c.runs.push_back({i, i + 1, body});
-          continue;
+        const int body = static_cast<int>(inside[i]) - 1;
+        if (body < 0) {
+          all = false;
+          if (const RigidFaces::Cut cut = cut_at(a, i, j, k); cut.walls != 0) c.cuts.push_back(cut);
+        } else if (c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body) {
+          ++c.runs.back().end;
+        } else {
+          c.runs.push_back({i, i + 1, body});
         }
-        all = false;
-        RigidFaces::Cut cut;
-        cut.i = i;
-        double diagonal = 0;
-        Real3 place{};  // wrapped into the box, like that of the owner
-        for (int d = 0; d < grid_.dimension(); ++d) {
-          int g = begin[d] + (d == 0 ? i : d == 1 ? j : k);
-          if (!grid_.is_wall(d)) g = (g % N[d] + N[d]) % N[d];
-          place[d] = g + (d == a ? 0 : 0.5) - 0.5 * N[d];
-        }
-        for (int d = 0; d < grid_.dimension(); ++d)
-          for (int high = 0; high < 2; ++high) {
-            const int link = 2 * d + high;
-            const std::ptrdiff_t step = high ? inside.stride(d) : -inside.stride(d);
-            cut.link[link] = 1 / (h[d] * h[d]);
-            if (const double there = row[i + step]; there != 0) {
-              const int body = static_cast<int>(there) - 1;
-              // The neighbour's own place is in the box: its image may be that of another side.
-              Real3 neighbour = place, here = place;
-              const double least = -0.5 * N[d] + (d == a ? 0 : 0.5), most = least + N[d] - 1;
-              neighbour[d] += high ? 1 : -1;
-              if (!grid_.is_wall(d) && neighbour[d] < least) neighbour[d] += N[d];
-              if (!grid_.is_wall(d) && neighbour[d] > most) neighbour[d] -= N[d];
-              here[d] = neighbour[d] - (high ? 1 : -1);
-              const double *levels = level.row(j, k) + i;
-              const double part = crossing(body, here, neighbour, levels[0], levels[step]);
-              cut.walls |= 1U << link;
-              cut.body = body;
-              cut.link[link] /= part;
-              Real3 wall = here;
-              wall[d] += high ? part : -part;
-              cut.turn[link] = faces_->velocity(a, faces_->bodies[body], wall, h, 0, 1);
-              const double along = faces_->motions[faces_->bodies[body].motion].velocity[a];
-              speed = std::max(speed, std::fabs(along) + std::fabs(cut.turn[link]));
-            }
-            diagonal += cut.link[link];
-          }
-        if (cut.walls == 0) continue;
-        cut.share = std::min(1.0, regular / diagonal);
-        cut.open = std::max(least_open, cut.share);
-        c.cuts.push_back(cut);
       }
       c.all.push_back(all);
     }
@@ -210,7 +204,11 @@ PetscErrorCode RigidBuilder::finish(std::unique_ptr<RigidFaces> *faces) {
   std::array<RigidFaces::Component, 3> components;
   for (int a = 0; a < grid_.dimension(); ++a) {
     PetscCall(exchange_.update(inside_[a], grid_.layout().ghosts[a]));
-    components[a] = component(a, layers, faces_->speed[a]);
+    components[a] = component(a, layers);
+    for (const RigidFaces::Cut &cut : components[a].cuts) {
+      const double along = std::fabs(faces_->motions[faces_->bodies[cut.body].motion].velocity[a]);
+      for (const double turn : cut.turn) faces_->speed[a] = std::max(faces_->speed[a], along + std::fabs(turn));
+    }
     inside_[a] = {};
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, faces_->speed.data(), 3, MPI_DOUBLE, MPI_MAX, grid_.comm()));

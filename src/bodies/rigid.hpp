@@ -28,7 +28,8 @@ private:
   void mark_file(int a, ConstView phi, int index);
   double crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
                   double level_inside) const;
-  RigidFaces::Component component(int a, const Int3 &layers, double &speed) const;
+  RigidFaces::Cut cut_at(int a, int i, int j, int k) const;
+  RigidFaces::Component component(int a, const Int3 &layers) const;
 
   const Grid &grid_;
   GhostExchange &exchange_;

@@ -37,15 +37,6 @@ EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inve
   divergence_row<3>(T, a, inverse, n, j, k, scale, out);
 }
 
-// To the force, and a factor times it to its change, where there is one.
-EULASTIC_CLONES void add_row(int n, const double *added, double factor, double *force, double *slope) {
-#pragma omp simd
-  for (int i = 0; i < n; ++i) force[i] += added[i];
-  if (!slope) return;
-#pragma omp simd
-  for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
-}
-
 // Rows in which faces feel a stress that lives in rows that are not idle, or the next ones.
 bool feels(const OccupiedRows &rows, int j, int k) {
   for (int m = -1; m <= 1; ++m)
@@ -142,7 +133,7 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
     PetscCall(surface_.find(phase, psi.fields()));
     PetscCall(for_force_rows(
         phase, psi.fields()[0], scale, [&](int part, bool bending, int a, int j, int k, const double *added) {
-          add_row(n, added, slope.factor, force[a].row(j, k), slope.field ? (*slope.field)[a].row(j, k) : nullptr);
+          add_force_row(n, added, slope.factor, force[a].row(j, k), slope.field ? (*slope.field)[a].row(j, k) : nullptr);
           if (bending) net.add_row(part, a, added);
         }));
   }

@@ -1,11 +1,20 @@
 #include "physics/net_force.hpp"
 
 #include "grid/blocks.hpp"
+#include "kernels/isa.hpp"
 
 namespace eulastic {
 
 NetForce::NetForce(const Grid &grid, bool wanted) : grid_(&grid) {
   if (wanted) sums_.assign(row_parts(grid), ExactSums(grid.dimension()));
+}
+
+EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, double *force, double *slope) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) force[i] += added[i];
+  if (!slope) return;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
 }
 
 PetscErrorCode NetForce::take_off(FieldBlock &force) {

@@ -6,6 +6,9 @@
 
 namespace eulastic {
 
+/// n values to a force, and `factor` times them to its change in time, where there is one.
+void add_force_row(int n, const double *added, double factor, double *force, double *slope);
+
 /// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
 class NetForce {
 public:

@@ -141,15 +141,6 @@ EULASTIC_CLONES void force_row(const Faces &faces, const Segment &s, double *for
   faces.row(s, [=](int i, double f) EULASTIC_BODY { force[i] = f; });
 }
 
-// To the force, and a factor times it to its change, where there is one.
-EULASTIC_CLONES void add_row(int n, const double *added, double factor, double *force, double *slope) {
-#pragma omp simd
-  for (int i = 0; i < n; ++i) force[i] += added[i];
-  if (!slope) return;
-#pragma omp simd
-  for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
-}
-
 EULASTIC_CLONES void power_row(const Faces &faces, const Segment &s, const double *v, double *power) {
   faces.row(s, [=](int i, double f) EULASTIC_BODY { power[i] = kernels::fma(-f, v[i], power[i]); });
 }
@@ -244,7 +235,7 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
           if (band_.idle(j, k)) return;
           std::fill(added.begin(), added.end(), 0.0);
           for_owned(*grid_, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
-          add_row(n, added.data(), slope.factor, force[d].row(j, k),
+          add_force_row(n, added.data(), slope.factor, force[d].row(j, k),
                   slope.field ? (*slope.field)[d].row(j, k) : nullptr);
           net.add_row(part.number, d, added.data());
         });

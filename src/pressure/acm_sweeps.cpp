@@ -22,30 +22,13 @@ PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange,
   }
   work_ = &work;
   PetscCall(work.reserve(work_fields));
-  if (options.memory > 0) memory_ = FieldBlock(grid, options.memory);
+  memory_ = IncrementMemory(grid, options.memory);
   if (options.memory == 0 && options.multigrid) own_scratch_ = FieldBlock(grid, 1);
   PetscFunctionReturn(0);
 }
 
-FieldBlock *AcmSweepSolver::memory() {
-  if (!memory_) return nullptr;
-  const std::size_t size = memory_.layout().size;
-  double *data = memory_.data();
-  std::rotate(data, data + newest_ * size, data + memory_.count() * size);
-  newest_ = 0;
-  ghosts_of_memory_ = false;
-  return &memory_;
-}
-
 std::size_t AcmSweepSolver::bytes() const {
   return memory_.bytes() + own_scratch_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
-}
-
-PetscErrorCode AcmSweepSolver::update_ghosts(FieldBlock &field, int width) {
-  PetscFunctionBeginUser;
-  PetscCall(exchange_->update(field, width));
-  for (int f = 0; f < field.count(); ++f) fill_ghosts_of_increment(*grid_, field[f], 1);
-  PetscFunctionReturn(0);
 }
 
 /// How far a solve has come.
@@ -68,21 +51,21 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   direction_ = lease.part(2, 1);
   SolveState state{dt, increment, memory_ ? divergence[0] : residual_[0]};
   if (memory_) {
-    if (!ghosts_of_memory_) PetscCall(update_ghosts(memory_, 1));
-    ghosts_of_memory_ = true;
+    PetscCall(memory_.update_ghosts(*grid_, *exchange_));
     directions_.clear();
-    for (int f = 0; f < memory_.count(); ++f) directions_.push_back(memory_[(newest_ + f) % memory_.count()]);
-    newest_ = (newest_ + memory_.count() - 1) % memory_.count();  // the oldest: it will be
+    for (int n = 0; n < memory_.count(); ++n) directions_.push_back(memory_.increment(n)[0]);
+    memory_.turn();
     sums_.start(*grid_, memory_.count());
     PetscCall(sweep(false, state));
   } else {
     for (const Segment &s : grid_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
-    PetscCall(update_ghosts(residual_, Multigrid::halo));
+    PetscCall(exchange_->update(residual_, Multigrid::halo));
+    fill_ghosts_of_increment(*grid_, residual_[0], 1);
     if (!multigrid_) sums_.start(*grid_, 1);
   }
   FieldBlock correction = lease.part(3, 1), scratch;  // multigrid may swap them
-  if (multigrid_) scratch = memory_ ? memory_.part(newest_, 1) : own_scratch_.part(0, 1);
+  if (multigrid_) scratch = memory_ ? memory_.increment(0) : own_scratch_.part(0, 1);
   for (int s = 1; s <= options_.sweeps_max && !state.done; ++s) {
     if (multigrid_) {
       const SweepTask next{grid_, nullptr, 1, state.recurs, state.residual, state.before};
@@ -102,7 +85,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
     PetscCall(sweep(s == options_.sweeps_max, state));
     ++sweeps_;
   }
-  if (memory_) memory_.part(newest_, 1).copy_from(increment);
+  if (memory_) memory_.increment(0).copy_from(increment);
   PetscFunctionReturn(0);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "field/work_space.hpp"
+#include "pressure/increment_memory.hpp"
 #include "pressure/multigrid.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "pressure/sweep_passes.hpp"
@@ -29,13 +30,12 @@ public:
   void set_target(double rms) override { target_ = rms; }
   long sweeps() const override { return sweeps_; }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
-  FieldBlock *memory() override;
+  FieldBlock *memory() override { return memory_.saved(); }
   /// rms of D that the last solve left, by its own account.
   double residual_rms() const { return residual_rms_; }
   std::size_t bytes() const override;
 
 private:
-  PetscErrorCode update_ghosts(FieldBlock &field, int width);
   struct SolveState;
   /// One sweep over directions_.
   PetscErrorCode sweep(bool last, SolveState &state);
@@ -47,13 +47,11 @@ private:
   WorkSpace *work_ = nullptr;
   FieldBlock residual_, before_, direction_;  ///< of the work space, during a solve
   FieldBlock own_scratch_;                    ///< without memory
-  FieldBlock memory_;                         ///< the newest increment is newest_
-  int newest_ = 0;                            ///< then those after it, around the block
+  IncrementMemory memory_;
   std::vector<ConstView> directions_;         ///< of this sweep, but for d
   RowSums sums_;                              ///< of this sweep or, once it is done, of the next
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
-  bool ghosts_of_memory_ = true;  ///< valid
 };
 
 }  // namespace eulastic

@@ -70,19 +70,13 @@ void combine_all(const Grid &grid, double scale, double factor, const FieldBlock
 
 ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
                                double accuracy, int memory, std::unique_ptr<PressureSolver> other)
-    : grid_(&grid), exchange_(&exchange), work_(&work), other_(std::move(other)), accuracy_(accuracy) {
+    : grid_(&grid),
+      exchange_(&exchange),
+      work_(&work),
+      other_(std::move(other)),
+      memory_(grid, memory),
+      accuracy_(accuracy) {
   find_cells(faces);
-  if (memory > 0) memory_ = FieldBlock(grid, memory);
-}
-
-FieldBlock *ObstacleSolver::memory() {
-  if (!memory_) return nullptr;
-  const std::size_t size = memory_.layout().size;
-  double *data = memory_.data();
-  std::rotate(data, data + newest_ * size, data + memory_.count() * size);
-  newest_ = 0;
-  ghosts_of_memory_ = false;
-  return &memory_;
 }
 
 std::size_t ObstacleSolver::bytes() const {
@@ -166,17 +160,13 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
   PetscCall(products(residual, residual, residual, residual, &square, &ignored));
   const double cells = grid_->cell_count(), target = std::max(target_, round_off * std::sqrt(square / cells));
   const int remembered = memory_ ? memory_.count() : 0;
-  if (memory_ && !ghosts_of_memory_) {
-    PetscCall(exchange_->update(memory_, 1));
-    for (int f = 0; f < remembered; ++f) fill_ghosts_of_increment(*grid_, memory_[f], 1);
-    ghosts_of_memory_ = true;
-  }
+  if (memory_) PetscCall(memory_.update_ghosts(*grid_, *exchange_));
   double best = square;
   for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
     const double rms = std::sqrt(square / cells);
     if (!(rms > target)) break;
     if (n < remembered) {
-      correction.copy_from(memory_.part((newest_ + n) % remembered, 1));
+      correction.copy_from(memory_.increment(n));
     } else {
       constexpr double inner = 0.1;  // of the residual, in a direction
       other_->set_target(inner * rms);
@@ -208,8 +198,8 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     }
   }
   if (memory_) {
-    newest_ = (newest_ + remembered - 1) % remembered;  // the oldest goes
-    memory_.part(newest_, 1).copy_from(increment);
+    memory_.turn();
+    memory_.increment(0).copy_from(increment);
   }
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,7 @@
 #include "field/ghost_exchange.hpp"
 #include "field/rigid_faces.hpp"
 #include "field/work_space.hpp"
+#include "pressure/increment_memory.hpp"
 #include "pressure/pressure_solver.hpp"
 
 namespace eulastic {
@@ -25,7 +26,7 @@ public:
   long sweeps() const override { return iterations_; }
   double sound_speed() const override { return other_->sound_speed(); }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
-  FieldBlock *memory() override;
+  FieldBlock *memory() override { return memory_.saved(); }
   std::size_t bytes() const override;
 
 private:
@@ -45,9 +46,7 @@ private:
   std::unique_ptr<PressureSolver> other_;
   std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
-  FieldBlock memory_;               ///< the newest increment is newest_, then those after it, around the block
-  int newest_ = 0;
-  bool ghosts_of_memory_ = true;  ///< valid
+  IncrementMemory memory_;
   double accuracy_, target_ = 0;
   long iterations_ = 0;
 };

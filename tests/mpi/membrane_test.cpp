@@ -62,12 +62,7 @@ End run(MPI_Comm comm, const Case &c) {
   scene.solver.state().phases.push_back(std::move(phase));
   scene.solver.bodies().add_phase(scene.grid, places);
   EXPECT_EQ(scene.solver.prepare(), 0);
-  for (int n = 0; n < 12; ++n) {
-    FlowExtremes extremes;
-    EXPECT_EQ(scene.solver.measure(&extremes), 0);
-    EXPECT_EQ(extremes.first_bad, -1);
-    EXPECT_EQ(scene.solver.step(2 * scene.solver.limits(extremes).automatic()), 0);
-  }
+  EXPECT_EQ(scene.advance(12, 2), 0);
   End end;
   end.phases = static_cast<long>(scene.solver.state().phases.size());
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);

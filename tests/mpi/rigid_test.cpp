@@ -58,12 +58,7 @@ End run(MPI_Comm comm, const Case &c) {
     return std::min(1.0, std::max(0.0, 0.5 + (0.35 - r) / 0.1));
   });
   EXPECT_EQ(scene.solver.prepare(), 0);
-  for (int n = 0; n < 6; ++n) {
-    FlowExtremes extremes;
-    EXPECT_EQ(scene.solver.measure(&extremes), 0);
-    EXPECT_EQ(extremes.first_bad, -1);
-    EXPECT_EQ(scene.solver.step(0.5 * scene.solver.limits(extremes).automatic()), 0);
-  }
+  EXPECT_EQ(scene.advance(6, 0.5), 0);
   End end;
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
   EXPECT_EQ(scene.solver.rigid_loads(&end.loads), 0);

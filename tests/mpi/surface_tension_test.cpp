@@ -60,12 +60,7 @@ End run(MPI_Comm comm, const Case &c) {
   if (flat) drop.material.viscosity = 1.2;
   scene.add_phase(0.3, ball({6.2, 0.6 * grid.length[1], grid.length[2] - 0.7}, 1.5)).material.surface_tension = 0.3;
   EXPECT_EQ(scene.solver.prepare(), 0);
-  for (int n = 0; n < 8; ++n) {
-    FlowExtremes extremes;
-    EXPECT_EQ(scene.solver.measure(&extremes), 0);
-    EXPECT_EQ(extremes.first_bad, -1);
-    EXPECT_EQ(scene.solver.step(0.5 * scene.solver.limits(extremes).automatic()), 0);
-  }
+  EXPECT_EQ(scene.advance(8, 0.5), 0);
   End end;
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
   EXPECT_EQ(scene.solver.surface_energy(&end.surface), 0);

@@ -55,6 +55,20 @@ inline Position ball(const Real3 &centre, double radius, int dimension, bool per
   };
 }
 
+/// About the distance to an ellipsoid (ellipse), to first order.
+inline Position ellipsoid(const Real3 &centre, const Real3 &axes, int dimension) {
+  return [=](const Real3 &x) {
+    double square = 0, slope = 0;
+    for (int d = 0; d < dimension; ++d) {
+      const double q = (x[d] - centre[d]) / axes[d];
+      square += q * q;
+      slope += q * q / (axes[d] * axes[d]);
+    }
+    const double level = std::sqrt(square);
+    return level > 0 ? (level - 1) * level / std::sqrt(slope) : -axes[dimension - 1];
+  };
+}
+
 class InterfaceScene {
 public:
   Grid grid;

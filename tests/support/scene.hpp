@@ -63,6 +63,18 @@ struct Scene {
     return solver.state().phases.back();
   }
 
+  /// `steps` steps of `share` of the automatic one; 0 also where nothing was found to be bad.
+  PetscErrorCode advance(int steps, double share) {
+    PetscFunctionBeginUser;
+    FlowExtremes extremes;
+    for (int n = 0; n < steps; ++n) {
+      PetscCall(solver.measure(&extremes));
+      PetscCheck(extremes.first_bad == -1, grid.comm(), PETSC_ERR_FP, "step %d", n);
+      PetscCall(solver.step(share * solver.limits(extremes).automatic()));
+    }
+    PetscFunctionReturn(0);
+  }
+
   /// `steps` equal steps to time `end`.
   PetscErrorCode run(double end, int steps) {
     PetscFunctionBeginUser;

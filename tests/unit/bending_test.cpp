@@ -74,17 +74,8 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   spec.length = {1, 1, dim == 2 ? 1. / cells : 1};
   spec.ghosts = 5;
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);
-  const Real3 centre{0.51, 0.493, dim == 2 ? 0 : 0.505}, axes{a, b, b};
-  scene.set_fraction([=](const Real3 &x) {
-    double level = 0, slope = 0;
-    for (int d = 0; d < dim; ++d) {
-      const double q = (x[d] - centre[d]) / axes[d];
-      level += q * q;
-      slope += q * q / (axes[d] * axes[d]);
-    }
-    level = std::sqrt(level);
-    return level > 0 ? (level - 1) * level / std::sqrt(slope) : -b;
-  });
+  const Real3 centre{0.51, 0.493, dim == 2 ? 0 : 0.505};
+  scene.set_fraction(ellipsoid(centre, {a, b, b}, dim));
   GhostExchange exchange(scene.grid);
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];

@@ -23,12 +23,7 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   spec.ghosts = 5;
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);
   const Real3 centre{0.51, 0.493, dim == 2 ? 0 : 0.505};
-  scene.set_fraction([=](const Real3 &x) {
-    const double p = (x[0] - centre[0]) / a, q = (x[1] - centre[1]) / b, r = dim == 2 ? 0 : (x[2] - centre[2]) / b;
-    const double level = std::sqrt(p * p + q * q + r * r);
-    const double slope = std::sqrt(p * p / (a * a) + (q * q + r * r) / (b * b));
-    return level > 0 ? (level - 1) * level / slope : -b;
-  });
+  scene.set_fraction(ellipsoid(centre, {a, b, b}, dim));
   GhostExchange exchange(scene.grid);
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];

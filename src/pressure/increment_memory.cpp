@@ -1,0 +1,32 @@
+#include "pressure/increment_memory.hpp"
+
+#include "field/open_sides.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace eulastic {
+
+IncrementMemory::IncrementMemory(const Grid &grid, int count) {
+  if (count > 0) block_ = FieldBlock(grid, count);
+}
+
+FieldBlock *IncrementMemory::saved() {
+  if (!block_) return nullptr;
+  const std::size_t size = block_.layout().size;
+  double *data = block_.data();
+  std::rotate(data, data + newest_ * size, data + count() * size);
+  newest_ = 0;
+  ghosts_valid_ = false;
+  return &block_;
+}
+
+PetscErrorCode IncrementMemory::update_ghosts(const Grid &grid, GhostExchange &exchange) {
+  PetscFunctionBeginUser;
+  if (std::exchange(ghosts_valid_, true)) PetscFunctionReturn(0);
+  PetscCall(exchange.update(block_, 1));
+  for (int f = 0; f < count(); ++f) fill_ghosts_of_increment(grid, block_[f], 1);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,31 @@
+// The pressure increments of the last steps: directions that a solve begins with.
+#pragma once
+
+#include "field/ghost_exchange.hpp"
+
+namespace eulastic {
+
+class IncrementMemory {
+public:
+  IncrementMemory() = default;
+  /// Of `count` steps; 0: none.
+  IncrementMemory(const Grid &grid, int count);
+  explicit operator bool() const { return bool(block_); }
+  int count() const { return block_.count(); }
+  std::size_t bytes() const { return block_.bytes(); }
+  /// Of n + 1 steps ago, 0 <= n < count, or this one's after turn().
+  FieldBlock increment(int n) { return block_.part((newest_ + n) % count(), 1); }
+  /// The place of the oldest becomes that of the newest; until that is set its values are anything.
+  void turn() { newest_ = (newest_ + count() - 1) % count(); }
+  /// All, the newest first, or null. Whoever asks may write owned cells.
+  FieldBlock *saved();
+  /// One ghost layer of all, if anybody may have written.
+  PetscErrorCode update_ghosts(const Grid &grid, GhostExchange &exchange);
+
+private:
+  FieldBlock block_;
+  int newest_ = 0;  ///< then those after it, around the block
+  bool ghosts_valid_ = true;
+};
+
+}  // namespace eulastic
