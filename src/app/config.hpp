@@ -40,6 +40,7 @@ struct OpeningSpec {
   std::string profile = "uniform";  ///< uniform, developed, or a file
   std::string velocity, flow_rate;  ///< into the box
   double frequency = 0, phase = 0;  ///< of these
+  double feeder = 0;                ///< length of the stretch that feeds the side; 0: none
   double value = 0;                 ///< the pressure
   std::string table;                ///< file of the pressure over time
   double resistance = 0;            ///< behind the side

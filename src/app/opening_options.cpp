@@ -33,6 +33,8 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
   rows.real(name + "_frequency", spec.frequency, not_negative, "1/time",
             "angular frequency: times cos(frequency t + phase)");
   rows.real(name + "_phase", spec.phase, any_number, "rad", "phase");
+  rows.real(name + "_feeder", spec.feeder, not_negative, "length",
+            "bodies and flow that pass the end of this stretch beside the side come in through it as well; 0 = none");
   only_on(rows, first, config, SideKind::inflow, side, d, high);
 }
 

@@ -124,6 +124,24 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
+std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
+  const double length = config.openings[d][high].feeder, h = config.grid.length[d] / config.grid.cells[d];
+  constexpr int least = 8, left = 8;  // cells
+  if (length == 0) return {};
+  const std::string name = "-inflow_" + name_of(d, high) + "_feeder: ";
+  const double cells = std::round(length / h), most = config.grid.cells[d] - left;
+  if (cells < least || cells > most)
+    return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: from " + to_text(least) + " to " +
+           to_text(most) + " of the " + to_text(config.grid.cells[d]) + " along the box";
+  if (std::fabs(length / h - cells) > 1e-6 * cells)
+    return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: a whole number, such as " +
+           to_text(cells * h);
+  if (!config.species.empty() && !config.body_series)
+    return name + "bodies that come in need names; accepted: -body_series true";
+  side->feeder = static_cast<int>(cells);
+  return {};
+}
+
 std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
   const auto &[first, capacity, second] = spec.windkessel;
   *load = {spec.resistance, 0, 0};
@@ -173,7 +191,8 @@ std::string resolve_openings(Config *config) {
       side.kind = bounded ? config->boundary.kind(d, high) : SideKind::wall;
       config->grid.open[d][high] = bounded && is_open(side.kind);
       if (side.kind == SideKind::inflow)
-        if (std::string wrong = resolve_inflow(*config, d, high, &side); !wrong.empty()) return wrong;
+        for (const auto resolve : {resolve_inflow, resolve_feeder})
+          if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
       if (side.kind != SideKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
       side.given = {spec.value, 0, 0, {}};

@@ -102,6 +102,7 @@ PetscErrorCode Outputs::measure() {
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   if (first_volume_.empty())
     for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
+  solver_->bodies().complete(&first_volume_);
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
   m.volume_drift = m.resolved_drift = 0;
@@ -267,6 +268,7 @@ PetscErrorCode Outputs::write_due(bool last) {
 
 PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionBeginUser;
+  solver_->bodies().complete(&first_volume_);
   PetscCall(series_.sync());
   PetscCall(samples_.sync());
   if (bodies_file_) PetscCall(bodies_file_->flush());

@@ -58,6 +58,11 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   if (solver.bodies().bodies() == 0) return numbers;
   reals["body_first_volumes"] = o.first_volume;
+  if (Feeders *feeders = solver.feeders()) {
+    integers["bodies_in_feeders"].assign(feeders->inside().begin(), feeders->inside().end());
+    const std::vector<int> &like = solver.bodies().like();
+    if (!like.empty()) integers["bodies_like"].assign(like.begin(), like.end());
+  }
   for (const Int3 &cell : solver.bodies().references())
     integers["body_references"].insert(integers["body_references"].end(), cell.begin(), cell.end());
   return numbers;
@@ -98,6 +103,10 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.snapshots = integers["output_rows"][2];
   if (solver->bodies().bodies() == 0) return;
   o.first_volume = reals["body_first_volumes"];
+  if (Feeders *feeders = solver->feeders()) {
+    const std::vector<long> &inside = integers["bodies_in_feeders"];
+    feeders->set_inside({inside.begin(), inside.end()});
+  }
   std::vector<Int3> cells(solver->bodies().references().size());
   for (std::size_t n = 0; n < 3 * cells.size(); ++n)
     cells[n / 3][n % 3] = static_cast<int>(integers["body_references"][n]);
@@ -117,12 +126,17 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Grid &grid = solver->grid();
-  position->outputs.first_volume.assign(solver->bodies().references().size(), 0);
-  std::vector<long> colours, forgotten;
+  std::vector<long> colours, forgotten, like;
   std::uint64_t hash = 0;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("colours", &colours));
   PetscCall(file->read_if_there("forgotten", &forgotten));
+  if (Feeders *feeders = solver->feeders()) {
+    PetscCall(file->read_if_there("bodies_like", &like));
+    solver->bodies().set_like(like);
+    feeders->set_inside(std::vector<int>(solver->bodies().bodies(), 0));
+  }
+  position->outputs.first_volume.assign(solver->bodies().bodies(), 0);
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
   const CheckpointNumbers expected = numbers_of(*solver, *position, 0);

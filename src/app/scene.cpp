@@ -62,7 +62,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     PetscCall(fill_phase(grid, species, places, next_label, &phase));
     if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &places));
     PetscCall(file.read_phase(species, next_label, &phase, &places));
-    phase.separate = config.separates(species) && places.size() > 1;
+    phase.separate = config.separates(species) && (places.size() > 1 || Feeders::exist(config.sides));
     PetscCall(separate_places(grid, solver->exchange(), species, places, next_label, !file.holds(species), &colours));
     if (species.law == Law::rigid) PetscCall(rigid.add(species, places, &phase));
     next_label += static_cast<int>(places.size());

@@ -21,9 +21,9 @@ void for_cells_at(const Grid &grid, int d, bool high, int layers, const Work &wo
 
 }  // namespace
 
-bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers) {
+bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than) {
   bool any = false;
-  for_cells_at(grid, d, high, layers, [&](int i, int j, int k) { any = any || fraction(i, j, k) > 0; });
+  for_cells_at(grid, d, high, layers, [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
   return any;
 }
 

@@ -7,8 +7,8 @@
 
 namespace eulastic {
 
-/// Whether this rank has any solid within `layers` cells of a side.
-bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers);
+/// Whether this rank has more phi than that in any cell within `layers` of a side.
+bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than);
 /// Marks the labels of solid that this rank has there; what has no label (less than label_threshold) is gone at once.
 void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::vector<int> *leaves);
 /// Takes the marked bodies out of owned cells. What is around them is the caller's.

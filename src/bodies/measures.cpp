@@ -192,6 +192,31 @@ void BodyTracker::add_phase(const Grid &grid, const std::vector<BodyPlace> &plac
   ++phases_;
 }
 
+void BodyTracker::add_like(const Grid &grid, int label, const Int3 &shift) {
+  Int3 cell = references_[label - 1];
+  for (int d = 0; d < 3; ++d) cell[d] += shift[d];
+  references_.push_back(within_box(grid, {cell})[0]);
+  species_.push_back(species_[label - 1]);
+  like_.push_back(label);
+}
+
+void BodyTracker::complete(std::vector<double> *known) const {
+  const std::size_t scene = references_.size() - like_.size();
+  for (std::size_t b = known->size(); b >= scene && b < references_.size(); ++b)
+    known->push_back((*known)[like_[b - scene] - 1]);
+}
+
+void BodyTracker::set_like(const std::vector<long> &like) {
+  references_.resize(references_.size() - like_.size());
+  species_.resize(references_.size());
+  like_.clear();
+  for (const long label : like) {
+    references_.emplace_back();
+    species_.push_back(species_[label - 1]);
+    like_.push_back(static_cast<int>(label));
+  }
+}
+
 PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);

@@ -36,6 +36,14 @@ class BodyTracker {
 public:
   /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
   void add_phase(const Grid &grid, const std::vector<BodyPlace> &places);
+  /// Another body, like the one with this label, as many cells away.
+  void add_like(const Grid &grid, int label, const Int3 &shift);
+  /// Labels that others were made like; those others come last, in this order.
+  const std::vector<int> &like() const { return like_; }
+  /// Adds to what is known of the first bodies, at least all of the scene, the same of those made like them.
+  void complete(std::vector<double> *known) const;
+  /// All of them again, to be followed by set_references().
+  void set_like(const std::vector<long> &like);
   int bodies() const { return static_cast<int>(references_.size()); }
 
   /// Moves the reference cells to the centroids. Call after carry_labels(), on its schedule and nowhere else: then
@@ -52,7 +60,7 @@ public:
 
 private:
   std::vector<Int3> references_;
-  std::vector<int> species_;
+  std::vector<int> species_, like_;
   int phases_ = 0;
 };
 

@@ -1,25 +1,23 @@
 #include "field/open_sides.hpp"
 
+#include "field/fed_velocity.hpp"
 #include "field/reflection.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
-namespace {
-
-// Of a cell of the plane of direction d, periodic images included; what lies behind other sides is nobody's.
-double shape_at(const Grid &grid, const SideProfile &profile, int d, const Int3 &local) {
+// Periodic images included; what lies behind other sides is nobody's.
+double inflow_shape(const Grid &grid, const Side &side, int d, const Int3 &local) {
+  if (!side.profile || side.profile->empty()) return 1;
   std::size_t place = 0;
   for (int e = 2; e >= 0; --e) {
     if (e == d) continue;
     const int n = grid.cells()[e], g = grid.layout().begin[e] + local[e];
     place = place * n + std::size_t(grid.is_wall(e) ? std::clamp(g, 0, n - 1) : (g % n + n) % n);
   }
-  return profile[place];
+  return (*side.profile)[place];
 }
-
-}  // namespace
 
 void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double given, Segment row, View component) {
   const double along = high ? -given : given;
@@ -28,9 +26,7 @@ void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double
     row.i_end = row.i_begin + 1;
   }
   double *face = component.row(row.j, row.k);
-  const bool even = !side.profile || side.profile->empty();
-  for (int i = row.i_begin; i < row.i_end; ++i)
-    face[i] = along * (even ? 1 : shape_at(grid, *side.profile, d, {i, row.j, row.k}));
+  for (int i = row.i_begin; i < row.i_end; ++i) face[i] = along * inflow_shape(grid, side, d, {i, row.j, row.k});
 }
 
 void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View component, int d) {
@@ -43,9 +39,15 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
     const double given = side.given.at(time);
     const Plane plane(layout, d);
     for (int k = plane.begin[2]; k < plane.end[2]; ++k)
-      for (int j = plane.begin[1]; j < plane.end[1]; ++j)
-        set_inflow_row(grid, side, d, high, given,
-                       {plane.begin[0], plane.end[0], d == 1 ? local : j, d == 2 ? local : k}, component);
+      for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
+        const Segment row{plane.begin[0], plane.end[0], d == 1 ? local : j, d == 2 ? local : k};
+        if (side.fed && d == 0)
+          side.fed->set_row({local, local + 1, row.j, row.k}, component);
+        else if (side.fed)
+          side.fed->set_row(row, component);
+        else
+          set_inflow_row(grid, side, d, high, given, row, component);
+      }
   }
 }
 

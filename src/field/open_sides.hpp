@@ -11,6 +11,9 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
 /// The same on the points of one row that lie on one side: `given` times the profile, into the box.
 void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double given, Segment row, View component);
 
+/// The profile of a side at a local cell of its plane, ghosts too.
+double inflow_shape(const Grid &grid, const Side &side, int d, const Int3 &local);
+
 /// One ghost layer, or `width`, of what is proportional to a pressure that is 0 on open sides: odd there, even behind
 /// others.
 void fill_ghosts_of_increment(const Grid &grid, View field, int width);

@@ -32,6 +32,8 @@ constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kin
 /// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
 using SideProfile = std::vector<double>;
 
+class FedVelocity;
+
 /// What is behind a pressure side: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, Q what leaves.
 struct OutletLoad {
   double resistance = 0, capacity = 0, drain = 0;
@@ -43,6 +45,8 @@ struct Side {
   WallMotion motion;                           ///< of a wall
   TimeCourse given;                            ///< inflow: what the profile is multiplied by; pressure: the pressure
   std::shared_ptr<const SideProfile> profile;  ///< of an inflow side
+  int feeder = 0;                              ///< cells of the stretch beside an inflow side that feeds it; 0: none
+  std::shared_ptr<const FedVelocity> fed;      ///< what it gave last, in place of given times profile
   OutletLoad load;                             ///< of a pressure side
 };
 

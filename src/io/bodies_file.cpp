@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -33,8 +34,10 @@ bool write_text_attribute(hid_t object, const char *name, const std::string &tex
   return H5Awrite(attribute.get(), type.get(), text.c_str()) >= 0;
 }
 
-// `id` and `species`, which do not change.
+// `id` and `species`: who the bodies are.
 bool write_bodies(hid_t file, const std::vector<BodyRecord> &bodies) {
+  for (const char *name : {"id", "species"})
+    if (H5Lexists(file, name, H5P_DEFAULT) > 0 && H5Ldelete(file, name, H5P_DEFAULT) < 0) return false;
   std::vector<long> ids;
   std::size_t width = 1;
   for (const BodyRecord &body : bodies) {
@@ -54,6 +57,9 @@ bool write_bodies(hid_t file, const std::vector<BodyRecord> &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
+// What is said of a body in rows from before it came in.
+double before_it_came(const std::string &column) { return column == "volume" ? 0 : std::nan(""); }
+
 // Rows [begin, begin + count) of a dataset of shape (rows), (rows, bodies) or (rows, bodies, width).
 bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsize_t bodies, hsize_t width,
                  const std::vector<double> &values, const std::string &sum) {
@@ -62,11 +68,13 @@ bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsi
   const hsize_t start[3] = {begin, 0, 0}, size[3] = {count, bodies, width}, total[3] = {begin + count, bodies, width};
   Hdf5Dataset dataset;
   if (begin == 0) {
-    const hsize_t limit[3] = {H5S_UNLIMITED, bodies, width};
+    const hsize_t limit[3] = {H5S_UNLIMITED, H5S_UNLIMITED, width};
     const hsize_t chunk[3] = {std::clamp<hsize_t>(8192 / row, 1, 1024), bodies, width};  // 64 kB
     const Hdf5Space space(H5Screate_simple(rank, total, limit));
     const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
     (void)H5Pset_chunk(creation.get(), rank, chunk);
+    const double before = before_it_came(name);
+    (void)H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &before);
     dataset =
         Hdf5Dataset(H5Dcreate2(file, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
   } else {
@@ -78,6 +86,28 @@ bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsi
          H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) >=
              0 &&
          write_text_attribute(dataset.get(), "checksum", sum) && dataset.close();
+}
+
+// Gives all rows of a dataset another number of bodies.
+bool set_bodies(hid_t file, const char *name, hsize_t bodies, std::uint64_t *sum) {
+  Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+  std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+  if (shape.size() < 2) return false;
+  shape[1] = bodies;
+  if (H5Dset_extent(dataset.get(), shape.data()) < 0) return false;
+  const Hdf5Space file_space(H5Dget_space(dataset.get()));
+  std::vector<hsize_t> start(shape.size(), 0), one = shape;
+  one[0] = 1;
+  const Hdf5Space memory_space(H5Screate_simple(static_cast<int>(one.size()), one.data(), nullptr));
+  std::vector<double> values(bodies * (shape.size() == 3 ? shape[2] : 1));
+  *sum = 0;
+  for (; start[0] < shape[0]; ++start[0]) {
+    if (H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr) < 0 ||
+        H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) < 0)
+      return false;
+    *sum += checksum(values.data(), values.size(), start[0] * values.size());
+  }
+  return dataset.close();
 }
 
 // Shortens a dataset to its first `rows` rows; its checksum loses what the others had given.
@@ -142,10 +172,10 @@ std::vector<double> BodiesFile::scalars(const BodyRecord &body) const {
 PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodies) {
   std::string problem;
   PetscFunctionBeginUser;
-  if (rank_ == 0 && first_.empty()) first_ = bodies;
-  if (bodies.size() != first_.size() && rank_ == 0) {
-    problem = path_ + ": the number of bodies has changed";
-  } else if (!first_.empty()) {
+  if (rank_ == 0 && bodies.size() > known_.size()) get_to_know(bodies);
+  if (bodies.size() != known_.size() && rank_ == 0) {
+    problem = path_ + ": the number of bodies has become smaller";
+  } else if (!known_.empty()) {
     columns_[0].waiting.push_back(time);
     for (const BodyRecord &body : bodies) {
       columns_[1].waiting.insert(columns_[1].waiting.end(), body.centroid.begin(), body.centroid.end());
@@ -167,6 +197,18 @@ PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodie
   PetscFunctionReturn(0);
 }
 
+void BodiesFile::get_to_know(const std::vector<BodyRecord> &bodies) {
+  for (Column &column : columns_) {
+    if (column.width == 0) continue;
+    const std::size_t more = (bodies.size() - known_.size()) * column.width;
+    for (std::size_t row = 1; row <= waiting_; ++row)
+      column.waiting.insert(
+          column.waiting.begin() + static_cast<std::ptrdiff_t>(row * bodies.size() * column.width - more), more,
+          before_it_came(column.name));
+  }
+  known_ = bodies;
+}
+
 std::string BodiesFile::cut(std::size_t rows) {
   std::error_code error;
   if (rows == 0) {
@@ -185,6 +227,7 @@ std::string BodiesFile::cut(std::size_t rows) {
            ": damaged, or has fewer rows than the checkpoint says; moving it away lets the restart begin a new one";
   }
   written_ = rows;
+  stored_ = unknown;
   return replace_file(path_);
 }
 
@@ -213,11 +256,13 @@ std::string BodiesFile::write_waiting() {
   Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                     : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
   if (!file) return path_ + ": cannot be opened (" + std::strerror(errno) + ")";
-  bool fine = written_ > 0 || write_bodies(file.get(), first_);
+  bool fine = stored_ == known_.size() || write_bodies(file.get(), known_);
   for (Column &column : columns_) {
-    const std::size_t row = column.width == 0 ? 1 : column.width * first_.size();
+    if (written_ > 0 && stored_ != known_.size() && column.width > 0)
+      fine = fine && set_bodies(file.get(), column.name, known_.size(), &column.checksum);
+    const std::size_t row = column.width == 0 ? 1 : column.width * known_.size();
     column.checksum += checksum(column.waiting.data(), column.waiting.size(), written_ * row);
-    fine = fine && append_rows(file.get(), column.name, written_, waiting_, first_.size(), column.width, column.waiting,
+    fine = fine && append_rows(file.get(), column.name, written_, waiting_, known_.size(), column.width, column.waiting,
                                checksum_text(column.checksum));
     column.waiting.clear();
   }
@@ -225,6 +270,7 @@ std::string BodiesFile::write_waiting() {
     std::filesystem::remove(target, error);
     return path_ + ": cannot be written (disk full?)";
   }
+  stored_ = known_.size();
   written_ += std::exchange(waiting_, 0);
   return replace_file(path_);
 }

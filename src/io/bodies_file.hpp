@@ -17,7 +17,8 @@ public:
   /// `membranes`: with what is known of those alone; `loads`: with force and torque, where there are rigid bodies.
   BodiesFile(MPI_Comm comm, std::string path, bool membranes = false, bool loads = false);
 
-  /// Collective. One row; rank 0's records count, always the same bodies in the same order. No bodies, no file.
+  /// Collective. One row; rank 0's records count, always the same bodies in the same order, others may follow: in
+  /// earlier rows those have the volume 0 and no other number. No bodies, no file.
   PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
   void moved_to(const std::string &path) { path_ = path; }
   /// Collective. All rows so far are on disk when this returns.
@@ -34,16 +35,19 @@ private:
     std::vector<double> waiting;
     std::uint64_t checksum;
   };
+  void get_to_know(const std::vector<BodyRecord> &bodies);
   std::string cut(std::size_t rows);  ///< rank 0; empty, or what went wrong
   std::string write_waiting();        ///< rank 0; empty, or what went wrong
 
   MPI_Comm comm_;
   int rank_ = 0;
   std::string path_;
-  std::vector<BodyRecord> first_;  ///< who the bodies are
+  std::vector<BodyRecord> known_;  ///< who the bodies are
   std::vector<Column> columns_;
   bool membranes_, loads_;
+  static constexpr std::size_t unknown = ~std::size_t(0);
   std::size_t written_ = 0, waiting_ = 0;  ///< rows
+  std::size_t stored_ = unknown;           ///< bodies of the rows that are written
 };
 
 }  // namespace eulastic

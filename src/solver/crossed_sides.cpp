@@ -1,6 +1,9 @@
 // Solver: the flow at the start, and bodies, where volume crosses sides of the box.
+#include "bodies/body_copy.hpp"
+#include "bodies/colours.hpp"
 #include "bodies/labels.hpp"
 #include "bodies/leaving.hpp"
+#include "bodies/near_bodies.hpp"
 #include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
@@ -39,8 +42,9 @@ PetscErrorCode Solver::check_sides(bool start) {
         const SideKind kind = spec_.sides[d][high].kind;
         if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow))
           continue;
-        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers)) continue;
-        if (start || !is_open(kind) || is_held(now_.phases[p]))
+        const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
+        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers, stops ? BodyCells::threshold : 0)) continue;
+        if (stops)
           found[0] = std::max(found[0], p * 6 + 2 * d + high);
         else
           found[1] = 1;
@@ -71,6 +75,42 @@ PetscErrorCode Solver::take_out_bodies() {
     if (is_held(phase)) continue;
     take_out(*grid_, leaves, &phase);
     PetscCall(settle(phase));
+  }
+  PetscFunctionReturn(0);
+}
+
+// A body that has left its feeder comes in behind, in a phase where nobody is near; where others fill its place it
+// waits.
+PetscErrorCode Solver::feed_bodies() {
+  constexpr double full =
+      1.5;  // in a cell at the surfaces of two bodies that touch fractions may add up to more than 1
+  std::vector<int> passed;
+  std::vector<BodyCopy> copies;
+  PetscFunctionBeginUser;
+  PetscCall(feeders_->find_passed(now_.phases, &passed));
+  if (passed.empty()) PetscFunctionReturn(0);
+  PetscCall(copy_bodies(*grid_, *exchange_, passed, &now_.phases, &copies));
+  for (const BodyCopy &copy : copies) {
+    if (copy.phase < 0) {  // it has left
+      feeders_->forget(copy.label);
+      continue;
+    }
+    const Int3 shift = feeders_->shift_of(copy.label);
+    BodyRoom room;
+    PetscCall(find_room(*grid_, copy, shift, contact_reach, now_.phases, &room));
+    if (room.fullest > full) continue;
+    int p = copy.phase;
+    if (now_.phases[p].separate && room.near[p]) {
+      const int phases = static_cast<int>(now_.phases.size());
+      for (p = 0; p < phases; ++p)
+        if (now_.phases[p].species == now_.phases[copy.phase].species && !room.near[p]) break;
+      if (p == phases) add_colour(*grid_, copy.phase, &now_.phases);
+    }
+    bodies_.add_like(*grid_, copy.label, shift);
+    feeders_->come_in(copy.label);
+    feeders_->forget(copy.label);
+    put_body(*grid_, copy, shift, bodies_.bodies(), &now_.phases[p]);
+    PetscCall(settle(now_.phases[p]));
   }
   PetscFunctionReturn(0);
 }

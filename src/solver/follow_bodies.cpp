@@ -95,6 +95,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
   for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
   PetscCall(bodies_.follow(*grid_, now_.phases));
+  if (feeders_) PetscCall(feed_bodies());
   PetscCall(separate_bodies());
   now_.travel = 0;
   PetscFunctionReturn(0);

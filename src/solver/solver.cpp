@@ -55,6 +55,10 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   velocity_star_ = FieldBlock(grid, dim);
   PetscCall(work_->reserve(work_fields(spec, dim, {grid.any_open()})));
   if (!OutletLoads::none(spec.sides)) loads_ = std::make_unique<OutletLoads>(spec.sides);
+  if (Feeders::exist(spec.sides)) {
+    feeders_ = std::make_unique<Feeders>();
+    PetscCall(feeders_->create(grid, spec.sides));
+  }
   if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
   PetscFunctionReturn(0);
 }
@@ -118,6 +122,10 @@ PetscErrorCode Solver::prepare() {
     if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
+  if (feeders_) {
+    PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
+    PetscCall(feeders_->start(now_.phases, bodies_.bodies()));
+  }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
   PetscFunctionReturn(0);
@@ -128,6 +136,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
+  if (feeders_) PetscCall(feeders_->recall_velocity(now_.velocity, &spec_.sides));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   for (Phase &phase : now_.phases) {
@@ -190,6 +199,10 @@ PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   PetscCall(predict(dt));                                                       // (7)
+  if (feeders_) {
+    PetscCall(exchange_->update(velocity_star_, Grid::stencil_width));
+    PetscCall(feeders_->feed_velocity(now_.time + dt, velocity_star_, &spec_.sides));
+  }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));  // (8)-(13)
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));

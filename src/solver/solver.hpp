@@ -15,6 +15,7 @@
 #include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
 #include "pressure/pressure_solver.hpp"
+#include "solver/feeders.hpp"
 #include "solver/method.hpp"
 #include "solver/outlet_loads.hpp"
 #include "solver/state.hpp"
@@ -91,6 +92,8 @@ public:
   FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
   /// The sides with the pressures that loads have now.
   BoxSides sides_now() const { return loads_ ? loads_->with_pressures(spec_.sides) : spec_.sides; }
+  /// Of stretches that feed inflow sides, or null.
+  Feeders *feeders() { return feeders_.get(); }
   /// Of what is behind pressure sides, or null.
   OutletLoads *loads() { return loads_.get(); }
 
@@ -126,6 +129,7 @@ private:
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies();
+  PetscErrorCode feed_bodies();
   PetscErrorCode find_responses();
   /// Volume that leaves through loaded sides per time.
   PetscErrorCode measure_loads(const FieldBlock &velocity, std::vector<double> *flow);
@@ -151,6 +155,7 @@ private:
   std::unique_ptr<WorkSpace> work_;
   FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
   FieldBlock slope_;  ///< of the elastic force in time
+  std::unique_ptr<Feeders> feeders_;    ///< null where no side has one
   std::unique_ptr<OutletLoads> loads_;  ///< null where no side has one
   FieldBlock viscosity_;                ///< of the step, where bodies have their own; else empty
   ExteriorLayers layers_;

@@ -4,6 +4,7 @@
 #include "support/files.hpp"
 
 #include <sys/resource.h>
+#include <cmath>
 #include <csignal>
 
 namespace eulastic {
@@ -107,6 +108,50 @@ TEST(BodiesFile, SaysWhatIsWrong) {
   ASSERT_EQ(empty.add(0, {}), 0);
   ASSERT_EQ(empty.flush(), 0);
   EXPECT_FALSE(fs::exists(base / "empty.h5"));
+}
+
+// Those that come in have columns of their own, also after a restart from before or after that.
+TEST(BodiesFile, BodiesComeIn) {
+  const TemporaryDirectory base;
+  const std::string path = base / "bodies.h5";
+  const auto some = [](int row, int count) {
+    std::vector<BodyRecord> bodies = bodies_at(row);
+    bodies.resize(count);
+    return bodies;
+  };
+  const auto check = [&](int rows, int first, int later, int change) {
+    const BodyTable table(path);
+    std::vector<hsize_t> shape;
+    EXPECT_EQ(table.read("id", &shape).size(), std::size_t(later));
+    const std::vector<double> volume = table.read("volume", &shape);
+    ASSERT_EQ(shape, (std::vector<hsize_t>{hsize_t(rows), hsize_t(later)}));
+    const std::vector<double> centroid = table.read("centroid", &shape);
+    for (int n = 0; n < rows; ++n)
+      for (int b = 0; b < later; ++b) {
+        const bool there = b < first || n >= change;
+        EXPECT_EQ(volume[n * later + b], there ? 100 * n + 10 * b + 6 : 0);
+        const double x = centroid[(n * later + b) * 3 + 1];
+        if (there)
+          EXPECT_EQ(x, 100 * n + 10 * b + 1);
+        else
+          EXPECT_TRUE(std::isnan(x));
+      }
+  };
+  {
+    BodiesFile file(PETSC_COMM_SELF, path);
+    for (int n = 0; n < 30; ++n) ASSERT_EQ(file.add(n, some(n, n < 13 ? 2 : 3)), 0);
+    ASSERT_EQ(file.flush(), 0);
+    check(30, 2, 3, 13);
+  }
+  for (const auto &[kept, change] : {std::pair{20L, 13}, std::pair{8L, 11}}) {
+    BodiesFile file(PETSC_COMM_SELF, path);
+    long rows = kept;
+    ASSERT_EQ(file.resume(&rows), 0);
+    ASSERT_EQ(rows, kept);
+    for (int n = static_cast<int>(kept); n < 25; ++n) ASSERT_EQ(file.add(n, some(n, n < change ? 2 : 3)), 0);
+    ASSERT_EQ(file.flush(), 0);
+    check(25, 2, 3, change);
+  }
 }
 
 // A copy that cannot grow is not left behind, and the file stays what it was.

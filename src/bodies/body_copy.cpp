@@ -1,0 +1,167 @@
+#include "bodies/body_copy.hpp"
+
+#include "bodies/near_bodies.hpp"
+#include "field/sides.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+constexpr int margin = 2;  // cells around a membrane where its tensor may evolve
+
+// visit(component, offset of a point) for all points of B that a cell touches.
+template <class Visit>
+void for_each_point(int dimension, bool membrane, const Visit &visit) {
+  const auto &components = tensor_components(dimension);
+  for (int c = 0; c < static_cast<int>(components.size()); ++c) {
+    const auto [a, b] = components[c];
+    const bool edge = a != b && !membrane;
+    for (int corner = 0; corner < (edge ? 4 : 1); ++corner) {
+      Int3 offset{};
+      offset[a] += corner & 1;
+      offset[b] += corner >> 1;
+      visit(c, offset);
+    }
+  }
+}
+
+// Of an owned cell: its own label, or of a membrane that of one nearby.
+int whose(const Phase &phase, int dimension, const Int3 &c, const std::vector<int> &labels) {
+  const BodyCells cells{phase.label[0], phase.fraction[0]};
+  const auto wanted = [&](double label) {
+    return label > 0 && std::find(labels.begin(), labels.end(), static_cast<int>(label)) != labels.end();
+  };
+  const double own = cells(c[0], c[1], c[2]);
+  if (wanted(own)) return static_cast<int>(own);
+  if (own > 0 || !phase.material.is_membrane()) return 0;
+  const int deep = dimension == 3 ? margin : 0;
+  for (int k = c[2] - deep; k <= c[2] + deep; ++k)
+    for (int j = c[1] - margin; j <= c[1] + margin; ++j)
+      for (int i = c[0] - margin; i <= c[0] + margin; ++i)
+        if (wanted(cells(i, j, k))) return static_cast<int>(cells(i, j, k));
+  return 0;
+}
+
+// Global index along a direction, in the box where it is periodic.
+int in_box(const Grid &grid, int d, int index) {
+  const int n = grid.cells()[d];
+  return grid.is_wall(d) ? index : (index % n + n) % n;
+}
+
+template <class Visit>
+void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, const Int3 &reach, const Visit &visit) {
+  const Int3 &begin = grid.layout().begin, &n = grid.owned();
+  for (const BodyCopy::Cell &cell : body.cells)
+    for (int k = -reach[2]; k <= reach[2]; ++k)
+      for (int j = -reach[1]; j <= reach[1]; ++j)
+        for (int i = -reach[0]; i <= reach[0]; ++i) {
+          const Int3 away{i, j, k};
+          Int3 local;
+          bool own = true;
+          for (int d = 0; d < 3; ++d) {
+            local[d] = in_box(grid, d, cell.at[d] + shift[d] + away[d]) - begin[d];
+            own = own && local[d] >= 0 && local[d] < n[d];
+          }
+          if (own) visit(cell, local);
+        }
+}
+
+}  // namespace
+
+PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &labels,
+                           std::vector<Phase> *phases, std::vector<BodyCopy> *bodies) {
+  const int dimension = grid.dimension();
+  constexpr int head = 6, width = head + BodyCopy::points;  // label, phase, place, phi, B
+  const Int3 &begin = grid.layout().begin;
+  std::vector<double> mine;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    Phase &phase = (*phases)[p];
+    if (!phase.label || phase.material.is_rigid()) continue;
+    if (phase.material.is_membrane()) {
+      PetscCall(exchange.update({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
+    }
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) {
+        const Int3 at{i, row.j, row.k};
+        const int label = whose(phase, dimension, at, labels);
+        if (label == 0) continue;
+        const BodyCells cells{phase.label[0], phase.fraction[0]};
+        mine.insert(mine.end(),
+                    {double(label), double(p), double(begin[0] + i), double(begin[1] + row.j), double(begin[2] + row.k),
+                     cells(i, row.j, row.k) > 0 ? phase.fraction[0](i, row.j, row.k) : -1});
+        const std::size_t end = mine.size() + BodyCopy::points;
+        for_each_point(dimension, phase.material.is_membrane(), [&](int c, const Int3 &o) {
+          mine.push_back(phase.tensor[c](i + o[0], row.j + o[1], row.k + o[2]));
+        });
+        mine.resize(end, 0);
+      }
+  }
+  int ranks, count = static_cast<int>(mine.size());
+  PetscCallMPI(MPI_Comm_size(grid.comm(), &ranks));
+  std::vector<int> counts(ranks), begins(ranks + 1, 0);
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, grid.comm()));
+  for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
+  std::vector<double> all(begins[ranks]);
+  PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE,
+                              grid.comm()));
+  bodies->assign(labels.size(), {});
+  for (std::size_t b = 0; b < labels.size(); ++b) (*bodies)[b].label = labels[b];
+  for (const double *v = all.data(); v < all.data() + all.size(); v += width) {
+    const auto found = std::find(labels.begin(), labels.end(), static_cast<int>(v[0]));
+    BodyCopy &body = (*bodies)[found - labels.begin()];
+    body.phase = static_cast<int>(v[1]);
+    BodyCopy::Cell cell{{static_cast<int>(v[2]), static_cast<int>(v[3]), static_cast<int>(v[4])}, v[5], {}};
+    std::copy_n(v + head, BodyCopy::points, cell.B.begin());
+    body.cells.push_back(cell);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode find_room(const Grid &grid, const BodyCopy &body, const Int3 &shift, int reach,
+                         const std::vector<Phase> &phases, BodyRoom *room) {
+  std::vector<double> found(phases.size() + 1, 0);  // whether near; the fullest cell
+  Int3 around{reach, reach, grid.dimension() == 3 ? reach : 0};
+  PetscFunctionBeginUser;
+  for_owned_cells(grid, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+    double sum = cell.phi;
+    for (const Phase &phase : phases) sum += phase.fraction[0](at[0], at[1], at[2]);
+    if (cell.phi > 0) found.back() = std::max(found.back(), sum);
+  });
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    for_owned_cells(grid, body, shift, around, [&](const BodyCopy::Cell &, const Int3 &at) {
+      if (phases[p].fraction[0](at[0], at[1], at[2]) > BodyCells::threshold) found[p] = 1;
+    });
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
+  room->fullest = found.back();
+  room->near.assign(found.begin(), found.end() - 1);
+  PetscFunctionReturn(0);
+}
+
+void put_body(const Grid &grid, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
+  const Int3 &begin = grid.layout().begin;
+  for_owned_cells(grid, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+    if (!(cell.phi > 0)) return;
+    phase->fraction[0](at[0], at[1], at[2]) = cell.phi;
+    phase->label[0](at[0], at[1], at[2]) = label;
+  });
+  const bool membrane = phase->material.is_membrane();
+  if (!phase->material.carries_tensor()) return;
+  for (const BodyCopy::Cell &cell : body.cells) {
+    int point = 0;
+    for_each_point(grid.dimension(), membrane, [&](int c, const Int3 &offset) {
+      const Staggering staggered = staggering_of(tensor_components(grid.dimension())[c], membrane);
+      const double value = cell.B[point++];
+      Int3 at;
+      for (int d = 0; d < 3; ++d) {
+        at[d] = in_box(grid, d, cell.at[d] + shift[d] + offset[d]) - begin[d];
+        if (at[d] < 0 || at[d] >= grid.points_end(d, staggered[d])) return;
+      }
+      phase->tensor[c](at[0], at[1], at[2]) = value;
+    });
+  }
+}
+
+}  // namespace eulastic

@@ -1,0 +1,61 @@
+// Stretches of the box that feed their inflow sides: what passes their end comes in again, velocity and bodies
+// (docs/method.md, section 20).
+#pragma once
+
+#include "field/phase.hpp"
+#include "field/sides.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+class Feeders {
+public:
+  /// Cells beyond the end of the stretch that a body must have passed, all of it: it comes in as far from the side.
+  static constexpr int beyond = 2;
+  static bool exist(const BoxSides &sides);
+
+  Feeders() = default;
+  Feeders(const Feeders &) = delete;
+  Feeders &operator=(const Feeders &) = delete;
+  ~Feeders();
+  PetscErrorCode create(const Grid &grid, const BoxSides &sides);
+  /// One line if rigid bodies are not the same all along a stretch.
+  PetscErrorCode check_lumen(const std::vector<Phase> &phases, std::string *wrong) const;
+
+  /// Normal velocities on the sides at `time`: those at the ends of the stretches, and what the flow rate lacks with
+  /// the profile of the side. Three ghosts of `velocity` along the planes.
+  PetscErrorCode feed_velocity(double time, const FieldBlock &velocity, BoxSides *sides) const;
+  /// The same from what is on the sides already.
+  PetscErrorCode recall_velocity(const FieldBlock &velocity, BoxSides *sides) const;
+
+  /// Finds out which bodies are in which stretch.
+  PetscErrorCode start(const std::vector<Phase> &phases, int bodies);
+  /// Those that have passed the end of theirs, ascending; they keep being named until forget().
+  PetscErrorCode find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const;
+  /// Where a body comes in, relative to where it is.
+  Int3 shift_of(int label) const;
+  /// A body is not in a stretch any more; another one, the next in number, has come into that.
+  void forget(int label) { inside_[label - 1] = 0; }
+  void come_in(int label) { inside_.push_back(inside_[label - 1]); }
+
+  /// Of every body: 0, or 1 + which stretch it is in. All that a restart needs.
+  const std::vector<int> &inside() const { return inside_; }
+  void set_inside(const std::vector<int> &inside) { inside_ = inside; }
+
+private:
+  struct Stretch {
+    int d, high, cells;
+    MPI_Comm line;  ///< ranks along d
+  };
+  template <class Visit>
+  void for_cells(const Stretch &stretch, const Visit &visit) const;  ///< owned ones, and those just beyond
+  PetscErrorCode find_bodies(const std::vector<Phase> &phases, int bodies, std::vector<unsigned> *where) const;
+
+  const Grid *grid_ = nullptr;
+  std::vector<Stretch> stretches_;
+  std::vector<int> inside_;
+};
+
+}  // namespace eulastic
