@@ -2,6 +2,7 @@
 
 #include "app/option_values.hpp"
 #include "app/voxels.hpp"
+#include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_sides.hpp"
 #include "pressure/smac.hpp"
@@ -288,6 +289,10 @@ std::string validate(Config *whole) {
     for (const auto check : {check_species, check_contact})
       if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   SolidBodies solids;
+  for (int d = 0; d < 3; ++d)
+    for (const int high : {0, 1})
+      if (crossed(config, d, high))
+        solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
   if (const bool random = any_random(config); random || config.check_only)
     if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
         !wrong.empty())

@@ -7,6 +7,9 @@
 
 namespace eulastic {
 
+/// Cells beside a side that volume crosses where no body is.
+constexpr int free_layers = 2;
+
 /// Whether this rank has more phi than that in any cell within `layers` of a side.
 bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than);
 /// Marks the labels of solid that this rank has there; what has no label (less than label_threshold) is gone at once.

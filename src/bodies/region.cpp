@@ -26,6 +26,10 @@ Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<std::v
         cylinders_.push_back({&cylinder_shapes_.back(), place.centre, rotation(place.orientation)});
     }
   }
+  for (int d = 0; d < dimension_; ++d) {
+    low_[d] = std::max(low_[d], solids.free[d][0]);
+    high_[d] = std::min(high_[d], grid.length[d] - solids.free[d][1]);
+  }
   if (!vessel) return;
   volume_ = lumen_volume(*vessel, grid) - solids.volume;
   for (int d = 0; d < dimension_; ++d) {
@@ -39,10 +43,11 @@ bool Region::holds(const PlacedConvex &body) const {
   const double outer = body.body->outer_radius();
   for (int d = 0; d < dimension_; ++d) {
     const double x = body.centre[d], length = grid_.length[d];
+    const double low = solids_.free[d][0], high = length - solids_.free[d][1];
     const bool wall = grid_.boundary[d] == Boundary::wall;
-    if (wall ? x >= outer && x + outer <= length : 2 * outer <= length) continue;
+    if (wall ? x - outer >= low && x + outer <= high : 2 * outer <= length) continue;
     const double half = body.half_width(d);
-    if (wall ? x < half || x + half > length : 2 * half > length) return false;
+    if (wall ? x - half < low || x + half > high : 2 * half > length) return false;
   }
   for (const SolidMask &mask : solids_.masks)
     if (mask.touches(body)) return false;

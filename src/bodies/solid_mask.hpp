@@ -4,6 +4,7 @@
 #include "bodies/convex.hpp"
 #include "grid/voxels.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,10 +33,11 @@ private:
   ConvexBody cell_;
 };
 
-/// All bodies from files.
+/// All bodies from files, and what stays free of bodies beside the sides of the box.
 struct SolidBodies {
   double volume = 0;  ///< in the box; area in 2-D
   std::vector<SolidMask> masks;
+  std::array<std::array<double, 2>, 3> free{};  ///< [direction][low, high]: widths
 };
 
 }  // namespace eulastic

@@ -27,17 +27,14 @@ void in_pieces(std::ptrdiff_t size, int fields, const Work &work) {
   });
 }
 
-// A file of ones in memory, or -1 where there are none of those; not small, as each time it is mapped counts for the
-// system.
-constexpr std::size_t ones_in_file = std::size_t{1} << 19;
-int file_of_ones() {
-  static const int file = [] {
-    const int opened = memfd_create("ones", MFD_CLOEXEC);
-    const std::vector<double> ones(ones_in_file, 1.0);
-    const auto bytes = static_cast<ssize_t>(ones.size() * sizeof(double));
-    return opened >= 0 && write(opened, ones.data(), bytes) == bytes ? opened : -1;
-  }();
-  return file;
+// A file of one value in memory, or -1 where there are no such files; not small, as each time it is mapped counts for
+// the system.
+constexpr std::ptrdiff_t values_in_file = std::ptrdiff_t{1} << 19;
+int open_file_of(double value) {
+  const int file = memfd_create("rest", MFD_CLOEXEC);
+  const std::vector<double> values(values_in_file, value);
+  const auto bytes = static_cast<ssize_t>(values.size() * sizeof(double));
+  return file >= 0 && write(file, values.data(), bytes) == bytes ? file : -1;
 }
 
 // Private pages of nothing (file = -1) or of a file.
@@ -45,6 +42,16 @@ void *map_pages(void *at, std::size_t bytes, int flags, int file) {
   void *memory = mmap(at, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | flags, file, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
   return memory;
+}
+
+constexpr std::ptrdiff_t values_in_pages = std::ptrdiff_t{1} << 13;  // 64 KiB: no system has larger pages
+
+// Puts pages of the file in place of those of [from, to) that are whole; returns where they end.
+double *map_file(int file, double *from, double *to) {
+  for (std::ptrdiff_t n; file >= 0 && (n = std::min(to - from, values_in_file) / values_in_pages * values_in_pages) > 0;
+       from += n)
+    map_pages(from, n * sizeof(double), MAP_FIXED | MAP_NORESERVE, file);
+  return from;
 }
 
 }  // namespace
@@ -70,19 +77,19 @@ FieldBlock::Memory FieldBlock::allocate(std::size_t values) {
   return Memory(reinterpret_cast<double *>(memory), Free{false, whole + huge - before});
 }
 
-// The system copies a page when it is written.
+// The system copies a page when it is written. Zeros come from a file as ones do: not every system has one page of
+// zeros for all that is only read.
 FieldBlock::Memory FieldBlock::allocate_at_rest(std::size_t values, std::size_t ones) {
+  static const int file_of_zeros = open_file_of(0), file_of_ones = open_file_of(1);
   const std::size_t bytes = values * sizeof(double);
   Memory memory(static_cast<double *>(map_pages(nullptr, bytes, MAP_ANONYMOUS | MAP_NORESERVE, -1)),
                 Free{false, bytes});
 #ifdef MADV_NOHUGEPAGE
   (void)madvise(memory.get(), bytes, MADV_NOHUGEPAGE);  // one of those holds many rows
 #endif
-  std::size_t done = 0;  // of the ones
-  if (const int file = file_of_ones(); file >= 0)
-    for (; (done + ones_in_file) <= ones; done += ones_in_file)
-      map_pages(memory.get() + done, ones_in_file * sizeof(double), MAP_FIXED | MAP_NORESERVE, file);
-  std::fill(memory.get() + done, memory.get() + ones, 1.0);
+  double *begin = memory.get(), *zeros = begin + (ones + values_in_pages - 1) / values_in_pages * values_in_pages;
+  std::fill(map_file(file_of_ones, begin, begin + ones), begin + ones, 1.0);
+  if (zeros < begin + values) map_file(file_of_zeros, zeros, begin + values);
   return memory;
 }
 

@@ -24,8 +24,6 @@ BoxSides rates_of(const BoxSides &sides, double time) {
   return rates;
 }
 
-constexpr int layers = 2;  // cells beside a side that no body comes into
-
 // What cannot leave whole.
 bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_membrane(); }
 
@@ -43,7 +41,8 @@ PetscErrorCode Solver::check_sides(bool start) {
         if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow))
           continue;
         const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
-        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, layers, stops ? BodyCells::threshold : 0)) continue;
+        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
+          continue;
         if (stops)
           found[0] = std::max(found[0], p * 6 + 2 * d + high);
         else
@@ -52,7 +51,7 @@ PetscErrorCode Solver::check_sides(bool start) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, grid_->comm()));
   const int held = found[0];
   if (held >= 0)
-    crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(layers) +
+    crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
                " cells of side " + "xyz"[held % 6 / 2] + (held % 2 ? "max" : "min") +
                ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies());
@@ -67,7 +66,7 @@ PetscErrorCode Solver::take_out_bodies() {
     PetscCall(carry_labels(*grid_, *exchange_, &phase));
     for (int d = 0; d < grid_->dimension(); ++d)
       for (const bool high : {false, true})
-        if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, layers, &phase, &leaves);
+        if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, &phase, &leaves);
   }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_INT, MPI_MAX, grid_->comm()));

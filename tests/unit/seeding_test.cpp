@@ -131,6 +131,25 @@ TEST(Seeding, HematocritAsAskedWithinOneCellWithoutOverlap) {
   EXPECT_EQ(seeded(box + "-species rbc " + cells + "-rbc_count 17").size(), 17u);
 }
 
+TEST(Seeding, BodiesKeepOffSidesThatVolumeCrosses) {
+  const std::string open = "-boundary_y wall -boundary_xmin inflow -inflow_xmin_velocity 1 -boundary_xmax outflow ";
+  const ParseResult result = parse_line(box + open + "-species rbc " + cells + "-rbc_hematocrit 0.25");
+  ASSERT_EQ(result.error, "");
+  double least[2][2] = {{42, 42}, {42, 42}};  // at x and y
+  for (const BodyPlace &place : result.config.places[0])
+    for (const Real3 &x : surface_points(result.config.species[0], place, 3))
+      for (int d = 0; d < 2; ++d) {
+        least[d][0] = std::min(least[d][0], x[d]);
+        least[d][1] = std::min(least[d][1], 42 - x[d]);
+      }
+  constexpr double h = 42.0 / 32;
+  for (const int high : {0, 1}) {
+    EXPECT_GE(least[0][high], 3 * h);
+    EXPECT_LT(least[1][high], 2 * h);  // at walls they may be
+    EXPECT_GE(least[1][high], 0);
+  }
+}
+
 TEST(Seeding, OrientationsAreRandomEvenWhenCrowded) {
   // At 30 % all begin aligned. Mean of cos^2 with each direction: 1/3; 74 cells at random scatter by 0.035.
   for (const char *h : {"0.1", "0.3"}) {
