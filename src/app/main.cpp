@@ -110,6 +110,7 @@ int program(int argc, char **argv) {
   // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
   // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
   setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // one rank by itself needs no daemon of Open MPI beside it
   std::vector<char *> petsc{argv[0]};
   for (std::string &argument : parsed.petsc_arguments) petsc.push_back(argument.data());
   petsc.push_back(nullptr);
