@@ -171,10 +171,6 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   }
   if (spec.viscosity && config.fluid.viscosity == 0)
     return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
-  if (spec.viscosity && volume_crosses(config.sides))
-    return "-" + spec.name +
-           "_viscosity: the stress of a viscosity that varies knows no side that volume crosses; accepted: "
-           "without, or -boundary_* wall, symmetry, periodic";
   if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
     return wrong;
   for (const auto check : {check_membrane, check_rigid})

@@ -36,6 +36,13 @@ struct DeviatoricStress {
     if constexpr (Dim == 3) sum = fma(ic, shear_ac(i + c) - shear_ac(i), sum);
     return sum;
   }
+  /// The same on an open side of the box (-1: low, 1: high) with even ghosts: the Laplacian, as div v = 0 on both sides
+  /// of it, which what is even does not have.
+  EULASTIC_BODY double force_on_side(std::ptrdiff_t i, int side) const noexcept {
+    if constexpr (Dim == 2) return force(i);
+    const std::ptrdiff_t inside = side > 0 ? i - a : i;
+    return fma(side * (2. / 3) * ia * ia * centre[inside], va[inside + a] - va[inside], force(i));
+  }
 };
 
 inline constexpr double viscous_force_flops_2d = 29, viscous_force_flops_3d = 54;

@@ -12,6 +12,11 @@
 namespace eulastic {
 namespace {
 
+// Faces of a row; side: -1 on the low, 1 on the high open side of the box that they are normal to.
+struct Faces : Segment {
+  int side = 0;
+};
+
 template <int Dim>
 EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Grid &grid, const FieldBlock &viscosity,
                                                              const FieldBlock &v, int a, int j, int k) {
@@ -35,20 +40,25 @@ EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Grid &grid, c
 
 template <int Dim>
 EULASTIC_INLINE void add_force(const Grid &grid, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
-                               FieldBlock &out, int a, int j, int k) {
-  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, viscosity, velocity, a, j, k);
-  double *sum = out[a].row(j, k);
+                               FieldBlock &out, int a, const Faces &row) {
+  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, viscosity, velocity, a, row.j, row.k);
+  double *sum = out[a].row(row.j, row.k);
+  if (row.side != 0) {
+    for (int i = row.i_begin; i < row.i_end; ++i)
+      sum[i] = kernels::fma(scale, stress.force_on_side(i, row.side), sum[i]);
+    return;
+  }
 #pragma omp simd
-  for (int i = 0; i < grid.owned()[0]; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
+  for (int i = row.i_begin; i < row.i_end; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
 }
 
 EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                  const FieldBlock &velocity, FieldBlock &out, int a, int j, int k) {
-  add_force<2>(grid, viscosity, scale, velocity, out, a, j, k);
+                                  const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
+  add_force<2>(grid, viscosity, scale, velocity, out, a, row);
 }
 EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                  const FieldBlock &velocity, FieldBlock &out, int a, int j, int k) {
-  add_force<3>(grid, viscosity, scale, velocity, out, a, j, k);
+                                  const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
+  add_force<3>(grid, viscosity, scale, velocity, out, a, row);
 }
 
 struct StageTerms {
@@ -60,55 +70,69 @@ struct StageTerms {
 };
 
 template <int Dim>
-EULASTIC_INLINE void stage_row(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+EULASTIC_INLINE void stage_row(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
+  const int j = row.j, k = row.k;
   const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, *s.viscosity, *s.now, a, j, k);
   const double *w = (*s.now)[a].row(j, k), *m = (*s.rate)[a].row(j, k);
   const double *m1 = s.slope ? (*s.slope)[a].row(j, k) : m;
   const double along_slope = s.slope ? s.c.slope : 0;
   const kernels::RklStage c = s.c;
   double *out = (*s.before)[a].row(j, k);
-  const int n = grid.owned()[0];
-  if (s.second) std::fill_n(out, n, 0.0);
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
+  if (s.second) std::fill(out + row.i_begin, out + row.i_end, 0.0);
+  const auto stage = [=](int i, double force) {
     double sum = c.nu * out[i];
     sum = kernels::fma(c.mu, w[i], sum);
     sum = kernels::fma(c.rate, m[i], sum);
     sum = kernels::fma(along_slope, m1[i], sum);
-    out[i] = kernels::fma(c.viscous, stress.force(i), sum);
+    out[i] = kernels::fma(c.viscous, force, sum);
+  };
+  if (row.side != 0) {
+    for (int i = row.i_begin; i < row.i_end; ++i) stage(i, stress.force_on_side(i, row.side));
+    return;
   }
+#pragma omp simd
+  for (int i = row.i_begin; i < row.i_end; ++i) stage(i, stress.force(i));
 }
 
-EULASTIC_CLONES void stage_row_2d(const Grid &grid, const StageTerms &s, int a, int j, int k) {
-  stage_row<2>(grid, s, a, j, k);
+EULASTIC_CLONES void stage_row_2d(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
+  stage_row<2>(grid, s, a, row);
 }
-EULASTIC_CLONES void stage_row_3d(const Grid &grid, const StageTerms &s, int a, int j, int k) {
-  stage_row<3>(grid, s, a, j, k);
+EULASTIC_CLONES void stage_row_3d(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
+  stage_row<3>(grid, s, a, row);
 }
 
 // M_0 with the force of the start, and W_1.
-EULASTIC_CLONES void first_row(int n, double half, const double *slope, double first, double *m, double *w) {
+EULASTIC_CLONES void first_row(const Segment &row, double half, const double *slope, double first, double *m,
+                               double *w) {
   if (slope) {
 #pragma omp simd
-    for (int i = 0; i < n; ++i) m[i] = kernels::fma(half, slope[i], m[i]);
+    for (int i = row.i_begin; i < row.i_end; ++i) m[i] = kernels::fma(half, slope[i], m[i]);
   }
 #pragma omp simd
-  for (int i = 0; i < n; ++i) w[i] = first * m[i];
+  for (int i = row.i_begin; i < row.i_end; ++i) w[i] = first * m[i];
 }
 
-EULASTIC_CLONES void end_row(const Grid &grid, const double *increment, const double *v, double *out) {
+EULASTIC_CLONES void end_row(const Segment &row, const double *increment, const double *v, double *out) {
 #pragma omp simd
-  for (int i = 0; i < grid.owned()[0]; ++i) out[i] = increment[i] + v[i];
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = increment[i] + v[i];
 }
 
-// row(component, j, k) for all owned rows.
-template <class Row>
-void for_velocity_rows(const Grid &grid, const Row &row) {
+// visit(component, faces) for all owned rows, and the faces of open sides that are no row's.
+template <class Visit>
+void for_velocity_rows(const Grid &grid, const Visit &visit) {
+  const auto open_low = [&](int a) { return grid.is_open(a, false) && grid.touches_low(a); };
+  const bool open[3] = {open_low(0), open_low(1), open_low(2)};
   in_row_parts(grid, [&](const RowPart &part) {
     for_rows_in_blocks(part, [&](int j, int k) {
-      for (int a = 0; a < grid.dimension(); ++a) row(a, j, k);
+      for (int a = 0; a < grid.dimension(); ++a) {
+        const int first = a == 0 && open[0] ? 1 : 0;
+        if (first > 0) visit(a, Faces{{0, first, j, k}, -1});
+        visit(a, Faces{{first, grid.owned()[0], j, k}, a > 0 && open[a] && (a == 1 ? j : k) == 0 ? -1 : 0});
+      }
     });
   });
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (const Segment &faces : grid.open_high_faces(a)) visit(a, Faces{faces, 1});
 }
 
 // What a stage reads of the row that comes RowAhead::rows later: of what its stencil reads, the row ahead of it.
@@ -125,13 +149,15 @@ void prefetch_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) 
   if (a == 0) prefetch((*s.viscosity)[0].row(next.j, next.k), n);
 }
 
-// Walls move by that from one time to another.
+// Walls move, and more comes in, by that from one time to another.
 BoxSides sides_of_increment(const BoxSides &box, double from, double to) {
   BoxSides sides = box;
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t side = 0; side < 2; ++side) {
       const Real3 u = box[d][side].motion.at(from), v = box[d][side].motion.at(to);
       sides[d][side].motion = {{v[0] - u[0], v[1] - u[1], v[2] - u[2]}, 0, 0};
+      sides[d][side].given = {box[d][side].given.at(to) - box[d][side].given.at(from), 0, 0, {}};
+      sides[d][side].fed.reset();
     }
   return sides;
 }
@@ -156,8 +182,8 @@ PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, 
                                  const FieldBlock &velocity, FieldBlock &out) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  for_velocity_rows(grid, [&](int a, int j, int k) {
-    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity, scale, velocity, out, a, j, k);
+  for_velocity_rows(grid, [&](int a, const Faces &row) {
+    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity, scale, velocity, out, a, row);
   });
   scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2));
   PetscFunctionReturn(0);
@@ -169,12 +195,16 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                                const RigidFaces *rigid, double viscosity_beside_rigid) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  const int n = grid.owned()[0];
   const double first = rkl_first_step(stages, dt);
   const FieldBlock *slope = work.slope ? &work.slope : nullptr;
-  for_velocity_rows(grid, [&](int a, int j, int k) {
-    first_row(n, -0.5 * dt, slope ? (*slope)[a].row(j, k) : nullptr, first, work.rate[a].row(j, k),
-              work.now[a].row(j, k));
+  for (int d = 0; slope && d < grid.dimension(); ++d)  // bodies do not come to open sides
+    for (const Segment &face : grid.open_high_faces(d)) {
+      double *row = work.slope[d].row(face.j, face.k);
+      std::fill(row + face.i_begin, row + face.i_end, 0.0);
+    }
+  for_velocity_rows(grid, [&](int a, const Faces &row) {
+    first_row(row, -0.5 * dt, slope ? (*slope)[a].row(row.j, row.k) : nullptr, first, work.rate[a].row(row.j, row.k),
+              work.now[a].row(row.j, row.k));
   });
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 1));
@@ -184,26 +214,26 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
         &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
     std::unique_ptr<RigidStage> beside;
     if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached);
-    for_velocity_rows(grid, [&](int a, int row, int k) {
-      prefetch_ahead(grid, stage, a, row, k);
-      const RigidFaces::Row faces = rigid ? rigid->row(a, row, k) : RigidFaces::Row{};
+    for_velocity_rows(grid, [&](int a, const Faces &row) {
+      if (row.j < grid.owned()[1] && row.k < grid.owned()[2]) prefetch_ahead(grid, stage, a, row.j, row.k);
+      const RigidFaces::Row faces = rigid ? rigid->row(a, row.j, row.k) : RigidFaces::Row{};
       if (faces.all) return;
       thread_local std::vector<double> held;
-      double *out = work.before[a].row(row, k);
+      double *out = work.before[a].row(row.j, row.k);
       if (!faces.empty()) {
-        if (j == 2) std::fill_n(out, n, 0.0);
+        if (j == 2) std::fill(out + row.i_begin, out + row.i_end, 0.0);
         const ConstView w = work.now[a];
-        beside->hold(faces, grid.dimension(), a, 0, n, stage.c, w.row(row, k), {1, w.sy, w.sz},
-                     work.rate[a].row(row, k), slope ? (*slope)[a].row(row, k) : nullptr, out, &held);
+        beside->hold(faces, grid.dimension(), a, row.i_begin, row.i_end, stage.c, w.row(row.j, row.k), {1, w.sy, w.sz},
+                     work.rate[a].row(row.j, row.k), slope ? (*slope)[a].row(row.j, row.k) : nullptr, out, &held);
       }
-      (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row, k);
-      if (!faces.empty()) RigidStage::release(faces, 0, n, held, out);
+      (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row);
+      if (!faces.empty()) RigidStage::release(faces, row.i_begin, row.i_end, held, out);
     });
     work.now.swap(work.before);
   }
   close_walls(grid, work.now);
-  for_velocity_rows(grid, [&](int a, int j, int k) {
-    end_row(grid, work.now[a].row(j, k), velocity[a].row(j, k), velocity_star[a].row(j, k));
+  for_velocity_rows(grid, [&](int a, const Faces &row) {
+    end_row(row, work.now[a].row(row.j, row.k), velocity[a].row(row.j, row.k), velocity_star[a].row(row.j, row.k));
   });
   scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3));
   PetscFunctionReturn(0);

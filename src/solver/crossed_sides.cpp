@@ -20,12 +20,12 @@ namespace {
 BoxSides rates_of(const BoxSides &sides, double time) {
   BoxSides rates = sides;
   for (auto &pair : rates)
-    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};
+    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};  // at the start nothing is fed
   return rates;
 }
 
 // What cannot leave whole.
-bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_membrane(); }
+bool is_held(const Phase &phase) { return !phase.label || phase.material.attached; }
 
 }  // namespace
 

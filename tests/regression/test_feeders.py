@@ -19,15 +19,20 @@ BINARY = os.environ["EULASTIC"]
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 CHANNEL = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 -inflow_xmin_profile "
            "developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 -species disc -disc_shape sphere "
-           "-disc_shear_modulus 4 -series_interval .05").split()
+           "-interface_scheme plic -series_interval .05").split()
+SOLID = "-disc_shear_modulus 4".split()
+MEMBRANE = "-disc_law membrane -disc_surface_shear_modulus 2 -disc_viscosity 2".split()
 TRAIN = [*CHANNEL, *("-grid_cells 216,32,1 -grid_length 6.75,1,1 -inflow_xmin_feeder 2 -fluid_viscosity .5 -disc_radius .25 "
                      "-disc_centre .8,.4,0 -time_end 4").split()]
-CROWD = [*CHANNEL, *("-grid_cells 96,32,1 -grid_length 6,2,1 -inflow_xmin_feeder 3 -fluid_viscosity .2 -disc_radius .25 "
-                     "-disc_placement random -disc_hematocrit .12 -disc_gap .3 -time_end 2").split()]
+CROWD = [*CHANNEL, *SOLID, *("-grid_cells 96,32,1 -grid_length 6,2,1 -inflow_xmin_feeder 3 -fluid_viscosity .2 -disc_radius .25 "
+                     "-disc_placement random -disc_hematocrit .12 -disc_gap .3 -time_end 2.4").split()]
 TUBE = ("-grid_cells 40,16,16 -grid_length 2.5,1,1 -boundary_xmin inflow -boundary_xmax pressure -inflow_xmin_profile developed "
         "-inflow_xmin_flow_rate .4 -inflow_xmin_feeder 1.25 -species pipe,cell -pipe_shape tube -pipe_axis x -pipe_law rigid "
         "-pipe_radius .42 -pipe_centre 0,.513,.487 -cell_shape sphere -cell_radius .2 -cell_centre .8,.55,.5 "
-        "-cell_shear_modulus 4 -fluid_viscosity .5 -time_end .8").split()
+        "-interface_scheme plic -fluid_viscosity .5 -time_end .8").split()
+BALL = "-cell_shear_modulus 4".split()
+CAPSULE = ("-cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus .5 -cell_bending_modulus .01 "
+           "-cell_viscosity 2.5").split()
 
 
 class Feeders(unittest.TestCase):
@@ -47,7 +52,11 @@ class Feeders(unittest.TestCase):
 
     def test_a_train_goes_on_where_it_came_in(self):
         """Each disc has the story of the one it was made like, a stretch behind: height and deformation. It keeps the volume."""
-        bodies = self.run_program("train", *TRAIN).bodies
+        for name, more in (("solid", SOLID), ("capsule", MEMBRANE)):
+            with self.subTest(name):
+                self.check_train(self.run_program(name, *TRAIN, *more).bodies)
+
+    def check_train(self, bodies):
         self.assertGreaterEqual(len(bodies.id), 3)
         self.assertEqual(list(bodies.id), list(range(1, len(bodies.id) + 1)))
         there = bodies.volume > 0
@@ -77,7 +86,7 @@ class Feeders(unittest.TestCase):
         self.assertLess(abs(run.series.flow_rate_xmin + run.series.flow_rate_xmax).max(), 1e-5)
 
     def test_same_on_any_ranks_and_threads_and_after_a_restart(self):
-        for name, scene in (("crowd", CROWD), ("tube", TUBE)):
+        for name, scene in (("crowd", CROWD), ("ball", [*TUBE, *BALL]), ("capsule", [*TUBE, *CAPSULE])):
             one = self.run_program(name, *scene)
             self.assertGreater(len(one.bodies.id), (one.bodies.volume[0] > 0).sum())
             for ranks in (2, 3, 4):
@@ -117,7 +126,7 @@ class Feeders(unittest.TestCase):
     def test_refusals(self):
         narrow = ("-species vessel -vessel_shape constricted_tube -vessel_axis x -vessel_law rigid -vessel_radius .4 "
                   "-vessel_throat_radius .2 -vessel_throat_length .5 -vessel_centre .6,.5,.5").split()
-        flat = [*CHANNEL, "-grid_cells", "64,32,1", "-grid_length", "2,1,1", "-disc_radius", ".2", "-time_end", "1"]
+        flat = [*CHANNEL, *SOLID, "-grid_cells", "64,32,1", "-grid_length", "2,1,1", "-disc_radius", ".2", "-time_end", "1"]
         deep = [*TUBE[:TUBE.index("-species")], *narrow, "-time_end", "1"]
         for says, options in (
                 ("2 is 64 cells; accepted: from 8 to 56", [*flat, "-inflow_xmin_feeder", "2"]),

@@ -117,6 +117,23 @@ class OpenSides(unittest.TestCase):
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(says, done.stderr)
 
+    def test_viscosity_that_hardly_varies_is_one_that_does_not(self):
+        """Two forms of the viscous force beside each kind of side: they differ by the error of a time step, of second order."""
+        scene = [*DEEP, *("-species ball -ball_shape sphere -ball_radius .3 -ball_centre .8,.6,.7 "
+                          "-ball_shear_modulus 1 -time_end .2 -snapshot_interval .2 -snapshot_precision double "
+                          "-interface_scheme plic -pressure_solver smac").split()]
+        largest = {}
+        for steps in (20, 40):
+            velocity = {}
+            for mu in (".05", ".050000005"):
+                run = self.run_program(f"{steps}_{mu}", *scene, "-ball_viscosity", mu, "-time_step", str(.2 / steps))
+                with h5py.File(run.directory / "snapshot_000001.h5") as file:
+                    velocity[mu] = numpy.stack([file[f"velocity_{c}"][...] for c in "xyz"])
+            largest[steps] = abs(velocity[".05"] - velocity[".050000005"]).max() / abs(velocity[".05"]).max()
+        print(f"    {largest[20]:.2e} {largest[40]:.2e}")
+        self.assertLess(largest[40], 3e-4)
+        self.assertGreater(largest[20] / largest[40], 3)
+
     def test_rigid_tube_from_an_inlet_to_an_outlet(self):
         """What comes in is the flow that the tube has: it stays as it is along it, and pressure falls as Poiseuille says. With a
         load at the outlet, too; the same on any ranks and after a restart."""
