@@ -37,8 +37,7 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
         {"-pressure_xmax_windkessel: capacity"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
-        {"-pressure_xmax_resistance: given beside"}},
-       {way + "-cell_viscosity 2", {"-cell_viscosity: ", "volume crosses"}}});
+        {"-pressure_xmax_resistance: given beside"}}});
   EXPECT_EQ(parse_line(scene + " " + way).error, "");
   EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
 }
