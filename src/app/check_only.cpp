@@ -2,6 +2,7 @@
 
 #include "app/memory.hpp"
 #include "bodies/shapes.hpp"
+#include "field/open_sides.hpp"
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
 
@@ -89,6 +90,14 @@ public:
                 around - 1, travelling / own - 1, 8e-6 * dimension_ * (travelling - own));
   }
 
+  /// Of a species from an initial state none.
+  std::pair<double, double> count_and_volume(std::size_t s) const {
+    const SpeciesSpec &spec = config_.species[s];
+    if (spec.shape == Shape::state) return {0, 0};
+    if (spec.shape == Shape::voxels) return {1, config_.solid_volumes[s]};
+    return {double(config_.places[s].size()), volume_in_box(spec, config_.grid)};
+  }
+
   void bodies(Report &report) const {
     double box = 1, walls = 0, cells = 0;
     bool random = false;  // then bodies from files are what the others are put around
@@ -101,8 +110,7 @@ public:
         continue;
       }
       const bool file = spec.shape == Shape::voxels;
-      const double count = file ? 1 : double(config_.places[s].size());
-      const double volume = file ? config_.solid_volumes[s] : volume_in_box(spec, config_.grid);
+      const auto [count, volume] = count_and_volume(s);
       ((file && random) || spec.material().attached || spec.law == Law::rigid ? walls : cells) += count * volume;
       report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
                   dimension_ == 2 ? "area" : "volume", volume, count * volume / box, file ? ", from " : "",
@@ -116,7 +124,7 @@ public:
     const FlowScale scale = flow_scale();
     const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
     if (speed == 0) {
-      report.line("flow", "none (no force, no moving wall, no initial velocity)%s",
+      report.line("flow", "none (no force, pressure, moving wall, inlet or initial velocity)%s",
                   stretched() ? ", but for what stretched bodies or -initial_state drive" : "");
     } else {
       report.line("velocity scale (estimate)", "%.6g", speed);
@@ -240,6 +248,7 @@ private:
     scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
     driven_by_walls(scale);
     driven_by_force(scale);
+    driven_by_inflow(scale);
     driven_by_bodies(scale);
     const InitialFlow &initial = config_.initial;
     const bool moves = initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
@@ -266,11 +275,13 @@ private:
   void driven_by_force(FlowScale &scale) const {
     const BodyForce &force = config_.fluid.body_force;
     const double nu = config_.fluid.kinematic_viscosity();
+    const Real3 pressures = pressure_drive(config_.sides, config_.grid.length, config_.fluid.density);
     for (int c = 0; c < dimension_; ++c) {
-      double f = std::fabs(force.force[c]);
+      const bool closed = is_wall(c) && !(config_.grid.open[c][0] && config_.grid.open[c][1]);
+      double f = std::fabs(force.force[c]) + pressures[c];
       for (const SpeciesSpec &spec : config_.species) f += std::fabs(spec.body_force.force[c]);
       double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
-      if (is_wall(c)) speed = 0;  // pressure takes it
+      if (closed) speed = 0;  // pressure takes it
       const SpeciesSpec *tube = nullptr;
       for (const SpeciesSpec &spec : config_.species)
         if (is_tube(spec.shape) && dimension_ == 3 && spec.axis == c && nu > 0) tube = &spec;
@@ -280,11 +291,26 @@ private:
       }
       for (int d = 0; d < dimension_; ++d) {
         const double height = gap(d);
-        if (tube || height == 0 || d == c || is_wall(c) || nu == 0) continue;
+        if (tube || height == 0 || d == c || closed || nu == 0) continue;
         speed = std::min(speed, f * height * height / (8 * nu));
         scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));
       }
       scale.speed[c] = std::max(scale.speed[c], speed);
+    }
+  }
+  /// What comes in fills what rigid and attached bodies leave of a side; developed it is at most twice as fast in the
+  /// middle, with the shear rate 8 U/D at the wall.
+  void driven_by_inflow(FlowScale &scale) const {
+    double box = 1, free = 1;
+    for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
+    for (std::size_t s = 0; s < config_.species.size(); ++s)
+      if (config_.species[s].material().attached || config_.species[s].law == Law::rigid)
+        free -= count_and_volume(s).first * count_and_volume(s).second / box;
+    const Real3 given = inflow_speed(config_.sides);
+    for (int d = 0; d < dimension_ && free > 0; ++d) {
+      const double speed = 2 * given[d] / free;
+      scale.speed[d] = std::max(scale.speed[d], speed);
+      scale.shear_rate = std::max(scale.shear_rate, 4 * speed / scale.length);
     }
   }
 

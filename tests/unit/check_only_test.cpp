@@ -71,11 +71,29 @@ TEST(CheckOnly, NumbersOfAChannel) {
     EXPECT_NE(inside.find(line), std::string::npos) << line << inside;
 }
 
+TEST(CheckOnly, FlowThroughOpenSides) {
+  const std::string channel = "-time_end 9 -grid_cells 32,16,1 -grid_length 4,2,1 -boundary_y wall -fluid_viscosity 1 ";
+  const auto says = [&](const std::string &options) {
+    const ParseResult result = parse_line(channel + options);
+    EXPECT_EQ(result.error, "");
+    return check_report(result.config, 1);
+  };
+  const std::string fed = says("-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .5");
+  for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
+    EXPECT_NE(fed.find(line), std::string::npos) << line << fed;
+  // f = 8/4, U = f H^2/(8 nu), shear rate f H/(2 nu).
+  const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -pressure_xmin_value 8");
+  for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
+    EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
+}
+
 TEST(CheckOnly, NoFlowIsSaid) {
   const std::string rest = "-time_end 2 -grid_cells 16,16,1",
                     body = " -species a -a_shape sphere -a_radius .2 -a_shear_modulus 1";
   const std::string report = check_report(parse_line(rest).config, 1);
-  EXPECT_NE(report.find("\nflow: none (no force, no moving wall, no initial velocity)\n"), std::string::npos) << report;
+  EXPECT_NE(report.find("\nflow: none (no force, pressure, moving wall, inlet or initial velocity)\n"),
+            std::string::npos)
+      << report;
   EXPECT_EQ(report.find("inf"), std::string::npos) << report;
   EXPECT_EQ(report.find("Reynolds"), std::string::npos) << report;
   EXPECT_NE(report.find("\ntime step (estimate): 2 (-time_end: nothing limits it)\nsteps (estimate): 1\n"),
