@@ -1,4 +1,4 @@
-"""S13 to S18: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
+"""S13 to S20: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
 import math
 
 import numpy
@@ -75,6 +75,28 @@ def pulse_options(across, _):
             "time_step": period / (2 * across), "series_interval": period / (2 * across)}
 
 
+def late(run):
+    """Drag and lift coefficients of a periodic wake, 20 times the force per depth, in its last 2.5 units of time."""
+    last = run.bodies.time > run.bodies.time[-1] - 2.5
+    return run.bodies.time[last], *20 * run.bodies.force[last, 0, :2].T
+
+
+def strouhal(run):
+    """Diameter .1, mean velocity 1: frequency of the lift between its first and last rise through its mean."""
+    t, _, lift = late(run)
+    lift = lift - lift.mean()
+    at = numpy.flatnonzero((lift[:-1] < 0) & (lift[1:] >= 0))
+    rises = t[at] - lift[at] * (t[at + 1] - t[at]) / (lift[at + 1] - lift[at])
+    return float(.1 * (len(rises) - 1) / (rises[-1] - rises[0]))
+
+
+def upper_share():
+    """What leaves upwards from the bifurcation as a network of Poiseuille's resistances along its axes (scripts/make_vessel)."""
+    per_length = 8 * 1.2 / (math.pi * 5.5**4)
+    ahead, up = 40, math.dist((32, 16), (43, 25)) + math.dist((43, 25), (47, 33)) + math.dist((47, 33), (48, 42)) + 6
+    return per_length * ahead / (per_length * (ahead + up) + .05)
+
+
 CASES = (
     array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
     Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
@@ -111,4 +133,20 @@ CASES = (
                   order={"fast": 1.7}),),
          lambda run: ((run.series.time, run.series.bulk_velocity_x),
                       (run.series.time, (womersley_flow() * numpy.exp(1j * FREQUENCY * run.series.time)).real)), ("t", "mean velocity")),
+    Case("S19", "Bifurcation from a surface, one inlet and two outlets", "bifurcation",
+         lambda n, _: {"grid_cells": f"{72 * n // 14},{48 * n // 14},{20 * n // 14}", "cell_count": 0, "inflow_xmin_feeder": 0,
+                       "inflow_xmin_flow_rate": 5, "time_end": 60, "snapshot_interval": 0},
+         fast_at((14, 21, 28)), fast_at((14,)),
+         (Measure("share of the upper outlet", lambda run: -float(run.series.flow_rate_ymax[-1]) / 5, {"fast": .05},
+                  "asked for: 5 % of the network's; the axes' lengths leave the rounding of the fork out", upper_share(), True),),
+         lambda run: ((run.series.time[1:], -run.series.flow_rate_ymax[1:]), None), ("t, us", "flow rate at the upper outlet, um^3/us")),
+    Case("S20", "Cylinder in a channel, Re = 100", "cylinder_in_channel",
+         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "inflow_xmin_velocity": 1, "time_end": 8, "snapshot_interval": 0,
+                       "series_interval": .005}, fast_at((20, 40)), (),
+         (Measure("largest drag coefficient", lambda run: float(late(run)[1].max()), {"fast": lambda n: .01 * (40 / n)**2},
+                  "asked for: 1 % at 40 cells in the diameter", 3.23, True,
+                  misses={"fast": (lambda n: .015 * (40 / n)**2, "second order: 5.5 and 1.36 %, so that 1 % takes 47 cells")}),
+          Measure("largest lift coefficient", lambda run: float(late(run)[2].max()), {}, "the reference is good to 1 %", 1, True),
+          Measure("Strouhal number", strouhal, {"fast": lambda n: .01 * (40 / n)**2}, "asked for: 1 % at 40 cells", .3, True)),
+         lambda run: ((run.bodies.time[1:], 20 * run.bodies.force[1:, 0, 1]), None), ("t", "lift coefficient")),
 )

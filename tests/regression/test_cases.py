@@ -31,9 +31,9 @@ def environment(options=""):
 
 
 def coarse(case):
-    """The case's cells, at most 16 (3-D) or 32 (2-D) in a direction; half of them where there are platelets."""
+    """The case's cells, at most 16 (3-D) or 32 (2-D) in a direction; half of them where narrow vessels need more."""
     cells = [int(n) for n in read_options(ROOT / f"options/{case}.opts")["grid_cells"].split(",")]
-    if case.startswith("capillary"):
+    if case.startswith(("capillary", "bifurcation")):
         return ",".join(str(n // 2) for n in cells)
     most = 32 if cells[2] == 1 else 16
     return ",".join(str(min(n, most)) for n in cells)

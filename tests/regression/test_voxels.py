@@ -204,6 +204,8 @@ class Voxels(WithRoom):
     def test_the_example_is_what_its_script_makes(self):
         for suffix in ("h5", "nrrd", "stl"):
             subprocess.run([ROOT / "scripts/make_vessel", self.room / f"made.{suffix}"], check=True, timeout=120)
+        subprocess.run([ROOT / "scripts/make_vessel", self.room / "lumen.stl", "--bifurcation"], check=True, timeout=120)
+        self.assertEqual((self.room / "lumen.stl").read_bytes(), (ROOT / "options/bifurcation.stl").read_bytes())
         with h5py.File(ROOT / "options/branched_vessel.h5") as old, h5py.File(self.room / "made.h5") as new:
             fraction = old["solid_fraction"][...]
             numpy.testing.assert_array_equal(fraction, new["solid_fraction"][...])
