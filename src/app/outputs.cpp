@@ -10,6 +10,7 @@
 #include <cmath>
 
 namespace eulastic {
+
 namespace {
 
 bool wants(const OutputControl &output, const char *name) {
@@ -57,13 +58,16 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscFunctionBeginUser;
   const MPI_Comm comm = grid_->comm();
   directory_ = directory;
-  PetscCall(series_.open(comm, directory + "/series.csv", series_columns(crossed_sides(config_.sides, *grid_)),
+  PetscCall(series_.open(comm, directory + "/series.csv",
+                         series_columns(crossed_sides(config_.sides, *grid_), vessel_flows(config_, 0, {}, {})),
                          same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool membranes = std::any_of(config_.species.begin(), config_.species.end(),
                                        [](const SpeciesSpec &spec) { return spec.is_membrane(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, solver_->rigid() != nullptr);
+    const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
+                                   [](const SpeciesSpec &spec) { return spec.bears_load(); });
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, loads);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -105,6 +109,7 @@ PetscErrorCode Outputs::measure() {
   solver_->bodies().complete(&first_volume_);
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
+  PetscCall(measure_vessel_loads(config_, m.bodies, solver_, &m.surface_loads));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const bool left = m.bodies[b].volume == 0 && grid_->any_open();
@@ -162,7 +167,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
 
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
-  std::size_t rigid = 0;
+  std::size_t rigid = 0, elastic = 0;
   for (std::size_t b = 0; b < measured_.bodies.size(); ++b) {
     const BodyMeasure &body = measured_.bodies[b];
     BodyRecord record;
@@ -179,6 +184,9 @@ std::vector<BodyRecord> Outputs::records() const {
     if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
       record.force = measured_.loads[rigid].force;
       record.torque = measured_.loads[rigid++].torque;
+    } else if (elastic < measured_.surface_loads.size() && measured_.surface_loads[elastic].label == body.label) {
+      record.force = measured_.surface_loads[elastic].force;
+      record.torque = measured_.surface_loads[elastic++].torque;
     }
     if (b < measured_.surfaces.size()) {
       const SurfaceMeasure &surface = measured_.surfaces[b];
@@ -243,6 +251,8 @@ PetscErrorCode Outputs::write_due(bool last) {
                             energy.surface_power};
     if (!sides_.empty()) row.push_back(energy.rates.side_power);
     for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
+    for (const VesselFlow &vessel : vessel_flows(config_, state.time, flow.bulk_velocity, sides_))
+      row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
     PetscCall(series_.write(row));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));

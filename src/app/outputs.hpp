@@ -5,6 +5,7 @@
 #include "app/due.hpp"
 #include "app/guards.hpp"
 #include "app/sample_files.hpp"
+#include "app/vessels.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/side_flows.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
