@@ -11,38 +11,6 @@
 
 namespace eulastic {
 
-namespace {
-
-bool wants(const OutputControl &output, const char *name) {
-  const auto &fields = output.snapshot_fields;
-  return std::find(fields.begin(), fields.end(), name) != fields.end();
-}
-
-SnapshotField as_field(const WallStress &wall, Stored precision) {
-  SnapshotField field;
-  field.format.name = std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
-  field.format.stored = precision;
-  field.format.plane = wall.direction;
-  field.format.plane_high = wall.high;
-  field.components = {wall.view(0), wall.view(1), wall.view(2)};
-  return field;
-}
-
-SnapshotSelection selection(const Config &config) {
-  const OutputControl &output = config.output;
-  const auto wanted = [&](const char *name) { return wants(output, name); };
-  SnapshotSelection s;
-  s.velocity = wanted("velocity");
-  s.pressure = wanted("pressure");
-  s.solid_fraction = wanted("solid_fraction");
-  s.left_cauchy_green = wanted("left_cauchy_green");
-  s.body = wanted("body") && config.body_series;
-  s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
-  return s;
-}
-
-}  // namespace
-
 void Outputs::start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position) {
   config_ = config;
   grid_ = &grid;
@@ -73,8 +41,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   }
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotWriter>(*grid_, directory);
-    snapshot_fields_ = std::make_unique<SnapshotFields>(*grid_);
+    snapshots_ = std::make_unique<SnapshotOutput>(*grid_, directory);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
@@ -259,20 +226,7 @@ PetscErrorCode Outputs::write_due(bool last) {
       ++bodies_rows_;
     }
   }
-  if (snapshot) {
-    PetscCall(solver_->phases_now(&phases));
-    const FieldBlock *viscosity = nullptr;
-    PetscCall(solver_->viscosity_now(&viscosity));
-    const SnapshotSelection wanted = selection(config_);
-    std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
-    std::vector<WallStress> walls;
-    if (wants(config_.output, "wall_shear_stress"))
-      walls = wall_shear_stress(*grid_, config_.sides, state.time,
-                                {*grid_, config_.fluid.viscosity, config_.fluid.density, viscosity}, state.velocity,
-                                *phases);
-    for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
-    PetscCall(snapshots_->write(state.time, static_cast<long>(state.step), fields));
-  }
+  if (snapshot) PetscCall(snapshots_->write(config_, solver_));
   PetscFunctionReturn(0);
 }
 

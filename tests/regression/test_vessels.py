@@ -100,17 +100,18 @@ class Vessels(unittest.TestCase):
         self.assertAlmostEqual(lift[0] / lift[1], 1, delta=0.005)
 
     def test_same_on_any_ranks(self):
-        """A rigid sphere in an elastic tube that is more viscous: loads and flow."""
+        """A rigid sphere in an elastic tube that is more viscous: its loads, flow, and stress on both surfaces."""
         scene = (*TUBE, *ELASTIC, *"-grid_cells 16,24,24 -grid_length .7,1,1 -species vessel,stone -vessel_viscosity 2 -stone_shape "
                  "sphere -stone_radius .15 -stone_centre .3,.5,.45 -stone_law rigid -body_force 1,.2,0 -fluid_viscosity 1 -time_end "
-                 ".01 -series_interval .005".split())
+                 ".01 -series_interval .005 -snapshot_interval .01".split())
         one = self.run_with(*scene)
-        bodies, series = one.bodies, one.series
+        bodies, stress, series = one.bodies, one.snapshots[-1]["wall_shear_stress"], one.series
         for ranks in 2, 3, 4:
             other = self.run_with(*scene, ranks=ranks)
             self.assertEqual(other.series.tobytes(), series.tobytes())
             for name in "force", "torque":
                 numpy.testing.assert_array_equal(getattr(other.bodies, name), getattr(bodies, name))
+            numpy.testing.assert_array_equal(other.snapshots[-1]["wall_shear_stress"], stress)
 
     def test_torque_on_an_elastic_ring(self):
         """A rigid cylinder turns in an elastic one that is attached: 4 pi mu Omega / (1/a^2 - 1/b^2)."""
