@@ -62,6 +62,10 @@ class Snapshot:
         """Size of the shear stress on the low (0) or high (1) wall normal to d: (nz, ny, nx), one layer along d."""
         return numpy.linalg.norm(self[f"wall_shear_stress_{'xyz'[d]}{('min', 'max')[side]}"].astype(float), axis=-1)
 
+    def surface_shear_stress(self):
+        """Size of the shear stress on vessels and obstacles in the cells that their surface cuts, 0 in others."""
+        return numpy.linalg.norm(self["wall_shear_stress"].astype(float), axis=-1)
+
     def plane(self, z=None):
         """Index k of the plane at height z; by default the one that cuts the most solid, without any the middle."""
         if z is not None:

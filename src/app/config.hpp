@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/placement.hpp"
+#include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "grid/grid.hpp"
 #include "physics/fluid.hpp"
@@ -120,6 +121,12 @@ struct Config {
   int ranks = 0;  ///< that -check_only speaks of; 0: those that there are
   bool print_options = false;
 
+  /// Null of a phase that no species has.
+  const SpeciesSpec *species_of(const Phase &phase) const {
+    for (const SpeciesSpec &spec : species)
+      if (spec.name == phase.species) return &spec;
+    return nullptr;
+  }
   /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.
   bool separates(const SpeciesSpec &spec) const {
     return spec.law != Law::rigid && spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&

@@ -7,6 +7,7 @@
 #include "app/config.hpp"
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
+#include "diagnostics/surface_loads.hpp"
 #include "solver/solver.hpp"
 
 namespace eulastic {
@@ -23,7 +24,8 @@ struct Measured {
   double time = -1;  ///< of the state; negative: not yet
   FlowMeasures flow;
   SurfaceEnergy surface;
-  std::vector<RigidLoad> loads;  ///< of the rigid ones among the bodies
+  std::vector<RigidLoad> loads;            ///< of the rigid ones among the bodies
+  std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
   std::vector<BodyMeasure> bodies;
   std::vector<SurfaceMeasure> surfaces;  ///< of the same bodies; empty without membranes
   double volume_drift = 0;               ///< of the body that has changed most

@@ -10,37 +10,6 @@
 #include <cmath>
 
 namespace eulastic {
-namespace {
-
-bool wants(const OutputControl &output, const char *name) {
-  const auto &fields = output.snapshot_fields;
-  return std::find(fields.begin(), fields.end(), name) != fields.end();
-}
-
-SnapshotField as_field(const WallStress &wall, Stored precision) {
-  SnapshotField field;
-  field.format.name = std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
-  field.format.stored = precision;
-  field.format.plane = wall.direction;
-  field.format.plane_high = wall.high;
-  field.components = {wall.view(0), wall.view(1), wall.view(2)};
-  return field;
-}
-
-SnapshotSelection selection(const Config &config) {
-  const OutputControl &output = config.output;
-  const auto wanted = [&](const char *name) { return wants(output, name); };
-  SnapshotSelection s;
-  s.velocity = wanted("velocity");
-  s.pressure = wanted("pressure");
-  s.solid_fraction = wanted("solid_fraction");
-  s.left_cauchy_green = wanted("left_cauchy_green");
-  s.body = wanted("body") && config.body_series;
-  s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
-  return s;
-}
-
-}  // namespace
 
 void Outputs::start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position) {
   config_ = config;
@@ -57,20 +26,22 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscFunctionBeginUser;
   const MPI_Comm comm = grid_->comm();
   directory_ = directory;
-  PetscCall(series_.open(comm, directory + "/series.csv", series_columns(crossed_sides(config_.sides, *grid_)),
+  PetscCall(series_.open(comm, directory + "/series.csv",
+                         series_columns(crossed_sides(config_.sides, *grid_), vessel_flows(config_, 0, {}, {})),
                          same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool membranes = std::any_of(config_.species.begin(), config_.species.end(),
                                        [](const SpeciesSpec &spec) { return spec.is_membrane(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, solver_->rigid() != nullptr);
+    const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
+                                   [](const SpeciesSpec &spec) { return spec.bears_load(); });
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, loads);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotWriter>(*grid_, directory);
-    snapshot_fields_ = std::make_unique<SnapshotFields>(*grid_);
+    snapshots_ = std::make_unique<SnapshotOutput>(*grid_, directory);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
@@ -105,6 +76,7 @@ PetscErrorCode Outputs::measure() {
   solver_->bodies().complete(&first_volume_);
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
+  PetscCall(measure_vessel_loads(config_, m.bodies, solver_, &m.surface_loads));
   m.volume_drift = m.resolved_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const bool left = m.bodies[b].volume == 0 && grid_->any_open();
@@ -162,7 +134,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
 
 std::vector<BodyRecord> Outputs::records() const {
   std::vector<BodyRecord> records;
-  std::size_t rigid = 0;
+  std::size_t rigid = 0, elastic = 0;
   for (std::size_t b = 0; b < measured_.bodies.size(); ++b) {
     const BodyMeasure &body = measured_.bodies[b];
     BodyRecord record;
@@ -179,6 +151,9 @@ std::vector<BodyRecord> Outputs::records() const {
     if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
       record.force = measured_.loads[rigid].force;
       record.torque = measured_.loads[rigid++].torque;
+    } else if (elastic < measured_.surface_loads.size() && measured_.surface_loads[elastic].label == body.label) {
+      record.force = measured_.surface_loads[elastic].force;
+      record.torque = measured_.surface_loads[elastic++].torque;
     }
     if (b < measured_.surfaces.size()) {
       const SurfaceMeasure &surface = measured_.surfaces[b];
@@ -243,26 +218,15 @@ PetscErrorCode Outputs::write_due(bool last) {
                             energy.surface_power};
     if (!sides_.empty()) row.push_back(energy.rates.side_power);
     for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
+    for (const VesselFlow &vessel : vessel_flows(config_, state.time, flow.bulk_velocity, sides_))
+      row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
     PetscCall(series_.write(row));
     if (bodies_file_) {
       PetscCall(bodies_file_->add(state.time, records()));
       ++bodies_rows_;
     }
   }
-  if (snapshot) {
-    PetscCall(solver_->phases_now(&phases));
-    const FieldBlock *viscosity = nullptr;
-    PetscCall(solver_->viscosity_now(&viscosity));
-    const SnapshotSelection wanted = selection(config_);
-    std::vector<SnapshotField> fields = snapshot_fields_->collect(wanted, state.velocity, state.pressure, *phases);
-    std::vector<WallStress> walls;
-    if (wants(config_.output, "wall_shear_stress"))
-      walls = wall_shear_stress(*grid_, config_.sides, state.time,
-                                {*grid_, config_.fluid.viscosity, config_.fluid.density, viscosity}, state.velocity,
-                                *phases);
-    for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
-    PetscCall(snapshots_->write(state.time, static_cast<long>(state.step), fields));
-  }
+  if (snapshot) PetscCall(snapshots_->write(config_, solver_));
   PetscFunctionReturn(0);
 }
 

@@ -5,13 +5,12 @@
 #include "app/due.hpp"
 #include "app/guards.hpp"
 #include "app/sample_files.hpp"
+#include "app/snapshot_output.hpp"
+#include "app/vessels.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/side_flows.hpp"
-#include "diagnostics/wall_shear_stress.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
-#include "io/snapshot.hpp"
-#include "io/snapshot_fields.hpp"
 #include "io/summary.hpp"
 #include "solver/solver.hpp"
 
@@ -63,8 +62,7 @@ private:
   Series series_;
   SampleFiles samples_;
   std::unique_ptr<BodiesFile> bodies_file_;
-  std::unique_ptr<SnapshotWriter> snapshots_;
-  std::unique_ptr<SnapshotFields> snapshot_fields_;
+  std::unique_ptr<SnapshotOutput> snapshots_;
   Due series_due_, snapshot_due_;
   Measured measured_;
   std::vector<SideFlow> sides_;  ///< as of the last measure_energy()

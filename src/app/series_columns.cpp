@@ -28,12 +28,16 @@ const std::vector<std::string> always{"time",
 
 }  // namespace
 
-std::vector<std::string> series_columns(const std::vector<SideFlow> &sides) {
+std::vector<std::string> series_columns(const std::vector<SideFlow> &sides, const std::vector<VesselFlow> &vessels) {
   std::vector<std::string> columns = always;
   if (!sides.empty()) columns.emplace_back("side_power");
   for (const SideFlow &side : sides) {
     columns.push_back("flow_rate_" + side.name());
     columns.push_back("pressure_" + side.name());
+  }
+  for (const VesselFlow &vessel : vessels) {
+    columns.push_back(vessel.species + "_flow_rate");
+    columns.push_back(vessel.species + "_apparent_viscosity");
   }
   return columns;
 }

@@ -145,6 +145,17 @@ double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid) {
   return pi * (r * r * length - depth * throat * (r - 3 * depth / 8));  // means of (1 + cos)/2 and its square: 1/2, 3/8
 }
 
+double lumen_resistance(const SpeciesSpec &spec, const GridSpec &grid) {
+  const bool flat = grid.cells[2] == 1;
+  const auto inverse = [flat](double r) { return flat ? 1.5 / (r * r * r) : 8 / (pi * r * r * r * r); };
+  const double length = grid.length[spec.axis];
+  if (spec.shape != Shape::constricted_tube) return length * inverse(spec.radius);
+  constexpr int pieces = 256;  // of the throat, over one period: the midpoint rule is exact to round-off
+  double sum = 0;
+  for (int n = 0; n < pieces; ++n) sum += inverse(lumen_radius(spec, spec.throat_length * ((n + 0.5) / pieces - 0.5)));
+  return (length - spec.throat_length) * inverse(spec.radius) + spec.throat_length * (sum / pieces);
+}
+
 double volume_in_box(const SpeciesSpec &spec, const GridSpec &grid) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   double box = 1, factor = 1;

@@ -67,6 +67,10 @@ struct SpeciesSpec {
   Real3 orientation{};  ///< Euler angles in degrees: rotations about x, then y, then z
   bool random_orientation = false;
 
+  /// A vessel or an obstacle: the stress of the fluid on its surface is measured.
+  bool bears_load() const {
+    return law == Law::rigid || (!is_membrane() && (attached.value_or(is_attached(shape)) || shape == Shape::voxels));
+  }
   bool is_membrane() const { return law == Law::membrane || law == Law::red_cell; }
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });

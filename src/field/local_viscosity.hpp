@@ -21,6 +21,9 @@ struct EdgeViscosity {
     if (!local) return uniform;
     return density * (*local)[viscosity_of_edge(grid.dimension(), a, b)](cell[0], cell[1], cell[2]);
   }
+  double at_centre(const Int3 &cell) const {
+    return local ? density * (*local)[0](cell[0], cell[1], cell[2]) : uniform;
+  }
 };
 
 }  // namespace eulastic

@@ -14,7 +14,8 @@ namespace eulastic {
 
 class BodiesFile {
 public:
-  /// `membranes`: with what is known of those alone; `loads`: with force and torque, where there are rigid bodies.
+  /// `membranes`: with what is known of those alone; `loads`: with force and torque, where there are bodies that bear
+  /// loads.
   BodiesFile(MPI_Comm comm, std::string path, bool membranes = false, bool loads = false);
 
   /// Collective. One row; rank 0's records count, always the same bodies in the same order, others may follow: in

@@ -18,7 +18,7 @@ struct BodyRecord {
   double elastic_energy = 0;
   double largest_stretch = 0;   ///< largest principal stretch anywhere in it, from tr B
   double rest_deformation = 0;  ///< taylor_deformation of what is left when the mean of B is undone
-  Real3 force{}, torque{};      ///< of the fluid on a rigid body; 0 of others
+  Real3 force{}, torque{};      ///< of the fluid on a body that bears loads; 0 of others
   /// Of membranes: area (2-D: length) of the surface, energies, angular velocity at which it goes round in the xy
   /// plane.
   double surface_area = 0, shear_energy = 0, area_energy = 0, bending_energy = 0, turning_rate = 0;

@@ -34,12 +34,15 @@ void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visi
         if (const RigidFaces::Row row = faces.row(a, j, k); !row.empty()) visit(a, row, j, k);
 }
 
-// Whether the normal velocity is given there, by the side of the box.
-bool on_closed_side(const Grid &grid, int a, int i, int j, int k) {
-  if (!grid.is_wall(a)) return false;
+// -1 on the low side of the box that is normal to a, 1 on the high one, else 0.
+int side_of_face(const Grid &grid, int a, int i, int j, int k) {
+  if (!grid.is_wall(a)) return 0;
   const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
-  return (at == 0 && !grid.is_open(a, false)) || (at == grid.cells()[a] && !grid.is_open(a, true));
+  return at == 0 ? -1 : at == grid.cells()[a] ? 1 : 0;
 }
+
+// In cells: a face on an open side has half of one, on others the side gives the velocity.
+double volume_of_face(const Grid &grid, int a, int side) { return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0; }
 
 bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
@@ -189,10 +192,11 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 }
 
 // The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
-// of the surface, less what they would feel of the neighbours inside, is the rest.
+// of the surface, less what they would feel of the neighbours inside, is the rest. On sides of the box a body has no
+// surface: their pressure is not that of the fluid on it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   const FieldBlock &velocity, const FieldBlock &rate, const Real3 &force,
-                                   std::vector<RigidLoad> *loads) {
+                                   const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate,
+                                   const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const double mass = fluid.density * grid.cell_volume();
@@ -208,18 +212,27 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       if (e == a || g == a) sums.add(6 * b.index + 3 + d, r[e] * f[g] - r[g] * f[e]);
     }
   };
+  const auto push = [&](int a, int i, int j, int k) {
+    const int side = side_of_face(grid, a, i, j, k);
+    const double volume = volume_of_face(grid, a, side);
+    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a]) : 0;
+    if (side == 0) return inside;
+    const double *p = &pressure[0](i, j, k);
+    return inside + side * grid.cell_volume() / grid.spacing()[a] * 0.5 * (p[0] + p[-pressure[0].stride(a)]);
+  };
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *u = velocity[a].row(j, k), *dv = rate[a].row(j, k);
+    const double *u = velocity[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i) || on_closed_side(grid, a, cut->i, j, k)) continue;
+      if (!owned(grid, a, cut->i)) continue;
+      const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
+      if (volume == 0) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
-          mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
+          volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        if (!on_closed_side(grid, a, i, j, k))
-          add(run->body, a, place_of_face(grid, a, i, j, k), mass * (dv[i] - force[a]));
+        add(run->body, a, place_of_face(grid, a, i, j, k), push(a, i, j, k));
   });
   std::vector<double> total(6 * faces.count);
   PetscCall(sums.reduce(grid.comm(), total.data()));

@@ -48,7 +48,7 @@ private:
   std::vector<std::array<double, 2>> moved_;  ///< of every motion
 };
 
-/// What the fluid exerts on a body: on its surface, the pressure of a uniform body force not included.
+/// What the fluid exerts on a body: on its surface inside the box, the pressure of a uniform body force not included.
 struct RigidLoad {
   Real3 force{};     ///< per depth in 2-D
   Real3 torque{};    ///< about the centre of the body
@@ -56,9 +56,9 @@ struct RigidLoad {
 };
 
 /// Of all rigid bodies. `rate`: dv/dt of the fluid's equation at all owned faces, those inside too, with all of
-/// `viscosity` in it, less the body force `force`. Collective.
+/// `viscosity` in it, less the body force `force`; one ghost of velocity and pressure. Collective.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   const FieldBlock &velocity, const FieldBlock &rate, const Real3 &force,
-                                   std::vector<RigidLoad> *loads);
+                                   const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate,
+                                   const Real3 &force, std::vector<RigidLoad> *loads);
 
 }  // namespace eulastic

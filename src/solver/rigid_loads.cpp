@@ -30,7 +30,8 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
                           now_.velocity, now_.pressure, *phases, none, rate.fields()));
   add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
   if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
-  PetscCall(measure_rigid_loads(*grid_, *rigid_, spec_.fluid, now_.time, now_.velocity, rate.fields(), force, loads));
+  PetscCall(measure_rigid_loads(*grid_, *rigid_, spec_.fluid, now_.time, now_.velocity, now_.pressure, rate.fields(),
+                                force, loads));
   PetscFunctionReturn(0);
 }
 

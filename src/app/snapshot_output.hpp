@@ -1,0 +1,27 @@
+// The snapshots of a run: fields of the state, and what is measured for them on walls and surfaces.
+#pragma once
+
+#include "app/config.hpp"
+#include "io/snapshot.hpp"
+#include "io/snapshot_fields.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+class SnapshotOutput {
+public:
+  SnapshotOutput(const Grid &grid, const std::string &directory) : writer_(grid, directory), fields_(grid) {}
+
+  /// As SnapshotWriter's.
+  PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }
+  void moved_to(const std::string &directory) { writer_.moved_to(directory); }
+  int count() const { return writer_.count(); }
+  /// Of the state as it is, which is not touched. Collective.
+  PetscErrorCode write(const Config &config, Solver *solver);
+
+private:
+  SnapshotWriter writer_;
+  SnapshotFields fields_;
+};
+
+}  // namespace eulastic

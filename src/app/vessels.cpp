@@ -1,0 +1,66 @@
+#include "app/vessels.hpp"
+
+#include "bodies/shapes.hpp"
+
+namespace eulastic {
+
+std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
+                                     const std::vector<SideFlow> &sides) {
+  std::vector<VesselFlow> flows;
+  const GridSpec &grid = config.grid;
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  for (const SpeciesSpec &spec : config.species) {
+    if (!is_tube(spec.shape) || spec.axis >= dimension) continue;
+    double section = 1;
+    for (int d = 0; d < dimension; ++d)
+      if (d != spec.axis) section *= grid.length[d];
+    double drop = config.fluid.density * config.fluid.body_force.at(time)[spec.axis] * grid.length[spec.axis];
+    for (const SideFlow &side : sides)
+      if (side.direction == spec.axis) drop += side.high ? -side.pressure : side.pressure;
+    VesselFlow &flow = flows.emplace_back();
+    flow.species = spec.name;
+    flow.flow_rate = bulk[spec.axis] * section;
+    if (flow.flow_rate != 0) flow.apparent_viscosity = drop / (flow.flow_rate * lumen_resistance(spec, grid));
+  }
+  return flows;
+}
+
+PetscErrorCode measure_vessel_loads(const Config &config, const std::vector<BodyMeasure> &bodies, Solver *solver,
+                                    std::vector<SurfaceLoad> *loads) {
+  PetscFunctionBeginUser;
+  const Grid &grid = solver->grid();
+  loads->clear();
+  std::vector<std::size_t> next(config.species.size(), 0);  // body of a species
+  for (const BodyMeasure &body : bodies) {
+    const SpeciesSpec &spec = config.species[body.species];
+    const std::size_t n = next[body.species]++;
+    if (!spec.bears_load() || spec.law == Law::rigid) continue;
+    SurfaceLoad &load = loads->emplace_back();
+    load.label = static_cast<int>(body.label);
+    const std::vector<BodyPlace> &places = config.places[body.species];
+    for (int d = 0; d < grid.dimension(); ++d)
+      load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * grid.spec().length[d];
+  }
+  if (loads->empty()) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver->phases_now(&phases));
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(solver->viscosity_now(&viscosity));
+  std::vector<FieldBlock> labels(phases->size());
+  std::vector<const FieldBlock *> wanted(phases->size(), nullptr);
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    const Phase &phase = (*phases)[p];
+    const SpeciesSpec *spec = config.species_of(phase);
+    if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
+    labels[p].copy_from(phase.label);
+    PetscCall(solver->exchange().update(labels[p], 1));
+    fill_wall_ghosts_even(grid, at_centre, labels[p][0], 1);
+    wanted[p] = &labels[p];
+  }
+  const State &state = solver->state();
+  PetscCall(measure_surface_loads({grid, config.fluid.viscosity, config.fluid.density, viscosity}, state.velocity,
+                                  state.pressure, *phases, wanted, loads));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

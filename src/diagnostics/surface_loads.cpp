@@ -1,0 +1,147 @@
+#include "diagnostics/surface_loads.hpp"
+
+#include "base/events.hpp"
+#include "diagnostics/edge_stress.hpp"
+#include "field/exact_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eulastic {
+namespace {
+
+constexpr int per_body = 6;  // force, torque
+
+class SurfaceLoads {
+public:
+  SurfaceLoads(const EdgeViscosity &viscosity, const FieldBlock &velocity, const FieldBlock &pressure,
+               const std::vector<Phase> &phases, const std::vector<const FieldBlock *> &labels,
+               const std::vector<SurfaceLoad> &loads)
+      : grid_(viscosity.grid),
+        stress_{viscosity, velocity, phases},
+        pressure_(pressure),
+        phases_(phases),
+        labels_(labels),
+        loads_(loads) {
+    for (std::size_t b = 0; b < loads.size(); ++b) {
+      index_.resize(std::max<std::size_t>(index_.size(), loads[b].label + 1), -1);
+      index_[loads[b].label] = static_cast<int>(b);
+    }
+  }
+
+  // The force along a that sigma_aa at a centre is, by the phi of the cells on both sides.
+  void add_centre(int a, const Int3 &cell, ExactSums *sums) const {
+    double stress = 0;
+    bool known = false;
+    for (std::size_t p = 0; p < phases_.size(); ++p) {
+      if (!labels_[p]) continue;
+      const ConstView phi = phases_[p].fraction[0];
+      const double *q = &phi(cell[0], cell[1], cell[2]);
+      const std::ptrdiff_t step = phi.stride(a);
+      if (q[step] == q[-step]) continue;
+      if (!std::exchange(known, true)) stress = stress_.normal(a, cell) - pressure_[0](cell[0], cell[1], cell[2]);
+      const double share = 0.5 * grid_.cell_volume() / grid_.spacing()[a] * stress;
+      for (const int side : {1, -1}) {
+        Int3 owner = cell;
+        owner[a] += side;
+        Real3 place{};
+        for (int d = 0; d < grid_.dimension(); ++d) place[d] = d == a ? -side : 0;
+        add(p, owner, place, a, -side * q[side * step] * share, sums);
+      }
+    }
+  }
+
+  // The forces along a and b that sigma_ab on the low edge of a cell is, by the phi of the four cells around.
+  void add_edge(int a, int b, const Int3 &cell, ExactSums *sums) const {
+    double stress = 0;
+    bool known = false;
+    for (std::size_t p = 0; p < phases_.size(); ++p) {
+      if (!labels_[p]) continue;
+      const ConstView phi = phases_[p].fraction[0];
+      const double *q = &phi(cell[0], cell[1], cell[2]);
+      const std::ptrdiff_t sa = phi.stride(a), sb = phi.stride(b);
+      if (q[0] == q[-sa] && q[0] == q[-sb] && q[0] == q[-sa - sb]) continue;
+      if (!std::exchange(known, true)) stress = stress_.shear(a, b, cell);
+      const double whole = 0.5 * grid_.cell_volume() * stress;
+      for (const int low_a : {0, 1})
+        for (const int low_b : {0, 1}) {
+          Int3 owner = cell;
+          owner[a] -= low_a;
+          owner[b] -= low_b;
+          Real3 place{};
+          place[a] = low_a - 0.5;
+          place[b] = low_b - 0.5;
+          const double part = whole * q[-low_a * sa - low_b * sb];
+          add(p, owner, place, a, (low_b ? part : -part) * volume_of_face(a, cell) / grid_.spacing()[b], sums);
+          add(p, owner, place, b, (low_a ? part : -part) * volume_of_face(b, cell) / grid_.spacing()[a], sums);
+        }
+    }
+  }
+
+private:
+  // In cells: a face on a side of the box has half of one.
+  double volume_of_face(int a, const Int3 &cell) const {
+    const int at = grid_.layout().begin[a] + cell[a];
+    return grid_.is_wall(a) && (at == 0 || at == grid_.cells()[a]) ? 0.5 : 1;
+  }
+
+  // `place`: of the force, in cells from the centre of the cell whose phi it comes from.
+  void add(std::size_t phase, const Int3 &cell, const Real3 &place, int a, double push, ExactSums *sums) const {
+    const auto label = static_cast<std::size_t>((*labels_[phase])[0](cell[0], cell[1], cell[2]));
+    if (push == 0 || label >= index_.size() || index_[label] < 0) return;
+    const int first = per_body * index_[label];
+    Real3 arm{}, force{};
+    for (int d = 0; d < grid_.dimension(); ++d) {
+      const double h = grid_.spacing()[d], length = grid_.spec().length[d];
+      arm[d] = (grid_.layout().begin[d] + cell[d] + 0.5) * h - loads_[index_[label]].centre[d];
+      if (!grid_.is_wall(d)) arm[d] -= length * std::round(arm[d] / length);
+      arm[d] += place[d] * h;
+    }
+    force[a] = push;
+    sums->add(first + a, push);
+    for (int d = 0; d < 3; ++d) {
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+      if (e == a || g == a) sums->add(first + 3 + d, arm[e] * force[g] - arm[g] * force[e]);
+    }
+  }
+
+  const Grid &grid_;
+  WholeStress stress_;
+  const FieldBlock &pressure_;
+  const std::vector<Phase> &phases_;
+  const std::vector<const FieldBlock *> &labels_;
+  const std::vector<SurfaceLoad> &loads_;
+  std::vector<int> index_;  ///< of every label
+};
+
+}  // namespace
+
+PetscErrorCode measure_surface_loads(const EdgeViscosity &viscosity, const FieldBlock &velocity,
+                                     const FieldBlock &pressure, const std::vector<Phase> &phases,
+                                     const std::vector<const FieldBlock *> &labels, std::vector<SurfaceLoad> *loads) {
+  PetscFunctionBeginUser;
+  if (loads->empty()) PetscFunctionReturn(0);
+  const VerbScope scope(Verb::sums);
+  const Grid &grid = viscosity.grid;
+  const SurfaceLoads surface(viscosity, velocity, pressure, phases, labels, *loads);
+  ExactSums sums(per_body * static_cast<int>(loads->size()));
+  for (int a = 0; a < grid.dimension(); ++a) {
+    for (const Segment &row : grid.rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) surface.add_centre(a, {i, row.j, row.k}, &sums);
+    for (int b = a + 1; b < grid.dimension(); ++b)
+      for (int k = 0; k < grid.points_end(2, b == 2); ++k)
+        for (int j = 0; j < grid.points_end(1, a == 1 || b == 1); ++j)
+          for (int i = 0; i < grid.points_end(0, a == 0); ++i) surface.add_edge(a, b, {i, j, k}, &sums);
+  }
+  std::vector<double> total(per_body * loads->size());
+  PetscCall(sums.reduce(grid.comm(), total.data()));
+  for (std::size_t b = 0; b < loads->size(); ++b)
+    for (int d = 0; d < 3; ++d) {
+      (*loads)[b].force[d] = total[per_body * b + d];
+      (*loads)[b].torque[d] = total[per_body * b + 3 + d];
+    }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
