@@ -23,8 +23,8 @@ void check(const GridSpec &spec) {
 
   PetscInt x, y, z, nx, ny, nz;
   ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
-  EXPECT_EQ(own.begin, (Int3{x, y, z}));
-  EXPECT_EQ(own.cells, (Int3{nx, ny, nz}));
+  EXPECT_EQ(own.begin, (Int3{int(x), int(y), int(z)}));
+  EXPECT_EQ(own.cells, (Int3{int(nx), int(ny), int(nz)}));
 
   const Layout mine = grid.layout_of(grid.rank());
   EXPECT_EQ(mine.begin, own.begin);
