@@ -32,6 +32,10 @@ void check(const GridSpec &spec) {
   EXPECT_EQ(mine.size, own.size);
   EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
 
+  const Grid planned = Grid::planned(spec, grid.ranks());
+  EXPECT_EQ(planned.layout_of(grid.rank()).begin, own.begin);
+  EXPECT_EQ(planned.layout_of(grid.rank()).size, own.size);
+
   // What layout_of says of another rank is what that rank says of itself.
   std::vector<int> sizes(grid.ranks());
   const int size = static_cast<int>(own.size);

@@ -103,3 +103,19 @@ TEST(CheckOnly, NoFlowIsSaid) {
   EXPECT_NE(let_go.find("but for what stretched bodies"), std::string::npos) << let_go;
   EXPECT_EQ(check_report(parse_line(rest + body).config, 1).find("but for"), std::string::npos);
 }
+
+// The largest case of Sugiyama et al., HPCS 2013, is judged whatever PetscInt is, and by one rank.
+TEST(CheckOnly, JudgesThePapersOwnSize) {
+  const ParseResult paper = parse_line("-time_end 1 -grid_cells 24576,5184,5120 -check_only -ranks 82944");
+  ASSERT_EQ(paper.error, "");
+  const std::string report = check_report(paper.config, 82944);
+  EXPECT_NE(report.find("= 652298158080\n"), std::string::npos) << report;
+  EXPECT_EQ(report.find("64-bit") != std::string::npos, sizeof(PetscInt) == 4) << report;
+  EXPECT_NE(report.find("\nV-cycle: "), std::string::npos) << report;
+  for (const char *other : {" -method classic", " -pressure_solver smac", " -acm_coarse false"}) {
+    const ParseResult without =
+        parse_line("-time_end 1 -grid_cells 64,64,64 -check_only -ranks 8" + std::string(other));
+    ASSERT_EQ(without.error, "") << other;
+    EXPECT_EQ(check_report(without.config, 8).find("V-cycle"), std::string::npos) << other;
+  }
+}
