@@ -5,6 +5,7 @@
 #include "field/open_sides.hpp"
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
+#include "pressure/multigrid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,9 @@ public:
       report.line("warning",
                   "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
                   double(std::numeric_limits<PetscInt>::max()));
+    if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.acm_of_the_paper() &&
+        config_.method.acm_coarse)
+      report.line("V-cycle", "%s", Multigrid::shares(Grid::planned(config_.grid, ranks)).c_str());
     const double bytes = bytes_per_rank(config_, parts);
     report.line("memory", "%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
                 1e-9 * bytes, 1e-9 * memory_limit());

@@ -40,6 +40,7 @@ PetscErrorCode GhostExchange::make_forest(int width, PetscSF *sf) {
   std::vector<Point> points[3];
   for (int d = 0; d < 3; ++d) points[d] = points_along(*grid_, d, std::min(width, own.ghosts[d]));
   if (by_rows()) points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
+  if (grid_->owned_count() == 0) points[2].clear();  // nothing is around no cells
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
   for (const Point &z : points[2])

@@ -27,8 +27,8 @@ class GhostExchange {
 public:
   explicit GhostExchange(const Grid &grid) : grid_(&grid) {}
 
-  /// Afterwards every ghost within `width` that is not behind a wall is right. In ghost rows those behind walls of x
-  /// and further out in x may have changed; all others are not touched.
+  /// Afterwards every ghost within `width` that is not behind a wall is right, on ranks that have cells. In ghost rows
+  /// those behind walls of x and further out in x may have changed; all others are not touched.
   PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
   /// The same of several blocks, whose messages are under way together, those of six fields at a time, or of one block.
   PetscErrorCode update(const std::vector<WantedGhosts> &wanted);

@@ -169,22 +169,35 @@ std::vector<Segment> Grid::rows() const {
   return rows;
 }
 
-PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
-  PetscFunctionBeginUser;
-  comm_ = comm;
+Grid Grid::planned(const GridSpec &spec, int ranks) {
+  Grid grid;
+  grid.divide(spec, ranks);
+  grid.layout_ = grid.make_layout({});
+  return grid;
+}
+
+void Grid::divide(const GridSpec &spec, int ranks) {
   spec_ = spec;
+  ranks_ = ranks;
   if (spec_.cells[2] == 1) spec_.boundary[2] = Boundary::periodic;
   for (int d = 0; d < 3; ++d)
     if (spec_.boundary[d] != Boundary::wall) spec_.open[d] = {};
-  PetscCallMPI(MPI_Comm_rank(comm, &rank_));
-  PetscCallMPI(MPI_Comm_size(comm, &ranks_));
-  const std::string reason = why_not(spec, ranks_);
-  PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
-  const Int3 ranks = decompose(spec, ranks_);
+  const Int3 parts = decompose(spec, ranks);
   for (int d = 0; d < 3; ++d) {
     spacing_[d] = spec.length[d] / spec.cells[d];
-    starts_[d] = split(spec.cells[d], ranks[d], d == 0);
+    starts_[d] = split(spec.cells[d], parts[d], d == 0);
   }
+}
+
+PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
+  int ranks;
+  PetscFunctionBeginUser;
+  comm_ = comm;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank_));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  const std::string reason = why_not(spec, ranks);
+  PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
+  divide(spec, ranks);
   PetscCall(create_dm(DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));
   Int3 position;
   PetscCall(ask_dm(&position));
@@ -238,7 +251,6 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
   result.ranks_ = everywhere ? 1 : ranks_;
   result.spec_ = spec_;
   result.spec_.cells = cells;
-  Int3 position{};
   for (int d = 0; d < 3; ++d) {
     result.spacing_[d] = spec_.length[d] / cells[d];
     result.starts_[d] = {0};
@@ -246,11 +258,26 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
       const int stride = cells[d] < spec_.cells[d] ? 2 : 1;
       for (int p = 1; p < processors(d); ++p)
         result.starts_[d].push_back(std::min(cells[d], (starts_[d][p] + stride - 1) / stride));
-      position[d] = owner_along(d, layout_.begin[d]);
     }
     result.starts_[d].push_back(cells[d]);
   }
-  result.layout_ = result.make_layout(position);
+  result.layout_ = result.layout_of(result.rank_);
+  return result;
+}
+
+Grid Grid::joined(const std::array<bool, 3> &along) const {
+  Grid result = coarse(cells(), false);
+  for (int d = 0; d < 3; ++d) {
+    if (!along[d]) continue;
+    std::vector<int> &starts = result.starts_[d], holders;
+    for (int p = 0; p < processors(d); ++p)
+      if (starts[p] < starts[p + 1]) holders.push_back(p);
+    std::vector<bool> stays(processors(d), false);
+    for (std::size_t m = 0; m + 1 < holders.size(); m += 2) stays[holders[m]] = true;
+    for (int p = processors(d) - 1; p >= 0; --p)
+      if (!stays[p]) starts[p] = starts[p + 1];
+  }
+  result.layout_ = result.layout_of(rank_);
   return result;
 }
 

@@ -50,6 +50,9 @@ public:
   /// more ghosts, or by order) and makes
   /// the DMDA. Call `why_not` first: it explains in one line why a spec cannot be decomposed.
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
+  /// The first of so many ranks, as `create` would make it, without a DMDA or a communicator: for what depends on sizes
+  /// alone, at any number of ranks and cells. `why_not` must be empty.
+  static Grid planned(const GridSpec &spec, int ranks);
   /// Empty if `spec` fits on `ranks` ranks, else one sentence with the numbers.
   static std::string why_not(const GridSpec &spec, int ranks);
   /// Ranks per direction that `create` would use; {0,0,0} when impossible.
@@ -66,6 +69,9 @@ public:
   /// The same box in fewer cells, for multigrid, without a DM. Where a direction has fewer cells, ranks begin at half
   /// of their first cell, rounded up; a rank may end up with none. With `everywhere` every rank holds all of it.
   Grid coarse(const Int3 &cells, bool everywhere) const;
+  /// The same cells on fewer ranks, without a DM: in the directions named, of which several must have cells, every
+  /// second one that has some takes those of the next one too, the last one of two where one is left over.
+  Grid joined(const std::array<bool, 3> &along) const;
 
   MPI_Comm comm() const { return comm_; }
   const GridSpec &spec() const { return spec_; }
@@ -129,6 +135,7 @@ public:
   int faces_end(int a, int d) const { return layout_.cells[d] + (a == d && touches_high(d)); }
 
 private:
+  void divide(const GridSpec &spec, int ranks);
   PetscErrorCode ask_dm(Int3 *place);
   Layout make_layout(const Int3 &position) const;
 

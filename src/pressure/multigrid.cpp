@@ -5,6 +5,7 @@
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace eulastic {
 
@@ -19,6 +20,26 @@ namespace {
 
 const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 0.8, 1.6}};
 constexpr double gathered_cells = 4096;  // from here on messages cost more than cells
+
+std::unique_ptr<MultigridLevel> finest(const Grid &grid) {
+  MultigridLevel::Widths equal;
+  for (int d = 0; d < 3; ++d) equal[d].assign(grid.cells()[d], 1.0);
+  return std::make_unique<MultigridLevel>(grid.coarse(grid.cells(), false), equal, grid.spacing());
+}
+
+// Half the cells; or the same on every rank, where they are few, or on fewer ranks, where half of them are too few for
+// one.
+std::unique_ptr<MultigridLevel> after(const MultigridLevel &fine) {
+  std::unique_ptr<MultigridLevel> next = fine.coarser();
+  if (fine.grid().ranks() == 1) return next;
+  if (fine.grid().cell_count() <= gathered_cells) return fine.everywhere();
+  const std::array<bool, 3> thin = fine.thin(*next);
+  return thin[0] || thin[1] || thin[2] ? fine.joined(thin) : std::move(next);
+}
+
+bool same_cells(const MultigridLevel &level, const MultigridLevel &next) {
+  return level.grid().cells() == next.grid().cells();
+}
 
 template <int Dim>
 EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, ConstView r, int n, const RowPart &part,
@@ -129,44 +150,55 @@ EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, const S
   stages_of_task<3>(pass, order, task);
 }
 
-// Calls f(values of owned row, its place in x-fastest order) on every owned row.
-template <class F>
-void each_row(const Int3 &n, const F &f) {
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) f(j, k, n[0] * (j + std::ptrdiff_t(n[1]) * k));
-}
-
 }  // namespace
 
-// By cells: the finest level may also be the one that every rank holds.
+// By cells: the finest level may also be one on other ranks.
 const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level) const {
   return level.grid().cells() == levels_[0]->grid().cells() ? on_finest : on_coarse;
 }
 
+std::vector<Multigrid::Level> Multigrid::plan(const Grid &grid) {
+  std::vector<Level> levels;
+  levels.push_back(finest(grid));
+  while (!levels.back()->single_cell()) levels.push_back(after(*levels.back()));
+  return levels;
+}
+
+std::string Multigrid::shares(const Grid &grid) {
+  const std::vector<Level> levels = plan(grid);
+  double joined = 0, gathered = 0;  // cells of the largest levels that are
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    if (!same_cells(*levels[l - 1], *levels[l])) continue;
+    double &cells = levels[l]->grid().ranks() == 1 ? gathered : joined;
+    cells = std::max(cells, levels[l]->grid().cell_count());
+  }
+  char fewer[80] = "", text[240];
+  if (joined > 0) std::snprintf(fewer, sizeof fewer, ", on fewer ranks from %.0f cells on", joined);
+  std::snprintf(text, sizeof text, "%zu levels%s; the one of %.0f cells goes to every rank, %.4g MB each time",
+                levels.size(), fewer, gathered, 1e-6 * sizeof(double) * gathered);
+  return text;
+}
+
 PetscErrorCode Multigrid::create(const Grid &grid) {
   PetscFunctionBeginUser;
-  MultigridLevel::Widths equal;
-  for (int d = 0; d < 3; ++d) equal[d].assign(grid.cells()[d], 1.0);
-  levels_.clear();
-  levels_.push_back(std::make_unique<MultigridLevel>(grid.coarse(grid.cells(), false), equal, grid.spacing()));
+  levels_ = plan(grid);
   flops_ = 0;
-  while (!levels_.back()->single_cell()) {
-    MultigridLevel &fine = *levels_.back();
+  for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+    MultigridLevel &fine = *levels_[l], &next = *levels_[l + 1];
     const double owned = fine.grid().owned_count(), dim = fine.grid().dimension();
-    Level next = fine.coarser();
-    if (fine.grid().ranks() > 1 && (fine.grid().cell_count() <= gathered_cells || !next->well_shared())) {
-      next = fine.everywhere();
+    if (same_cells(fine, next)) {
+      fine.agglomeration = std::make_unique<Agglomeration>();
+      PetscCall(fine.agglomeration->create(fine.grid(), next.grid()));
     } else {
-      for (int d = 0; d < 3; ++d) fine.lines[d] = fine.transfer(*next, d);
+      for (int d = 0; d < 3; ++d) fine.lines[d] = fine.transfer(next, d);
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
     if (dim == 3)
       fine.depth = StagePass::depth(fine.grid(), Sides(fine.grid()), 1, 1 + int(relaxations(fine).after.size()));
-    next->rhs = FieldBlock(next->grid(), 1);
-    next->solution = FieldBlock(next->grid(), 1);
-    next->scratch = FieldBlock(next->grid(), 1);
-    levels_.push_back(std::move(next));
+    next.rhs = FieldBlock(next.grid(), 1);
+    next.solution = FieldBlock(next.grid(), 1);
+    next.scratch = FieldBlock(next.grid(), 1);
   }
   PetscFunctionReturn(0);
 }
@@ -199,15 +231,14 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
     PetscFunctionReturn(0);
   }
   MultigridLevel &next = *levels_[l + 1];
-  const bool gathers = next.grid().ranks() < level.grid().ranks();
-  if (gathers)
-    PetscCall(gather(level, next, rhs));
+  if (level.agglomeration)
+    PetscCall(level.agglomeration->forward(rhs, next.rhs));
   else
     restrict_residual(level, rhs, next);
   PetscCall(next.exchange().update(next.rhs, halo_of(next)));
   PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch, {}));
-  if (gathers)
-    take_part(level, next, solution);
+  if (level.agglomeration)
+    PetscCall(level.agglomeration->backward(next.solution, solution));
   else
     PetscCall(smooth(level, next, rhs, solution, scratch, rows_done));
   PetscFunctionReturn(0);
@@ -240,56 +271,23 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
                     fine.grid().is_open(0, true) && fine.grid().touches_high(0) ? fine.grid().owned()[0] : -1,
                     &rows_done};
     const StagePass order(fine.grid(), sides, depth + reports, 1, reports ? -1 : 0);
-    order.for_tasks([&](const StagePass::Task &task) {
-      (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
-    });
+    if (fine.has_cells())
+      order.for_tasks([&](const StagePass::Task &task) {
+        (fine.grid().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
+      });
     if (depth % 2) solution.swap(scratch);
   }
   PetscFunctionReturn(0);
 }
 
 void Multigrid::restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse) {
+  if (!coarse.has_cells()) return;
   const double factor = relaxations(fine).before * fine.step();
   const int parts = row_parts(fine.grid()), n = coarse.grid().owned()[0];
   in_parallel(parts, parts, [&](int part) {
     const RowScratch sum(fine.grid(), 1);
     (fine.grid().dimension() == 2 ? restrict_2d : restrict_3d)(
         fine, factor, rhs[0], n, row_part(coarse.grid(), part, parts), coarse.rhs[0], sum.row(0));
-  });
-}
-
-PetscErrorCode Multigrid::gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs) {
-  PetscFunctionBeginUser;
-  const Grid &grid = level.grid();
-  if (counts_.empty()) {
-    for (int rank = 0; rank < grid.ranks(); ++rank) {
-      const Int3 n = grid.layout_of(rank).cells;
-      displacements_.push_back(rank ? displacements_.back() + counts_.back() : 0);
-      counts_.push_back(n[0] * n[1] * n[2]);
-    }
-    packed_.resize(counts_[grid.rank()]);
-    gathered_.resize(displacements_.back() + counts_.back());
-  }
-  const Int3 own = grid.owned();
-  each_row(own, [&](int j, int k, std::ptrdiff_t at) { std::copy_n(rhs[0].row(j, k), own[0], packed_.data() + at); });
-  PetscCallMPI(MPI_Allgatherv(packed_.data(), counts_[grid.rank()], MPI_DOUBLE, gathered_.data(), counts_.data(),
-                              displacements_.data(), MPI_DOUBLE, grid.comm()));
-  for (int rank = 0; rank < grid.ranks(); ++rank) {
-    const Layout theirs = grid.layout_of(rank);
-    const double *from = gathered_.data() + displacements_[rank];
-    each_row(theirs.cells, [&](int j, int k, std::ptrdiff_t at) {
-      std::copy_n(from + at, theirs.cells[0],
-                  whole.rhs[0].row(theirs.begin[1] + j, theirs.begin[2] + k) + theirs.begin[0]);
-    });
-  }
-  PetscFunctionReturn(0);
-}
-
-void Multigrid::take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const {
-  const Layout &own = level.grid().layout();
-  each_row(own.cells, [&](int j, int k, std::ptrdiff_t) {
-    double *row = solution[0].row(j, k);
-    std::copy_n(whole.solution[0].row(own.begin[1] + j, own.begin[2] + k) + own.begin[0], own.cells[0], row);
   });
 }
 

@@ -4,7 +4,8 @@
 //
 // One relaxation before the coarse grid (never stored: it is folded into the restriction), a few after it with the
 // steps of a Chebyshev polynomial; restriction by volume, linear interpolation; directions of unequal spacing are
-// halved one after the other. Small levels are gathered and continued by every rank for itself, down to one cell.
+// halved one after the other. Levels with too few cells for each rank are joined on fewer ranks, small ones gathered
+// and continued by every rank for itself, down to one cell.
 #pragma once
 
 #include "pressure/multigrid_level.hpp"
@@ -31,7 +32,12 @@ public:
   /// Floating-point operations of one cycle on this rank.
   double flops() const { return flops_; }
   std::size_t bytes() const;
-  int levels() const { return static_cast<int>(levels_.size()); }
+  /// The levels of a grid, the finest first, without fields: each has half the cells of the one before it or, while
+  /// these are too few for a rank, the same cells on fewer ranks, in the end all of them on every rank. `grid` may be
+  /// Grid::planned.
+  static std::vector<std::unique_ptr<MultigridLevel>> plan(const Grid &grid);
+  /// How the levels of plan() are shared, for people: how many there are, and the cells from which on ranks are joined.
+  static std::string shares(const Grid &grid);
   struct Relaxations;
 
 private:
@@ -40,15 +46,11 @@ private:
                        const RowsDone &rows_done);
   const Relaxations &relaxations(const MultigridLevel &level) const;
   static int halo_of(const MultigridLevel &level);
-  PetscErrorCode gather(MultigridLevel &level, MultigridLevel &whole, const FieldBlock &rhs);
-  void take_part(const MultigridLevel &level, const MultigridLevel &whole, FieldBlock &solution) const;
   void restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse);
   PetscErrorCode smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs, FieldBlock &solution,
                         FieldBlock &scratch, const RowsDone &rows_done);
 
-  std::vector<Level> levels_;              ///< the finest first
-  std::vector<double> packed_, gathered_;  ///< owned cells of the gathered level, of one rank and of all
-  std::vector<int> counts_, displacements_;
+  std::vector<Level> levels_;  ///< the finest first
   double flops_ = 0;
 };
 

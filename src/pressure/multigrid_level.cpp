@@ -80,13 +80,23 @@ std::unique_ptr<MultigridLevel> MultigridLevel::everywhere() const {
   return std::make_unique<MultigridLevel>(grid_.coarse(grid_.cells(), true), widths_, finest_spacing_);
 }
 
-bool MultigridLevel::well_shared() const {
-  for (int rank = 0; rank < grid_.ranks(); ++rank) {
-    const Int3 owned = grid_.layout_of(rank).cells;
-    for (int d = 0; d < 3; ++d)
-      if (grid_.processors(d) > 1 && owned[d] < 2) return false;
+std::unique_ptr<MultigridLevel> MultigridLevel::joined(const std::array<bool, 3> &along) const {
+  return std::make_unique<MultigridLevel>(grid_.joined(along), widths_, finest_spacing_);
+}
+
+std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
+  std::array<bool, 3> result{};
+  for (int d = 0; d < 3; ++d) {
+    int holders = 0, least = coarse.grid_.cells()[d];
+    for (int p = 0; p < grid_.processors(d); ++p) {
+      const auto cells = [&](const Grid &grid) { return grid.first_cell(d, p + 1) - grid.first_cell(d, p); };
+      if (cells(grid_) == 0) continue;
+      ++holders;
+      least = std::min(least, cells(coarse.grid_));
+    }
+    result[d] = holders > 1 && least < 2;
   }
-  return true;
+  return result;
 }
 
 LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const {

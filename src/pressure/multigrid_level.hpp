@@ -4,6 +4,7 @@
 
 #include "field/ghost_exchange.hpp"
 #include "kernels/poisson.hpp"
+#include "pressure/agglomeration.hpp"
 
 namespace eulastic {
 
@@ -58,14 +59,17 @@ public:
   std::unique_ptr<MultigridLevel> coarser() const;
   /// The same cells, all of them on every rank.
   std::unique_ptr<MultigridLevel> everywhere() const;
-  /// Whether every rank has at least two cells in every direction that is still divided.
-  bool well_shared() const;
+  /// The same cells on fewer ranks: Grid::joined.
+  std::unique_ptr<MultigridLevel> joined(const std::array<bool, 3> &along) const;
+  /// In which directions, of those that several ranks share, one of them would have fewer than two cells of `coarse`.
+  std::array<bool, 3> thin(const MultigridLevel &coarse) const;
   /// The transfer to `coarse` along direction d.
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 
   FieldBlock rhs, solution, scratch;  ///< empty until allocated: the finest level works on its caller's
   int depth = 1;                      ///< stages of a pass of smoothing
-  std::array<LineTransfer, 3> lines;  ///< to the next level
+  std::array<LineTransfer, 3> lines;  ///< to the next level, if that has fewer cells
+  std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if that has the same cells on other ranks
 
 private:
   Grid grid_;

@@ -34,10 +34,10 @@ Partition Partition::complete(int direction, int other) const {
   return result;
 }
 
-PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, const Partition &to, int direction) {
+PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, const Partition &to) {
   int me;
   PetscFunctionBeginUser;
-  if (from.parts(direction) == 1) PetscFunctionReturn(0);
+  if (from == to) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(comm, &me));
   const Box &mine = to.box(me);
   std::vector<PetscSFNode> roots(mine.size());

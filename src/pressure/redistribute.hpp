@@ -1,4 +1,5 @@
-// Boxes of cells, one per rank, and the moves between two such partitions: from the grid's own to complete lines.
+// Boxes of cells, one per rank, and the moves between two such partitions: from the grid's own to complete lines, or to
+// fewer ranks.
 #pragma once
 
 #include "grid/grid.hpp"
@@ -7,6 +8,7 @@ namespace eulastic {
 
 struct Box {
   Int3 begin{}, cells{};  ///< global; stored x fastest, without ghosts
+  bool operator==(const Box &other) const noexcept { return begin == other.begin && cells == other.cells; }
   std::ptrdiff_t size() const noexcept { return std::ptrdiff_t(cells[0]) * cells[1] * cells[2]; }
   std::ptrdiff_t offset(int i, int j, int k) const noexcept {
     return (i - begin[0]) + cells[0] * ((j - begin[1]) + std::ptrdiff_t(cells[1]) * (k - begin[2]));
@@ -23,8 +25,7 @@ public:
   Partition complete(int direction, int other) const;
   const Box &box(int rank) const { return boxes_[rank]; }
   int ranks() const { return static_cast<int>(boxes_.size()); }
-  /// Ranks along a direction.
-  int parts(int direction) const { return parts_[direction]; }
+  bool operator==(const Partition &other) const { return boxes_ == other.boxes_; }
 
 private:
   Int3 cells_{}, parts_{};
@@ -35,9 +36,8 @@ private:
 /// Moves the values of one partition to another and back, one PetscSF for both.
 class Redistribution {
 public:
-  /// Collective. Without effect, and free, when `from` is complete along `direction` already; else `to` is
-  /// from.complete(direction, ...).
-  PetscErrorCode create(MPI_Comm comm, const Partition &from, const Partition &to, int direction);
+  /// Collective. Without effect, and free, when both are the same.
+  PetscErrorCode create(MPI_Comm comm, const Partition &from, const Partition &to);
   /// `values` in `from` become `values` in `to`; `other` is scratch. Both must hold the larger of the two boxes.
   PetscErrorCode forward(std::vector<double> &values, std::vector<double> &other);
   PetscErrorCode backward(std::vector<double> &values, std::vector<double> &other);

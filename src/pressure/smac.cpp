@@ -24,9 +24,9 @@ PetscErrorCode SmacSolver::set_up() {
   const bool flat = grid_->dimension() == 2;
   // Every move hands the cut to a direction whose lines are done or still to come, so that slabs move only once.
   const Partition own(*grid_), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
-  PetscCall(to_x_.create(grid_->comm(), own, x, 0));
-  PetscCall(to_z_.create(grid_->comm(), x, z, 2));
-  PetscCall(to_y_.create(grid_->comm(), z, y, 1));
+  PetscCall(to_x_.create(grid_->comm(), own, x));
+  PetscCall(to_z_.create(grid_->comm(), x, z));
+  PetscCall(to_y_.create(grid_->comm(), z, y));
   const int me = grid_->rank();
   box_x_ = x.box(me);
   box_z_ = z.box(me);

@@ -23,14 +23,18 @@ void check(const GridSpec &spec) {
 
   PetscInt x, y, z, nx, ny, nz;
   ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
-  EXPECT_EQ(own.begin, (Int3{x, y, z}));
-  EXPECT_EQ(own.cells, (Int3{nx, ny, nz}));
+  EXPECT_EQ(own.begin, (Int3{int(x), int(y), int(z)}));
+  EXPECT_EQ(own.cells, (Int3{int(nx), int(ny), int(nz)}));
 
   const Layout mine = grid.layout_of(grid.rank());
   EXPECT_EQ(mine.begin, own.begin);
   EXPECT_EQ(mine.cells, own.cells);
   EXPECT_EQ(mine.size, own.size);
   EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
+
+  const Grid planned = Grid::planned(spec, grid.ranks());
+  EXPECT_EQ(planned.layout_of(grid.rank()).begin, own.begin);
+  EXPECT_EQ(planned.layout_of(grid.rank()).size, own.size);
 
   // What layout_of says of another rank is what that rank says of itself.
   std::vector<int> sizes(grid.ranks());

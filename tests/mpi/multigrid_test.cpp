@@ -30,8 +30,9 @@ int differences(const Cycle &s, const Cycle &one) {
   const Layout &own = s.grid.layout();
   Int3 low{}, high{};
   for (int d = 0; d < 3; ++d) {
-    low[d] = s.grid.touches_low(d) ? 0 : -1;
-    high[d] = own.cells[d] + (s.grid.touches_high(d) ? 0 : 1);
+    const bool ghosts = d < s.grid.dimension();
+    low[d] = ghosts && !s.grid.touches_low(d) ? -1 : 0;
+    high[d] = own.cells[d] + (ghosts && !s.grid.touches_high(d));
   }
   for (int k = low[2]; k < high[2]; ++k)
     for (int j = low[1]; j < high[1]; ++j)
@@ -66,4 +67,30 @@ TEST(MultigridCycle, SameBitsOnAnyRanksThreadsAndStages) {
           }
     }
   EXPECT_EQ(deepest, 3);
+}
+
+// Three cells to a rank are too few for half of them, and the level too large for every rank.
+TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
+  int ranks = 0;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  for (int d = 0; d < 3; ++d)
+    for (const bool flat : {false, true}) {
+      if (flat && d == 2) continue;
+      Int3 cells = flat ? Int3{2048, 2048, 1} : Int3{64, 64, 64}, processors{1, 1, 1};
+      cells[d] = 3 * ranks;
+      processors[d] = ranks;
+      for (GridSpec &spec : all_boundaries(cells)) {
+        for (int c = 0; c < 3; ++c) spec.length[c] = cells[c];
+        const Cycle one(PETSC_COMM_SELF, spec);
+        spec.processors = processors;
+        const Cycle many(PETSC_COMM_WORLD, spec);
+        EXPECT_EQ(differences(many, one), 0) << name(spec) << "split along "
+                                             << "xyz"[d];
+        bool joined = false;
+        const auto levels = Multigrid::plan(many.grid);
+        for (std::size_t l = 1; l < levels.size(); ++l)
+          joined |= levels[l]->grid().cells() == levels[l - 1]->grid().cells() && levels[l]->grid().ranks() > 1;
+        EXPECT_EQ(joined, ranks > 1);
+      }
+    }
 }

@@ -208,3 +208,45 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   s.product[1][1] = std::nan("");
   EXPECT_TRUE(std::isnan(minimise(s).coefficient[0]));
 }
+
+// However many ranks there are: whoever halves has two cells left of a direction that is shared, no rank ever holds
+// more cells than of the finest level, and what goes to every rank is small.
+TEST(Multigrid, LevelsOnManyRanks) {
+  int joined = 0;
+  for (const auto &[cells, ranks] : {std::pair<Int3, int>{{24576, 5184, 5120}, 82944},
+                                     {{4096, 1024, 1024}, 8192},
+                                     {{1000, 700, 900}, 1001},
+                                     {{64, 64, 64}, 256},
+                                     {{64, 64, 64}, 27},
+                                     {{1024, 1024, 1}, 1024},
+                                     {{64, 64, 64}, 4}}) {
+    const Grid grid = Grid::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
+    const auto levels = Multigrid::plan(grid);
+    const auto most = [](const Grid &shared) {
+      double of_a_rank = 0;
+      for (int rank = 0; rank < shared.ranks(); ++rank) {
+        const Int3 n = shared.layout_of(rank).cells;
+        of_a_rank = std::max(of_a_rank, double(n[0]) * n[1] * n[2]);
+      }
+      return of_a_rank;
+    };
+    EXPECT_TRUE(levels.back()->single_cell());
+    for (std::size_t l = 1; l < levels.size(); ++l) {
+      const Grid &fine = levels[l - 1]->grid(), &next = levels[l]->grid();
+      if (next.ranks() == 1) {
+        EXPECT_LE(fine.cell_count(), 4096);
+        break;
+      }
+      EXPECT_EQ(next.ranks(), ranks);
+      EXPECT_LE(most(next), std::max(most(grid), 4096.0)) << next.cells()[0] << " x " << next.cells()[1];
+      joined += next.cells() == fine.cells();
+      for (int d = 0; d < 3; ++d)
+        for (int p = 0; next.cells() != fine.cells() && p < grid.processors(d); ++p) {
+          const int before = fine.first_cell(d, p + 1) - fine.first_cell(d, p);
+          const int after = next.first_cell(d, p + 1) - next.first_cell(d, p);
+          EXPECT_TRUE(before == 0 ? after == 0 : after >= 2 || before == fine.cells()[d]);
+        }
+    }
+  }
+  EXPECT_GE(joined, 6);
+}
