@@ -24,8 +24,8 @@ BoxSides rates_of(const BoxSides &sides, double time) {
   return rates;
 }
 
-// What cannot leave whole.
-bool is_held(const Phase &phase) { return !phase.label || phase.material.attached; }
+// What cannot leave whole, or stays where it is.
+bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_rigid(); }
 
 }  // namespace
 

@@ -117,6 +117,16 @@ class OpenSides(unittest.TestCase):
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(says, done.stderr)
 
+    def test_what_is_rigid_stays(self):
+        """A post beside the outlet is there when a disc has left."""
+        run = self.run_program("post", *(
+            "-grid_cells 48,32,1 -grid_length 1.5,1,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax outflow "
+            "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -fluid_viscosity .1 -species disc,post -disc_shape sphere "
+            "-disc_radius .15 -disc_shear_modulus 2 -disc_centre 1.1,.4,0 -post_shape sphere -post_radius .1 -post_law rigid "
+            "-post_centre 1.38,.88,0 -snapshot_interval .4 -time_end .4").split())
+        self.assertEqual([run.bodies.volume[-1, b] == 0 for b in (0, 1)], [True, False])
+        self.assertEqual(run.bodies.volume[-1, 1], run.bodies.volume[0, 1])
+
     def test_viscosity_that_hardly_varies_is_one_that_does_not(self):
         """Two forms of the viscous force beside each kind of side: they differ by the error of a time step, of second order."""
         scene = [*DEEP, *("-species ball -ball_shape sphere -ball_radius .3 -ball_centre .8,.6,.7 "

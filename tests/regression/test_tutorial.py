@@ -59,7 +59,7 @@ class Tutorial(unittest.TestCase):
         self.assertEqual([name for before, _ in found if (name := file_name(before))], ["pair.csv", "pair.opts", "vessel.opts"])
         self.assertEqual(sum(is_python(block) for _, block in found), 2)
         typed = [line for before, block in found if not file_name(before) for line in commands(block)]
-        self.assertEqual(sum(line.startswith("scripts/run ") for line in typed), 5)
+        self.assertEqual(sum(line.startswith("scripts/run ") for line in typed), 7)
         self.assertIn("scripts/quickstart", typed)
 
 
