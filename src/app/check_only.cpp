@@ -308,8 +308,9 @@ private:
     double box = 1, free = 1;
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
     for (std::size_t s = 0; s < config_.species.size(); ++s)
-      if (config_.species[s].material().attached || config_.species[s].law == Law::rigid)
-        free -= count_and_volume(s).first * count_and_volume(s).second / box;
+      if (const auto [count, volume] = count_and_volume(s);
+          config_.species[s].material().attached || config_.species[s].law == Law::rigid)
+        free -= count * volume / box;
     const Real3 given = inflow_speed(config_.sides);
     for (int d = 0; d < dimension_ && free > 0; ++d) {
       const double speed = 2 * given[d] / free;

@@ -1,22 +1,18 @@
 #!/usr/bin/python3
 """Stretches that feed inflow sides: bodies and flow that pass their end come in again."""
-import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
+from scene_case import BINARY, SceneCase  # noqa: E402
 from read_run import Run  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 CHANNEL = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 -inflow_xmin_profile "
            "developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 -species disc -disc_shape sphere "
            "-interface_scheme plic -series_interval .05").split()
@@ -35,21 +31,7 @@ CAPSULE = ("-cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus
            "-cell_viscosity 2.5").split()
 
 
-class Feeders(unittest.TestCase):
-    def setUp(self):
-        room = tempfile.TemporaryDirectory()
-        self.addCleanup(room.cleanup)
-        self.room = pathlib.Path(room.name)
-
-    def run_program(self, name, *options, ranks=1):
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        directory = self.room / name
-        done = subprocess.run([*command, BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
-                              env=environment, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return Run(directory)
-
+class Feeders(SceneCase):
     def test_a_train_goes_on_where_it_came_in(self):
         """Each disc has the story of the one it was made like, a stretch behind: height and deformation. It keeps the volume."""
         for name, more in (("solid", SOLID), ("capsule", MEMBRANE)):

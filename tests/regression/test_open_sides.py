@@ -1,22 +1,17 @@
 #!/usr/bin/python3
 """Inflow, pressure and outflow sides: a published flow, what comes in goes out, the same on any ranks and after a restart."""
-import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from scene_case import BINARY, SceneCase  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 # Two ways in, one of them a pulse, two ways out, and walls that hold the fluid: in 2-D and in 3-D.
 FLAT = ("-grid_cells 50,34,1 -grid_length 5,3.4,1 -boundary_xmin inflow -boundary_xmax outflow -boundary_ymin wall "
         "-boundary_ymax pressure -inflow_xmin_velocity 1 -inflow_xmin_frequency 3 -fluid_viscosity 0.05").split()
@@ -31,21 +26,7 @@ def points_of_zero(x, values):
     return x[at] - values[at] * (x[at + 1] - x[at]) / (values[at + 1] - values[at])
 
 
-class OpenSides(unittest.TestCase):
-    def setUp(self):
-        room = tempfile.TemporaryDirectory()
-        self.addCleanup(room.cleanup)
-        self.room = pathlib.Path(room.name)
-
-    def run_program(self, name, *options, ranks=1):
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        directory = self.room / name
-        done = subprocess.run([*command, BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
-                              env=environment, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return Run(directory)
-
+class OpenSides(SceneCase):
     def test_same_on_any_ranks_and_threads_and_after_a_restart(self):
         for scene, end in ((FLAT, ".6"), (DEEP, ".2")):
             for solver in ("acm", "smac"):

@@ -4,18 +4,15 @@
 Needs EULASTIC.
 """
 import math
-import os
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from scene_case import SceneCase  # noqa: E402
 
 RADIUS, CELLS = 0.385, 26  # 20 cells across
 TUBE = (f"-grid_cells 8,{CELLS},{CELLS} -grid_length {8 / CELLS},1,1 -boundary_y wall -boundary_z wall -species vessel "
@@ -26,20 +23,10 @@ RIGID, ELASTIC = ("-vessel_law", "rigid"), ("-vessel_shear_modulus", "10")
 FLOW = math.pi * RADIUS ** 4 / 8
 
 
-class Vessels(unittest.TestCase):
-    def setUp(self):
-        room = tempfile.TemporaryDirectory()
-        self.addCleanup(room.cleanup)
-        self.room = pathlib.Path(room.name)
-
+class Vessels(SceneCase):
     def run_with(self, *words, ranks=1):
         last = dict(zip(words[::2], words[1::2]))  # of an option that is given twice the last one counts
-        command = [os.environ.get("EULASTIC_MPIEXEC", "mpiexec"), "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        done = subprocess.run([*command, os.environ["EULASTIC"], *(word for pair in last.items() for word in pair), "-output_dir",
-                               self.room / "run", "-output_overwrite"], capture_output=True, text=True,
-                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return Run(self.room / "run")
+        return self.run_program(str(len(list(self.room.iterdir()))), *(word for pair in last.items() for word in pair), ranks=ranks)
 
     def test_flow_rate_and_apparent_viscosity_of_a_tube(self):
         for law in (RIGID, ELASTIC):

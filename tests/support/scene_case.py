@@ -1,0 +1,33 @@
+"""Scenes given by their options, run in a room of the test's own.
+
+Needs EULASTIC=path of the binary and, for more ranks than one, EULASTIC_MPIEXEC.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+from read_run import Run  # noqa: E402
+
+BINARY = os.environ["EULASTIC"]
+MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+
+
+class SceneCase(unittest.TestCase):
+    def setUp(self):
+        room = tempfile.TemporaryDirectory()
+        self.addCleanup(room.cleanup)
+        self.room = pathlib.Path(room.name)
+
+    def run_program(self, name, *options, ranks=1):
+        """The Run in self.room / name, which must end well."""
+        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        directory = self.room / name
+        done = subprocess.run([*command, BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
+                              env=environment, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return Run(directory)
