@@ -115,9 +115,6 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
     return law + "a shape to start from, and cannot be read from -initial_state";
-  if (spec.initial_stretch != Real3{1, 1, 1})
-    return "-" + spec.name + "_initial_stretch: has no meaning for a membrane; accepted: -" + spec.name +
-           "_initial_area_stretch";
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: nothing bends back to it; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
@@ -175,7 +172,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
     return wrong;
   for (const auto check : {check_membrane, check_rigid})
     if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
-  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().elastic())
+  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())
     return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
            spec.name + "_shear_modulus > 0";
   if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)

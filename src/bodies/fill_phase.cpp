@@ -79,7 +79,7 @@ template <class PhaseOf>
 void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
                   PhaseOf phase_of) {
   const Real3 &l = spec.initial_stretch;
-  if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().elastic()) return;
+  if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
   const Surface surface(spec, grid.dimension());
   const auto &components = tensor_components(grid.dimension());
   for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
@@ -92,9 +92,11 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<B
       double turned = 0;
       for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
       const View B = phase.tensor[static_cast<int>(c)], label = phase.label[0];
-      for_points_of(grid, body, components[c].staggering(), [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
+      const bool centred = x == y || spec.is_membrane();
+      const Staggering at = staggering_of(components[c], spec.is_membrane());
+      for_points_of(grid, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
-        if (x == y) {
+        if (centred) {
           if (label(p[0], p[1], p[2]) == first_label + double(b)) value = turned;
           return;
         }
@@ -124,7 +126,7 @@ std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spe
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   phase->tensor = tensor_at_rest(grid);
-  if (!phase->material.elastic()) return;
+  if (!phase->material.carries_tensor()) return;
   const auto &components = tensor_components(grid.dimension());
   const ConstView fraction = phase->fraction[0];
   for (std::size_t c = 0; c < components.size(); ++c) {

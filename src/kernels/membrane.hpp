@@ -68,6 +68,27 @@ EULASTIC_INLINE Tensor<Dim> turn(const Tensor<Dim> &B, const Vector<Dim> &from, 
   return out;
 }
 
+/// F P_0 F^T of a surface with the normal n in a body with B = F F^T, P_0 that of the surface before F: B less what F makes
+/// of its normal there, which lies along B n. Exactly P where B is 1.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> surface_part(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
+  Vector<Dim> Bn{};
+  double nBn = 0;
+  bool rest = true;
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b) {
+      Bn[a] = fma(B[a][b], n[b], Bn[a]);
+      rest = rest && B[a][b] == (a == b ? 1 : 0);
+    }
+    nBn = fma(n[a], Bn[a], nBn);
+  }
+  if (rest) return tangential<Dim>(n);
+  Tensor<Dim> out;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) out[a][b] = B[a][b] - Bn[a] * Bn[b] / nBn;
+  return out;
+}
+
 /// J^2 and tr B_s, those of the third direction in 2-D included.
 struct SurfaceStrain {
   double trace, area_squared;

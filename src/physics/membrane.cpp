@@ -111,15 +111,16 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
   for (std::size_t c = 0; c < surface_.nearest(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
-    const auto set = [&](auto P) {
-      for (auto &row : P)
-        for (double &value : row) value *= stretch;
-      return P;
+    const auto set = [&](auto dim) {
+      Tensor<dim> value = kernels::surface_part<dim>(tensor_at<dim>(phase->tensor, cell.at), normal_of<dim>(cell.normal));
+      for (auto &row : value)
+        for (double &entry : row) entry *= stretch;
+      set_tensor<dim>(phase->tensor, cell.at, value);
     };
     if (grid_->dimension() == 2)
-      set_tensor<2>(phase->tensor, cell.at, set(kernels::tangential<2>(normal_of<2>(cell.normal))));
+      set(std::integral_constant<int, 2>());
     else
-      set_tensor<3>(phase->tensor, cell.at, set(kernels::tangential<3>(normal_of<3>(cell.normal))));
+      set(std::integral_constant<int, 3>());
   }
   PetscCall(surface_.extend(*phase, phase->tensor));
   PetscFunctionReturn(0);

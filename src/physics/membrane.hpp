@@ -22,11 +22,11 @@ public:
   /// Ghosts of the velocity that `advance` reads.
   static constexpr int velocity_ghosts = 4;
   /// Of the work space, during each call.
-  static constexpr int work_fields(int dimension) { return 1 + (dimension == 2 ? MembraneBending::work_fields : 6); }
+  static constexpr int work_fields(int dimension) { return 2 + (dimension == 2 ? MembraneBending::work_fields : 6); }
 
   /// `drifts`: as of SurfaceTension, for bending.
   MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
-      : grid_(&grid), work_(&work), surface_(grid, exchange), bending_(grid, exchange), drifts_(drifts) {}
+      : grid_(&grid), work_(&work), exchange_(&exchange), surface_(grid, exchange), bending_(grid, exchange), drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
   /// B_s of an undeformed membrane, or one stretched alike in all directions. Five ghosts of phi, here and below.
@@ -56,6 +56,7 @@ private:
 
   const Grid *grid_;
   WorkSpace *work_;
+  GhostExchange *exchange_;
   SurfaceCells surface_;     ///< of the phase that is worked on
   MembraneBending bending_;  ///< the same
   bool drifts_;

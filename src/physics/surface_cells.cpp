@@ -5,6 +5,8 @@
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/tensor.hpp"
+#include "kernels/bending.hpp"
+#include <cmath>
 #include "physics/membrane_tensor.hpp"
 #include "physics/smooth_row.hpp"
 
@@ -95,11 +97,25 @@ SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const
     }
   };
   normalise(gradient);
-  const double slope = width > 0 ? (u * u < 3 ? 1 - u * u : -2) / (6 * width) : 0;
-  for (int d = 0; d < 3; ++d) gradient[d] /= 1 - slope * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
+  const double uu = std::min(u * u, 3.0), slope = (1 - uu) / 6, bend = kernels::fma(uu - 6, uu, 3.0) / 120;
+  for (int d = 0; d < 3 && width > 0; ++d) {
+    const double q = (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]) / width;
+    gradient[d] /= kernels::fma(q, kernels::fma(q, bend, -slope), 1);
+  }
   const double unmended = cell.delta;
   normalise(gradient);
   cell.delta = unmended;
+  {
+    static const double al = getenv("EUL_AL") ? atof(getenv("EUL_AL")) : 0, be = getenv("EUL_BE") ? atof(getenv("EUL_BE")) : 0;
+    const auto F = [&](double q) {
+      const double v = kernels::surface_level(q), N = std::exp(-v * v / 2) / root_two_pi;
+      return q - (al * v - be * (v * v - 3) * v) * N;
+    };
+    double sum = 0;
+    for (int d = 0; d < grid_->dimension(); ++d)
+      sum += cell.normal[d] * (F(p[-psi.stride(d)]) - F(p[psi.stride(d)])) / (2 * h[d]);
+    cell.spread = sum;
+  }
   cell.distance = u * __builtin_sqrt(width);
   cell.owned = true;
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];

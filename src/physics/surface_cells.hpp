@@ -17,6 +17,7 @@ public:
     Real3 normal;       ///< outward, unit
     double distance;    ///< from the surface, positive outside
     double delta;       ///< of the surface, 1/length
+    double spread;      ///< delta that the force is spread with
     int layer;          ///< 0: nearest
     bool owned;
   };
