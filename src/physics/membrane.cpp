@@ -103,9 +103,9 @@ bool MembraneTransport::exists(const std::vector<Phase> &phases) {
 
 PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscFunctionBeginUser;
-  WorkSpace::Lease psi;
-  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
-  PetscCall(surface_.find(*phase, psi.fields()));
+  WorkSpace::Lease surface;
+  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+  PetscCall(surface_.find(*phase, surface.fields()));
   const double area = phase->material.membrane.initial_area_stretch;
   const double stretch = grid_->dimension() == 2 ? area * area : area;  // squared, of lengths
   for (std::size_t c = 0; c < surface_.nearest(); ++c) {
@@ -128,9 +128,9 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
 
 PetscErrorCode MembraneTransport::extend(Phase *phase) {
   PetscFunctionBeginUser;
-  WorkSpace::Lease psi;
-  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
-  PetscCall(surface_.find(*phase, psi.fields()));
+  WorkSpace::Lease surface;
+  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+  PetscCall(surface_.find(*phase, surface.fields()));
   PetscCall(surface_.extend(*phase, phase->tensor));
   PetscFunctionReturn(0);
 }
@@ -166,10 +166,10 @@ void MembraneTransport::stage(double dt, const FieldBlock &velocity, bool second
 PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, Phase *phase) {
   PetscFunctionBeginUser;
   const int dim = grid_->dimension();
-  WorkSpace::Lease psi, lease;
-  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
+  WorkSpace::Lease surface, lease;
+  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(work_->take("first stage of B_s", phase->tensor.count(), &lease));
-  PetscCall(surface_.find(*phase, psi.fields()));
+  PetscCall(surface_.find(*phase, surface.fields()));
   FieldBlock &next = lease.fields();
   for (const bool second : {false, true}) {
     {

@@ -22,7 +22,7 @@ public:
   /// Ghosts of the velocity that `advance` reads.
   static constexpr int velocity_ghosts = 4;
   /// Of the work space, during each call.
-  static constexpr int work_fields(int dimension) { return 2 + (dimension == 2 ? MembraneBending::work_fields : 6); }
+  static constexpr int work_fields = SurfaceCells::work_fields + 6;
 
   /// `drifts`: as of SurfaceTension, for bending.
   MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)

@@ -5,6 +5,7 @@
 #include "physics/membrane_tensor.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -20,6 +21,15 @@ Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
   const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
   const double area = kernels::area_energy(phase.material.membrane, strain), weight = cell.delta / state.area;
   return {weight * (state.energy - area), weight * area};
+}
+
+// Of the surface that curvatures are those of: a filter moves both, and what it does to the area makes up for the
+// curvature.
+double smoothed_delta(const Grid &grid, ConstView psi, std::ptrdiff_t at) {
+  const double *p = psi.origin + at;
+  Real3 g{};
+  for (int d = 0; d < grid.dimension(); ++d) g[d] = (p[psi.stride(d)] - p[-psi.stride(d)]) / (2 * grid.spacing()[d]);
+  return std::sqrt((g[0] * g[0] + g[1] * g[1]) + g[2] * g[2]);
 }
 
 Real3 centre_velocity(const FieldBlock &velocity, std::ptrdiff_t at) {
@@ -38,30 +48,33 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
   PetscFunctionBeginUser;
   enum Sum { power, stored, sums };
   const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
-  WorkSpace::Lease psi;
-  PetscCall(work_->take("smoothed solid fraction", 1, &psi));
-  PetscCall(surface_.find(phase, psi.fields()));
+  WorkSpace::Lease surface;
+  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+  PetscCall(surface_.find(phase, surface.fields()));
   std::vector<ExactSums> sum(row_parts(*grid_), ExactSums(sums));
   const double volume = grid_->cell_volume();
-  PetscCall(for_force_rows(phase, psi.fields()[0], 1, [&](int part, bool, int a, int j, int k, const double *force) {
-    std::vector<double> product(n);
-    const double *v = velocity[a].row(j, k);
-    for (int i = 0; i < n; ++i) product[i] = -force[i] * v[i];
-    sum[part].add_row(power, product.data(), n, first);
-  }));
+  PetscCall(for_force_rows(phase, surface.fields()[SurfaceCells::smoothed], 1,
+                           [&](int part, bool, int a, int j, int k, const double *force) {
+                             std::vector<double> product(n);
+                             const double *v = velocity[a].row(j, k);
+                             for (int i = 0; i < n; ++i) product[i] = -force[i] * v[i];
+                             sum[part].add_row(power, product.data(), n, first);
+                           }));
   VerbScope scope(Verb::sums);
   std::vector<double> bending(surface_.all().size(), 0.0);
   if (phase.material.membrane.bending_modulus > 0) {
     WorkSpace::Lease lease;
     PetscCall(work_->take("bending", MembraneBending::work_fields, &lease));
-    PetscCall(bending_.find(phase, psi.fields()[0], lease.fields()));
+    PetscCall(bending_.find(phase, surface.fields()[SurfaceCells::smoothed], lease.fields()));
     for (std::size_t c = 0; c < bending.size(); ++c) {
       const SurfaceCells::Cell &cell = surface_.all()[c];
-      if (cell.owned) bending[c] = cell.delta * MembraneBending::energy(phase.material, lease.fields(), cell.at);
+      if (cell.owned)
+        bending[c] = smoothed_delta(*grid_, surface.fields()[SurfaceCells::smoothed], cell.at) *
+                     MembraneBending::energy(phase.material, lease.fields(), cell.at);
     }
   }
   std::vector<int> label;
-  if (samples && phase.label) PetscCall(surface_.find_labels(phase, psi.fields(), &label));
+  if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface.fields(), &label));
   for (std::size_t c = 0; c < bending.size(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;

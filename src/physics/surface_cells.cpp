@@ -4,9 +4,9 @@
 #include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
-#include "kernels/tensor.hpp"
 #include "kernels/bending.hpp"
-#include <cmath>
+#include "kernels/exp.hpp"
+#include "kernels/tensor.hpp"
 #include "physics/membrane_tensor.hpp"
 #include "physics/smooth_row.hpp"
 
@@ -15,9 +15,23 @@
 namespace eulastic {
 namespace {
 
-constexpr double variance = 1.15;    // of filter and cell, in h^2
-constexpr double solid = 1e-5;       // a body's own cells have more, as labels do
-constexpr double negligible = 1e-6;  // of psi and 1 - psi
+constexpr double variance = 1.15;  // of filter and cell, in h^2; filtered once more: 1 more
+constexpr double solid = 1e-5;     // a body's own cells have more, as labels do
+constexpr double reach = 0.9;      // of the nearest cells, in cells across the surface
+constexpr double far = 4;          // levels are cut here, where the filter ends
+
+// The level of the surface itself: a filter moves a surface whose curvatures add up to kappa by half its variance times
+// kappa, twice the filter accordingly further. far - that, so that 0 is far outside.
+EULASTIC_CLONES void level_row(const double *once, const double *twice, int begin, int end, double *out) {
+  const double ratio = __builtin_sqrt((variance + 1) / variance);
+  constexpr double reliable = 3.3;
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    const double z = kernels::surface_level(once[i]), moved = z - ratio * kernels::surface_level(twice[i]);
+    const double x = __builtin_fabs(z) < reliable ? kernels::fma(variance, moved, z) : z;
+    out[i] = far - (x < -far ? -far : x > far ? far : x);
+  }
+}
 
 // Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
 template <int Dim>
@@ -62,61 +76,62 @@ void fill_point(const std::vector<SurfaceCells::Cell> &cells, const int *number,
   for (int f = 0; f < fields; ++f) tensor[f].origin[cell.at] = nested_sum<Dim>(values[f]) / sum;
 }
 
-// Within .9 of a cell across the surface.
-bool is_nearest(const SurfaceCells::Cell &cell, const Real3 &spacing) {
-  constexpr double reach = 0.9;
-  double width = 0;
-  for (int d = 0; d < 3; ++d) width = kernels::fma(cell.normal[d] * spacing[d], cell.normal[d] * spacing[d], width);
-  return cell.delta > 0 && cell.distance * cell.distance <= reach * reach * width;
+struct Steps {
+  double sharp, spread;  ///< from -1/2 to 1/2 across the surface
+};
+// The integral over x of the normal distribution N, in units of its width (Abramowitz and Stegun 26.2.17, 1e-7), and
+// that of N (1 + .9 (1 - x^2) + .1 (x^4 - 6 x^2 + 3)), whose integral with |x| is 0, and that with x^2 small.
+EULASTIC_INLINE Steps steps_at(double x) {
+  constexpr double peak = 0.3989422804014327, end = 2.4, whole = 0.5253405;  // of the second at the end
+  const double away = std::min(__builtin_fabs(x), far), xx = away * away, N = peak * kernels::exp(-0.5 * xx);
+  const double t = 1 / kernels::fma(0.2316419, away, 1.0);
+  double tail = 1.330274429;
+  for (const double c : {-1.821255978, 1.781477937, -0.356563782, 0.319381530}) tail = kernels::fma(tail, t, c);
+  const double sharp = kernels::fma(-N, tail * t, 0.5);
+  const double bent = kernels::fma(N * away, kernels::fma(-0.1, xx, 1.2), sharp);
+  const double spread = away < end ? bent * (0.5 / whole) : 0.5;
+  return {x < 0 ? -sharp : sharp, x < 0 ? -spread : spread};
 }
 
 }  // namespace
 
-// psi is (1 - erf)/2 of the distance over its width s: with y = sqrt(2 pi) (1/2 - psi) that is y + y^3/6 + 7/120 y^5 +
-// ... times s. Central differences are too small by (n_d h_d/s)^2 (1 - (distance/s)^2)/6, which turns normals towards
-// the axes; their size is right on the whole, as differences across a surface add up to 1.
-SurfaceCells::Cell SurfaceCells::cell_at(ConstView psi, const Int3 &place) const {
-  constexpr double root_two_pi = 2.5066282746310002;
+// Differences of the steps add up to 1 across a surface. Those of the sharp one are too small by
+// (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which turns normals towards the axes.
+SurfaceCells::Cell SurfaceCells::cell_at(ConstView levels, const Int3 &place) const {
   Cell cell{};
   cell.place = place;
-  cell.at = place[0] + place[1] * psi.sy + place[2] * psi.sz;
-  const double *p = psi.origin + cell.at;
+  cell.at = place[0] + place[1] * levels.sy + place[2] * levels.sz;
+  const double *p = levels.origin + cell.at;
   const Real3 &h = grid_->spacing();
-  const double y = root_two_pi * (0.5 - *p), yy = y * y;
-  const double u = y * kernels::fma(yy, kernels::fma(yy, kernels::fma(yy, 127. / 5040, 7. / 120), 1. / 6), 1);
-  Real3 gradient{};
+  Real3 sharp_step{}, spread_step{};
+  for (int d = 0; d < grid_->dimension(); ++d) {
+    const double low = far - p[-levels.stride(d)], high = far - p[levels.stride(d)];
+    const Steps at_low = steps_at(low), at_high = steps_at(high);
+    sharp_step[d] = (at_high.sharp - at_low.sharp) / (2 * h[d]);
+    spread_step[d] = (at_high.spread - at_low.spread) / (2 * h[d]);
+  }
+  const auto dot = [](const Real3 &a, const Real3 &b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; };
   double width = 0;
-  for (int d = 0; d < grid_->dimension(); ++d) gradient[d] = (p[-psi.stride(d)] - p[psi.stride(d)]) / (2 * h[d]);
   const auto normalise = [&](const Real3 &g) {
-    const double square = (g[0] * g[0] + g[1] * g[1]) + g[2] * g[2];
-    cell.delta = __builtin_sqrt(square);
+    const double size = __builtin_sqrt(dot(g, g));
     width = 0;
     for (int d = 0; d < 3; ++d) {
-      cell.normal[d] = cell.delta > 0 ? g[d] / cell.delta : 0;
+      cell.normal[d] = size > 0 ? g[d] / size : 0;
       width += variance * (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]);
     }
   };
-  normalise(gradient);
-  const double uu = std::min(u * u, 3.0), slope = (1 - uu) / 6, bend = kernels::fma(uu - 6, uu, 3.0) / 120;
+  normalise(sharp_step);
+  const double x = far - *p, xx = std::min(x * x, 3.0), slope = (1 - xx) / 6,
+               bend = kernels::fma(xx - 6, xx, 3.0) / 120;
+  Real3 mended = sharp_step;
   for (int d = 0; d < 3 && width > 0; ++d) {
     const double q = (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]) / width;
-    gradient[d] /= kernels::fma(q, kernels::fma(q, bend, -slope), 1);
+    mended[d] /= kernels::fma(q, kernels::fma(q, bend, -slope), 1);
   }
-  const double unmended = cell.delta;
-  normalise(gradient);
-  cell.delta = unmended;
-  {
-    static const double al = getenv("EUL_AL") ? atof(getenv("EUL_AL")) : 0, be = getenv("EUL_BE") ? atof(getenv("EUL_BE")) : 0;
-    const auto F = [&](double q) {
-      const double v = kernels::surface_level(q), N = std::exp(-v * v / 2) / root_two_pi;
-      return q - (al * v - be * (v * v - 3) * v) * N;
-    };
-    double sum = 0;
-    for (int d = 0; d < grid_->dimension(); ++d)
-      sum += cell.normal[d] * (F(p[-psi.stride(d)]) - F(p[psi.stride(d)])) / (2 * h[d]);
-    cell.spread = sum;
-  }
-  cell.distance = u * __builtin_sqrt(width);
+  normalise(mended);
+  cell.distance = x * __builtin_sqrt(width);
+  cell.delta = dot(cell.normal, sharp_step);
+  cell.spread = dot(cell.normal, spread_step);
   cell.owned = true;
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];
   return cell;
@@ -128,45 +143,59 @@ Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const 
   return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
-// psi, and the cells within reach of the surface.
-PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &psi) {
+// psi, levels, and the cells within reach of the surface.
+PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
   const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
   const Int3 &n = grid_->owned();
   const ConstView phi = phase.fraction[0];
-  clear_around(*grid_, phase.rows, ghosts, psi[0]);
-  in_row_parts(*grid_, [&](const RowPart &part) {
-    RowScratch scratch(*grid_, 1);
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = part.j_begin; j < part.j_end; ++j) {
-        const OccupiedRows::Span s = phase.rows.span(j, k);
-        const int begin = std::max(s.begin, 0), end = std::min(s.end, n[0]);
-        if (begin < end) smooth_row(dim, phi, j, k, begin, end, scratch.row(0), psi[0].row(j, k));
-      }
-  });
-  PetscCall(exchange_->update(psi, ghosts, &phase.rows));
-  fill_wall_ghosts_even(*grid_, at_centre, psi[0], ghosts, &phase.rows);
+  const auto fill = [&](int field, const auto &row) {
+    PetscFunctionBeginUser;
+    clear_around(*grid_, phase.rows, ghosts, fields[field]);
+    in_row_parts(*grid_, [&](const RowPart &part) {
+      RowScratch scratch(*grid_, 2);
+      for (int k = part.k_begin; k < part.k_end; ++k)
+        for (int j = part.j_begin; j < part.j_end; ++j) {
+          const OccupiedRows::Span s = phase.rows.span(j, k);
+          const int begin = std::max(s.begin, 0), end = std::min(s.end, n[0]);
+          if (begin < end) row(j, k, begin, end, scratch);
+        }
+    });
+    FieldBlock filled = fields.part(field, 1);
+    PetscCall(exchange_->update(filled, ghosts, &phase.rows));
+    fill_wall_ghosts_even(*grid_, at_centre, fields[field], ghosts, &phase.rows);
+    PetscFunctionReturn(0);
+  };
+  PetscCall(fill(smoothed, [&](int j, int k, int begin, int end, RowScratch &scratch) {
+    smooth_row(dim, phi, j, k, begin, end, scratch.row(0), fields[smoothed].row(j, k));
+  }));
+  const ConstView once = fields[smoothed];
+  PetscCall(fill(level, [&](int j, int k, int begin, int end, RowScratch &scratch) {
+    smooth_row(dim, once, j, k, begin, end, scratch.row(0), scratch.row(1));
+    level_row(once.row(j, k), scratch.row(1), begin, end, fields[level].row(j, k));
+  }));
   cells_.clear();
+  const double within = far - reach / __builtin_sqrt(variance);
   const auto range = [&](int d) { return near_box(phase, d, layers + 1); };
-  const ConstView p = psi[0];
+  const ConstView levels = fields[level];
   for (int k = range(2).begin; k < range(2).end; ++k)
     for (int j = range(1).begin; j < range(1).end; ++j) {
       const OccupiedRows::Span s = phase.rows.span(j, k);
       for (int i = std::max(s.begin, range(0).begin); i < std::min(s.end, range(0).end); ++i) {
-        const double value = p(i, j, k);
-        if (!(value > negligible && value < 1 - negligible && phi(i, j, k) > solid)) continue;
-        const Cell cell = cell_at(p, {i, j, k});
-        if (is_nearest(cell, grid_->spacing())) cells_.push_back(cell);
+        const double value = levels(i, j, k);
+        if (!(value >= within && value <= 2 * far - within && phi(i, j, k) > solid)) continue;
+        const Cell cell = cell_at(levels, {i, j, k});
+        if (cell.delta > 0) cells_.push_back(cell);
       }
     }
-  find_layers(phase, psi[0]);
-  scope.flops(double(phase.rows.cells()) * (dim == 2 ? 30 : 120));
+  find_layers(phase, levels);
+  scope.flops(double(phase.rows.cells()) * (dim == 2 ? 90 : 270));
   PetscFunctionReturn(0);
 }
 
 // Synchronous: layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1.
-void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
+void SurfaceCells::find_layers(const Phase &phase, ConstView levels) {
   const Layout &layout = grid_->layout();
   const int dim = grid_->dimension();
   number_.assign(layout.size, -1);
@@ -189,7 +218,7 @@ void SurfaceCells::find_layers(const Phase &phase, ConstView psi) {
             int &at = number[place[0] + place[1] * layout.sy + place[2] * layout.sz];
             if (at >= 0) continue;
             at = static_cast<int>(cells_.size());
-            cells_.push_back(cell_at(psi, place));
+            cells_.push_back(cell_at(levels, place));
             cells_.back().layer = l;
           }
     }

@@ -17,14 +17,18 @@ public:
     Real3 normal;       ///< outward, unit
     double distance;    ///< from the surface, positive outside
     double delta;       ///< of the surface, 1/length
-    double spread;      ///< delta that the force is spread with
+    double spread;      ///< delta that spreads the force: the velocity at the surface is as if it had no width
     int layer;          ///< 0: nearest
     bool owned;
   };
 
   SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
-  /// `smooth`: a field of work space, 0 within two cells around the rows of the phase. Five ghosts of phi.
-  PetscErrorCode find(const Phase &phase, FieldBlock &smooth);
+  /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
+  /// of the phase, and levels of the surface.
+  static constexpr int work_fields = 2;
+  enum Field { smoothed, level };
+  /// Five ghosts of phi.
+  PetscErrorCode find(const Phase &phase, FieldBlock &fields);
   /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
   /// every layer.
   const std::vector<Cell> &all() const { return cells_; }
@@ -37,8 +41,8 @@ public:
 
 private:
   Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
-  Cell cell_at(ConstView smooth, const Int3 &place) const;
-  void find_layers(const Phase &phase, ConstView smooth);
+  Cell cell_at(ConstView levels, const Int3 &place) const;
+  void find_layers(const Phase &phase, ConstView levels);
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
 
   const Grid *grid_;

@@ -23,7 +23,7 @@ int Solver::work_fields(const Method &method, int dimension, const Parts &parts)
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
                        (parts.rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
   int forces = parts.surface_tension ? SurfaceTension::work_fields : 0;
-  if (parts.membranes) forces = std::max(forces, MembraneTransport::work_fields(dimension));
+  if (parts.membranes) forces = std::max(forces, MembraneTransport::work_fields);
   const int momentum = (method.explicit_predictor() ? (parts.rigid ? dimension : 0) : 2 * dimension) + forces;
   const int tensor = parts.bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = parts.bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;

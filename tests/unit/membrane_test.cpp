@@ -183,7 +183,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
     WorkSpace work(ball.grid);
-    ASSERT_EQ(work.reserve(MembraneTransport::work_fields(dim)), 0);
+    ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
     MembraneTransport membrane(ball.grid, *ball.exchange, work, false);
     ball.phases[0].material.law = Law::membrane;
     ball.phases[0].material.membrane.shear_modulus = 2;

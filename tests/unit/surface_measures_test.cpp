@@ -48,7 +48,7 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   EXPECT_EQ(exchange.update(phase.fraction, 5), 0);
   EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
   WorkSpace work(scene.grid);
-  EXPECT_EQ(work.reserve(MembraneTransport::work_fields(dim)), 0);
+  EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
   MembraneTransport membrane(scene.grid, exchange, work, false);
   EXPECT_EQ(membrane.start(&phase), 0);
   std::vector<SurfaceSample> samples;
