@@ -1,4 +1,4 @@
-"""V3: a ring that bends back. V4: a capsule that is hardly deformed. V5: a capsule in shear flow, by a boundary-integral
+"""V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule in shear flow, by a boundary-integral
 method in unbounded Stokes flow. docs/method.md, section 18."""
 import numpy
 
@@ -45,6 +45,22 @@ def bending_rate(run):
     return float(-numpy.polyfit(t[late], numpy.log(d[late]), 1)[0])
 
 
+# An ellipse stretched from a disc: its strain relaxes along the surface, at .4547 E_s/(mu R) in that box (unbounded: 1/2),
+# an eigenvalue of the membrane's tension and the Fourier series of the velocity on it. E_s = 4 G_s = 1.
+SLIP = .4547
+
+
+def slipping(n, _):
+    return {**square(4 * n, 4), "ring_bending_modulus": 0, "ring_surface_shear_modulus": .25, "ring_initial_stretch": "1.02,0.98039216,1",
+            "ring_semi_axes": "1.02,0.98039216,1", "time_end": 1.5, "series_interval": .05, "snapshot_interval": 0}
+
+
+def slip_rate(run):
+    t, energy = run.series.time, run.series.surface_energy
+    late = t > .2
+    return float(-numpy.polyfit(t[late], numpy.log(energy[late]), 1)[0] / 2)
+
+
 def bending_energy(run):
     return float(run.bodies.bending_energy[-1, 0] / numpy.pi)
 
@@ -83,6 +99,11 @@ CASES = (
           Measure("bending energy, of a disc", bending_energy, {"fast": lambda n: .06 * max(1, (12 / n)**2)},
                   "still .03 from a disc: .01; second order", 1, True)),
          lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D")),
+    Case("V3", "Ring that slips back", "bending_ring", slipping,
+         fast_at((8, 16, 32)), fast_at((8,)),
+         (Measure("rate of slip, of that in this box", slip_rate, {"fast": lambda n: .15 * max(1, 16 / n)},
+                  "width of the force, of its product with the wave number: below .2 of 16 cells per radius", SLIP, True),),
+         lambda run: ((run.series.time, run.series.surface_energy), None), ("t", "energy")),
     Case("V4", "Capsule in shear flow, small deformation", "capsule_in_shear", small,
          fast_at(((8, 6), (12, 6))), fast_at(((6, 5),)),
          (Measure("D/Ca, of 25/12 between these walls", excess, {"fast": lambda key: .04 * max(1, 16 / key[0])},

@@ -57,6 +57,28 @@ TEST(Membrane, SmallStrainsHaveTheModuliOfTheLaw) {
   }
 }
 
+// F P_0 F^T, n_0 the normal that F turns into n.
+TEST(Membrane, TakesItsPartOfTheStretchOfABody) {
+  const double F[3][3] = {{1.2, 0.3, -0.1}, {0.1, 0.8, 0.2}, {-0.2, 0.05, 1.1}};
+  kernels::Vector<3> before{};
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) before[a] += F[b][a] * normal[b];
+  const double size = std::hypot(before[0], before[1], before[2]);
+  kernels::Tensor<3> B{}, expected{};
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      for (int c = 0; c < 3; ++c) {
+        B[a][b] += F[a][c] * F[b][c];
+        for (int d = 0; d < 3; ++d)
+          expected[a][b] += F[a][c] * ((c == d) - before[c] * before[d] / (size * size)) * F[b][d];
+      }
+  const kernels::Tensor<3> found = kernels::surface_part<3>(B, normal);
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) EXPECT_NEAR(found[a][b], expected[a][b], 1e-14);
+  const kernels::Tensor<3> one{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, rest = kernels::surface_part<3>(one, normal);
+  EXPECT_EQ(rest, kernels::tangential<3>(normal));
+}
+
 TEST(Membrane, InThePlaneTheThirdDirectionIsNotStretched) {
   const kernels::Vector<2> t{0.6, 0.8};
   const kernels::Tensor<2> B{{{1.44 * t[0] * t[0], 1.44 * t[0] * t[1]}, {1.44 * t[0] * t[1], 1.44 * t[1] * t[1]}}};
@@ -190,6 +212,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     FieldBlock velocity(ball.grid, dim);
     for (const double stretch : {1.0, 1.2}) {
       ball.phases[0].material.membrane.initial_area_stretch = stretch;
+      ball.phases[0].tensor = tensor_at_rest(ball.grid);
       ASSERT_EQ(membrane.start(&ball.phases[0]), 0);
       SurfaceEnergy seen;
       ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
