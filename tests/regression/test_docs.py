@@ -48,8 +48,8 @@ class Docs(unittest.TestCase):
         room = tempfile.TemporaryDirectory()
         cls.addClassCleanup(room.cleanup)
         cls.room = pathlib.Path(room.name)
-        for name in ("scripts", "options"):
-            shutil.copytree(ROOT / name, cls.room / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("scripts", "options", "python"):
+            shutil.copytree(ROOT / name, cls.room / name, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
         (cls.room / "build/release").mkdir(parents=True)
         (cls.room / "build/release/eulastic").symlink_to(BINARY)
         cls.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
@@ -64,7 +64,8 @@ class Docs(unittest.TestCase):
 
     def run_python(self, block):
         program = "import sys\nsys.path.insert(0, 'scripts')\n" + "\n".join(block)
-        done = subprocess.run([sys.executable, "-B", "-c", program], cwd=self.room, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-B", "-c", program], cwd=self.room, env=self.environment,
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, "\n".join(block) + done.stderr)
 
     def test_commands(self):
