@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 set(share ${CMAKE_INSTALL_DATADIR}/eulastic)
 install(TARGETS eulastic)
 install(DIRECTORY options DESTINATION ${share} FILES_MATCHING PATTERN *.opts PATTERN *.csv PATTERN *.stl PATTERN *.h5)
-install(PROGRAMS scripts/run scripts/plot scripts/render scripts/compare_pressure_solvers scripts/make_vessel
+install(PROGRAMS scripts/run scripts/plot scripts/render scripts/compare_pressure_solvers scripts/make_vessel scripts/profile
   DESTINATION ${share}/scripts)
 install(FILES scripts/environment scripts/body_surfaces.py scripts/eulastic DESTINATION ${share}/scripts)
 install(DIRECTORY python/eulastic DESTINATION ${share}/python PATTERN __pycache__ EXCLUDE)

@@ -142,13 +142,15 @@ class Run:
 
 
     def __str__(self):
-        lines = [f"{self.directory}: {' x '.join(map(str, self.cells))} cells, box {' x '.join(f'{x:g}' for x in self.length)}"]
+        lines = [f"{self.directory}: {' x '.join(map(str, self.cells))} cells, box "
+                 f"{' x '.join(f'{x:g}' for x in self.length)}"]
         lines += [f"  {name:28} {value}" for name, value in self.summary.items() if name not in ("bodies", "sides")]
         if self.series is not None:
             lines.append(f"  series: {len(self.series)} lines of {', '.join(self.series.dtype.names)}")
         if self.bodies is not None:
-            lines.append(f"  bodies: {len(self.bodies.id)} at {len(self.bodies.time)} times: {', '.join(vars(self.bodies))}")
-        lines += [f"  {snapshot.path.name}: t = {snapshot.time:g}: {', '.join(snapshot.fields)}" for snapshot in self.snapshots]
+            names = ", ".join(vars(self.bodies))
+            lines.append(f"  bodies: {len(self.bodies.id)} at {len(self.bodies.time)} times: {names}")
+        lines += [f"  {s.path.name}: t = {s.time:g}: {', '.join(s.fields)}" for s in self.snapshots]
         return "\n".join(lines)
 
 

@@ -1,4 +1,5 @@
-"""Runs of the program, one or many, by scripts/run: a run that is finished is not repeated, one that was interrupted goes on."""
+"""Runs of the program, one or many, by scripts/run: one that is finished is not repeated, one that was interrupted goes
+on."""
 import concurrent.futures
 import itertools
 import os
@@ -44,7 +45,8 @@ def launch(case, directory, ranks, options, say, started=lambda process: None):
     words = [word for name, value in options.items() for word in (f"-{name}", option_value(value))]
     command = ["bash", SCRIPT, "--ranks", str(ranks), case, directory, *words]
     # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               start_new_session=True)
     started(process)
     lines = []
     try:
@@ -57,7 +59,7 @@ def launch(case, directory, ranks, options, say, started=lambda process: None):
         process.wait()
         process.stdout.close()
     if process.returncode:
-        told = [line for line in lines if line.startswith("eulastic: error: ")] or lines[-1:] or ["it ended without a word"]
+        told = [line for line in lines if line.startswith("eulastic: error: ")] or lines[-1:] or ["it ended in silence"]
         raise RunError(told[0].removeprefix("eulastic: error: "), process.returncode, directory)
     return Run(directory)
 
@@ -73,7 +75,8 @@ def run(case, output_dir=None, ranks=2, progress=True, **options):
     read; one that was interrupted goes on.
     """
     directory = output_dir or pathlib.Path("output") / pathlib.Path(case).stem
-    return launch(case, directory, ranks, options, progress if callable(progress) else print if progress else lambda _: None)
+    say = progress if callable(progress) else print if progress else lambda _: None
+    return launch(case, directory, ranks, options, say)
 
 
 def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options):
@@ -87,7 +90,7 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options
     """
     folder = pathlib.Path(output_dir or pathlib.Path("output") / f"{pathlib.Path(case).stem}_sweep")
     points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
-    names = ["+".join(f"{name}={option_value(value)}".replace("/", "_") for name, value in point.items()) for point in points]
+    names = ["+".join(f"{name}={option_value(value)}" for name, value in point.items()).replace("/", "_") for point in points]
     if len(set(names)) < len(names) or not points:
         raise ValueError("sweep: grid: every option needs one value or more, none of them twice")
     lock, ended, processes = threading.Lock(), [], []

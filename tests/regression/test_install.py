@@ -1,4 +1,4 @@
-"""An installation: the program, its scripts and the Python package from a prefix that nobody writes into, the page for man,
+"""An installation: program, scripts and Python package from a prefix that nobody writes into, the page for man,
 the Debian package. Needs EULASTIC, in the directory where it was built."""
 import ast
 import os

@@ -60,7 +60,7 @@ class Shell(WithFolder):
 
     def test_help_from_anywhere(self):
         for script in ("install", "build", "test", "tidy", "sanitize", "fuzz", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
-                       "paper_figure2", "paper_section5", "tutorial", "dimple_study"):
+                       "paper_figure2", "paper_section5", "tutorial", "dimple_study", "profile"):
             done = start(SCRIPTS / script, "--help", cwd=self.folder)
             self.assertEqual(done.returncode, 0, script)
             self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
