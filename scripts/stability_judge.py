@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from read_run import Run
+from eulastic import Run
 
 GROWTH = {"fast": 0.01, "classic": 0.1}  # share by which the energy of a flow that nothing drives may have grown
 MADE = 0.1  # share of the energy that may be made, where more moves than the walls' speed explains

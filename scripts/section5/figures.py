@@ -8,7 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
-from read_run import Units  # noqa: E402
+from eulastic.labels import Units  # noqa: E402
 
 from . import measures  # noqa: E402
 

@@ -6,7 +6,7 @@ import re
 import subprocess
 
 import numpy
-from read_run import read_options
+from eulastic import read_options
 
 from . import measures
 

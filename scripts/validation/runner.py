@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 
 import h5py
-from read_run import Run
+from eulastic import Run
 
 from .case import ROOT
 

@@ -46,6 +46,17 @@ std::string cell(std::string text) {
   return text;
 }
 
+// As troff shows it: a - that can be copied, no escapes, and no line that is taken for a request.
+std::string troff(const std::string &text) {
+  std::string shown;
+  for (const char c : text) {
+    const bool at_line = shown.empty() || shown.back() == '\n';
+    if (at_line && (c == '.' || c == '\'')) shown += "\\&";
+    shown += c == '-' ? "\\-" : c == '\\' ? "\\e" : std::string(1, c);
+  }
+  return shown;
+}
+
 std::string petsc_names() {
   std::string text;
   for (const std::string &name : petsc_option_names())
@@ -103,6 +114,29 @@ std::string help_markdown() {
             " | " + option.accepted + " |\n";
   }
   return text + "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";
+}
+
+std::string man_page() {
+  const std::string version = "eulastic " EULASTIC_VERSION;
+  std::string text = ".TH EULASTIC 1 \"\" \"" + version + "\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\n" +
+                     "eulastic \\- soft bodies in incompressible flow on one fixed grid\n.SH SYNOPSIS\n" +
+                     ".B eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n.br\n" +
+                     ".B mpiexec \\-n 4 eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n" +
+                     ".SH DESCRIPTION\n" + troff(introduction) + ".SH OPTIONS\n";
+  Config config = example();
+  std::string group;
+  for (const Option &option : option_table(config)) {
+    if (option.group != group) text += ".SS " + troff(group = option.group) + "\n";
+    const std::string value = default_text(option);
+    text += ".TP\n\\fB" + troff("-" + option.name) + "\\fR" + (value.empty() ? "" : " (" + troff(value) + ")") + "\n" +
+            troff(remarks(option) + (option.unit.empty() ? "" : " [" + option.unit + "]")) + "\n.br\n" +
+            troff(option.accepted) + "\n";
+  }
+  return text + ".SS PETSc\nPETSc's own options pass through: " + troff(petsc_names()) + "\n" +
+         ".SH EXIT STATUS\n0 fine, 1 failed, 2 wrong input (nothing written), 3 wrong numbers or a guard.\n" +
+         ".SH FILES\nFrom the directory of the program: cases in ../share/eulastic/options, scripts in "
+         "../share/eulastic/scripts, documents "
+         "in ../share/doc/eulastic.\n";
 }
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// The manual: -help, docs/options.md and -version.
+// The manual: -help, docs/options.md, the page for man, and -version.
 #pragma once
 
 #include <string>
@@ -11,6 +11,8 @@ std::string help_text(const std::string &word = {});
 std::string usage_text();
 /// docs/options.md, whole.
 std::string help_markdown();
+/// The page for man(1), in troff with the macros of man(7).
+std::string man_page();
 /// Name and version of the program and of PETSc; one line.
 std::string version_text();
 

@@ -112,7 +112,11 @@ int program(int argc, char **argv) {
   setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // one rank by itself needs no daemon of Open MPI beside it
   std::vector<char *> petsc{argv[0]};
-  for (std::string &argument : parsed.petsc_arguments) petsc.push_back(argument.data());
+  for (std::string &argument : parsed.petsc_arguments) {
+    petsc.push_back(argument.data());
+    if (parsed.config.check_only || parsed.config.print_options)
+      break;  // after -skip_petscrc: no -log_view without a run
+  }
   petsc.push_back(nullptr);
   int petsc_count = static_cast<int>(petsc.size()) - 1;
   char **petsc_arguments = petsc.data();

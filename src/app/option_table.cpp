@@ -243,7 +243,7 @@ void add_running(Rows &rows, Config &config) {
       "only in an options file; a path, from the directory of this file";
   rows.add("help", "",
            "print all options and stop; -help WORD those with this word in name or text; -help markdown prints "
-           "docs/options.md; -h a few lines")
+           "docs/options.md, -help man a page for man; -h a few lines")
       .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
   rows.allow_change(first);

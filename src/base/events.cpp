@@ -12,8 +12,9 @@ constexpr std::array<const char *, verb_count> verb_names = {
     "EulRigid",    "EulDivergence", "EulACM",        "EulSMAC",     "EulCorrect", "EulFraction", "EulLeftCauchy",
     "EulExterior", "EulBodies",     "EulContact",    "EulSums",     "EulWrite"};
 constexpr std::array<const char *, stage_count> stage_names = {"Setup", "Step", "Output"};
+constexpr std::array<const char *, stage_count> stage_events = {"EulSetup", "EulStep", "EulOutput"};
 
-PetscLogEvent verb_ids[verb_count];
+PetscLogEvent verb_ids[verb_count], stage_event_ids[stage_count];
 PetscLogStage stage_ids[stage_count];
 bool registered = false;
 
@@ -25,7 +26,10 @@ PetscErrorCode register_events() {
   PetscClassId class_id;
   PetscCall(PetscClassIdRegister("Eulastic", &class_id));
   for (int e = 0; e < verb_count; ++e) PetscCall(PetscLogEventRegister(verb_names[e], class_id, &verb_ids[e]));
-  for (int s = 0; s < stage_count; ++s) PetscCall(PetscLogStageRegister(stage_names[s], &stage_ids[s]));
+  for (int s = 0; s < stage_count; ++s) {
+    PetscCall(PetscLogStageRegister(stage_names[s], &stage_ids[s]));
+    PetscCall(PetscLogEventRegister(stage_events[s], class_id, &stage_event_ids[s]));
+  }
   registered = true;
   PetscFunctionReturn(0);
 }
@@ -40,12 +44,16 @@ VerbScope::~VerbScope() {
   (void)PetscLogEventEnd(verb_ids[static_cast<int>(verb_)], 0, 0, 0, 0);
 }
 
-StageScope::StageScope(Stage stage) {
-  if (registered) (void)PetscLogStagePush(stage_ids[static_cast<int>(stage)]);
+StageScope::StageScope(Stage stage) : stage_(stage) {
+  if (!registered) return;
+  (void)PetscLogStagePush(stage_ids[static_cast<int>(stage)]);
+  (void)PetscLogEventBegin(stage_event_ids[static_cast<int>(stage)], 0, 0, 0, 0);
 }
 
 StageScope::~StageScope() {
-  if (registered) (void)PetscLogStagePop();
+  if (!registered) return;
+  (void)PetscLogEventEnd(stage_event_ids[static_cast<int>(stage_)], 0, 0, 0, 0);
+  (void)PetscLogStagePop();
 }
 
 }  // namespace eulastic

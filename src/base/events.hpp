@@ -47,12 +47,16 @@ private:
   double flops_ = 0;
 };
 
+/// A stage of the flat table and, because nested ones (-log_view :FILE:ascii_xml) know none, an event around it.
 class StageScope {
 public:
   explicit StageScope(Stage stage);
   ~StageScope();
   StageScope(const StageScope &) = delete;
   StageScope &operator=(const StageScope &) = delete;
+
+private:
+  Stage stage_;
 };
 
 }  // namespace eulastic

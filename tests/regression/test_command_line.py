@@ -92,6 +92,12 @@ class CommandLine(unittest.TestCase):
             with self.subTest(added):
                 self.refused(*SCENE, *added.split(), says=says)
 
+    def test_no_log_of_what_is_no_run(self):
+        for question in "-check_only", "-print_options":
+            result = self.run_program(*SCENE, question, "-log_view", ":log.xml:ascii_xml")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(list(self.room.iterdir()), [])
+
     def test_log_that_cannot_be_written(self):
         for ranks in (0, 2):
             result = self.run_program(*SCENE, "-log_view", ":/nowhere/log", "-output_dir", f"run{ranks}", ranks=ranks)

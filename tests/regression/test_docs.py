@@ -18,6 +18,7 @@ from read_page import blocks, commands, file_name, is_python  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
+FLAT = {"python.md": SHORT.replace("16,16,16", "16,16,1")}  # pages of 2-D cases
 NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
@@ -48,10 +49,12 @@ class Docs(unittest.TestCase):
         room = tempfile.TemporaryDirectory()
         cls.addClassCleanup(room.cleanup)
         cls.room = pathlib.Path(room.name)
-        for name in ("scripts", "options"):
-            shutil.copytree(ROOT / name, cls.room / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("scripts", "options", "python"):
+            shutil.copytree(ROOT / name, cls.room / name, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
         (cls.room / "build/release").mkdir(parents=True)
         (cls.room / "build/release/eulastic").symlink_to(BINARY)
+        for name in "run", "plot":  # as an installation has them; tests/regression/test_install.py tests that it does
+            (cls.room / f"build/release/eulastic-{name}").symlink_to(cls.room / "scripts" / name)
         cls.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                                OMPI_MCA_rmaps_base_oversubscribe="1", PETSC_OPTIONS=SHORT)
         cls.environment.pop("EULASTIC", None)
@@ -62,9 +65,10 @@ class Docs(unittest.TestCase):
                               timeout=300)
         self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
 
-    def run_python(self, block):
-        program = "import sys\nsys.path.insert(0, 'scripts')\n" + "\n".join(block)
-        done = subprocess.run([sys.executable, "-B", "-c", program], cwd=self.room, capture_output=True, text=True)
+    def run_python(self, page, block):
+        environment = dict(self.environment, PETSC_OPTIONS=FLAT.get(page.name, SHORT))
+        done = subprocess.run([sys.executable, "-B", "-c", "\n".join(block)], cwd=self.room, env=environment,
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, "\n".join(block) + done.stderr)
 
     def test_commands(self):
@@ -88,7 +92,7 @@ class Docs(unittest.TestCase):
                         ran += 1
                 if is_python(block):
                     with self.subTest(page=page.name, python=block[0]):
-                        self.run_python(block)
+                        self.run_python(page, block)
                         ran += 1
         self.assertGreaterEqual(ran, 5)
 

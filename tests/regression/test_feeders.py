@@ -11,7 +11,7 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
 from scene_case import BINARY, SceneCase  # noqa: E402
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 
 CHANNEL = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 -inflow_xmin_profile "
            "developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 -species disc -disc_shape sphere "

@@ -14,7 +14,7 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")

@@ -19,7 +19,9 @@ SCRIPTS = ROOT / "scripts"
 sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
-from read_run import Run, Units, is_finished, parse_options  # noqa: E402
+from eulastic import Run, is_finished  # noqa: E402
+from eulastic.labels import Units  # noqa: E402
+from eulastic.reading import parse_options  # noqa: E402
 
 
 def listing(folder):
@@ -58,7 +60,7 @@ class Shell(WithFolder):
 
     def test_help_from_anywhere(self):
         for script in ("install", "build", "test", "tidy", "sanitize", "fuzz", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
-                       "paper_figure2", "paper_section5", "tutorial", "dimple_study"):
+                       "paper_figure2", "paper_section5", "tutorial", "dimple_study", "profile"):
             done = start(SCRIPTS / script, "--help", cwd=self.folder)
             self.assertEqual(done.returncode, 0, script)
             self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
@@ -158,11 +160,6 @@ class Reader(WithFolder):
             self.assertEqual(is_finished(self.folder / "run"), reason in ("time_end", "steps"), reason)
         path.unlink()
         self.assertFalse(is_finished(self.folder / "run"))
-
-    def test_as_a_program(self):
-        done = start(SCRIPTS / "read_run.py", self.folder / "run")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("32 x 24 x 16 cells", done.stdout)
 
     def test_units(self):
         self.assertEqual(Units("m,s").label("u", "velocity"), "u (m/s)")

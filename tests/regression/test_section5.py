@@ -16,7 +16,7 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 from section5 import measures, page  # noqa: E402
 
 SMALL = ["-grid_cells", "28,14,14", "-grid_length", "28,14,14", "-vessel_diameter", "11", "-platelet_count", "3",

@@ -16,7 +16,7 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 from stability_judge import MADE, energy_growth, energy_made, judge  # noqa: E402
 from stability_scenes import contact, corner  # noqa: E402
 

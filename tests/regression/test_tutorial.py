@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.dont_write_bytecode = True
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 
 PAGE = ROOT / "docs/tutorial.md"
 

@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from processor import has_avx512  # noqa: E402
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 from stability_judge import STRETCH, fields_of_b, stretch_of  # noqa: E402
 
 DISC = ("-grid_length 1,1,.0625 -fluid_viscosity .01 -species a -a_shape sphere -a_radius .2 "

@@ -15,7 +15,7 @@ import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 sys.dont_write_bytecode = True
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 
 STEADY = ("-fluid_viscosity 1 -body_force 1,0,0 -fluid_inertia false -time_end 4 -snapshot_interval 4 -snapshot_precision "
           "double -snapshot_fields wall_shear_stress -pressure_solver smac").split()

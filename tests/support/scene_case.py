@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from read_run import Run  # noqa: E402
+from eulastic import Run  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")

@@ -251,13 +251,14 @@ TEST(Options, TableIsComplete) {
   config.species.resize(1);
   config.species[0].name = "NAME";
   std::set<std::string> names;
-  const std::string help = help_text(), markdown = help_markdown();
+  const std::string help = help_text(), markdown = help_markdown(), man = man_page();
   for (const Option &option : option_table(config)) {
     EXPECT_TRUE(names.insert(option.name).second) << option.name;
     EXPECT_FALSE(option.doc.empty() || option.accepted.empty() || option.group.empty()) << option.name;
     EXPECT_EQ(option.only_with.empty(), !option.applies) << option.name;
     EXPECT_NE(help.find("  -" + option.name), std::string::npos);
     EXPECT_NE(markdown.find("| `-" + option.name + "` |"), std::string::npos);
+    EXPECT_NE(man.find("\\fB\\-" + option.name + "\\fR"), std::string::npos);
     // The default that -help shows is itself a value that is accepted.
     if (!option.read || !option.text || option.required || option.text().empty()) continue;
     EXPECT_EQ(option.read(option.text()), "") << option.name;
@@ -277,6 +278,7 @@ TEST(Options, HelpOfAWord) {
 TEST(Options, HelpAndVersionWinOverErrors) {
   EXPECT_EQ(parse_line("-nonsense -help").message, help_text());
   EXPECT_EQ(parse_line("-help markdown").message, help_markdown());
+  EXPECT_EQ(parse_line("-help man").message, man_page());
   EXPECT_EQ(parse_line("-version").message, version_text());
   EXPECT_EQ(parse_line("-nonsense -h").message, usage_text());
   EXPECT_EQ(parse_line("--help").message, usage_text());

@@ -1,14 +1,6 @@
-#!/usr/bin/python3
-"""Reads the output directory of a run.
-
-    run = Run("output/channel_rbc")
-    run.series.time, run.bodies.centroid[-1], run.snapshots[-1]["pressure"], run.summary["steps"]
-
-As a program it prints what is there: scripts/read_run.py DIRECTORY
-"""
+"""The output directory of a run, and files of options (docs/outputs.md, docs/options.md)."""
 import json
 import pathlib
-import sys
 import types
 
 import h5py
@@ -54,6 +46,16 @@ class Snapshot:
         with h5py.File(self.path) as file:
             return file[name][...]
 
+    def coordinates(self, name):
+        """(x, y, z) of a field, each an array along its direction: value [k, j, i] lies at (x[i], y[j], z[k])."""
+        with h5py.File(self.path) as file:
+            where = file[name].attrs.get("location", "centre")
+            nx, ny, nz = file[name].shape[2::-1]
+        where = where.decode() if isinstance(where, bytes) else where
+        staggered = where.split("_")[1] if "_" in where else ""
+        return tuple((numpy.arange(n) + (0 if d in staggered else 0.5)) * h
+                     for d, n, h in zip("xyz", (nx, ny, nz), self.run.spacing))
+
     def velocity(self):
         """Velocity at cell centres, (3, nz, ny, nx); velocity_x, _y, _z are the staggered ones."""
         return numpy.moveaxis(self["velocity"].astype(float), -1, 0)
@@ -81,7 +83,8 @@ def is_finished(directory):
 
 
 class Run:
-    """A finished or unfinished run; what has not been written yet is empty or None.
+    """A finished or unfinished run; what has not been written yet is empty or None. FileNotFoundError if there is none;
+    print(run) says what is there.
 
     options    {name: value} as resolved
     summary    summary.json
@@ -138,12 +141,17 @@ class Run:
         return (numpy.arange(self.cells[d]) + 0.5) * self.spacing[d]
 
 
-def open_run(directory):
-    """The run, for a script: where there is none, the script ends with one line."""
-    try:
-        return Run(directory)
-    except FileNotFoundError as error:
-        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}")
+    def __str__(self):
+        lines = [f"{self.directory}: {' x '.join(map(str, self.cells))} cells, box "
+                 f"{' x '.join(f'{x:g}' for x in self.length)}"]
+        lines += [f"  {name:28} {value}" for name, value in self.summary.items() if name not in ("bodies", "sides")]
+        if self.series is not None:
+            lines.append(f"  series: {len(self.series)} lines of {', '.join(self.series.dtype.names)}")
+        if self.bodies is not None:
+            names = ", ".join(vars(self.bodies))
+            lines.append(f"  bodies: {len(self.bodies.id)} at {len(self.bodies.time)} times: {names}")
+        lines += [f"  {s.path.name}: t = {s.time:g}: {', '.join(s.fields)}" for s in self.snapshots]
+        return "\n".join(lines)
 
 
 def read_series(path):
@@ -155,43 +163,3 @@ def read_bodies(path):
         arrays = {name: item[...] for name, item in file.items()}
     arrays["species"] = numpy.array([s.decode() if isinstance(s, bytes) else s for s in arrays["species"]])
     return types.SimpleNamespace(**arrays)
-
-
-class Units:
-    """Names of units for labels; the solver itself takes any consistent set."""
-
-    def __init__(self, text):
-        length, time = text.split(",") if text else ("", "")
-        self.names = {"length": length, "time": time, "velocity": f"{length}/{time}",
-                      "pressure": f"ρ {length}²/{time}²", "volume": f"{length}³"} if text else {}
-
-    def label(self, words, quantity):
-        return f"{words} ({self.names[quantity]})" if quantity in self.names else words
-
-    def after(self, quantity):
-        return " " + self.names[quantity] if quantity in self.names else ""
-
-    @staticmethod
-    def add_option(parser):
-        parser.add_argument("--units", type=Units, default="µm,µs", metavar="LENGTH,TIME",
-                            help='for labels (default "µm,µs"; "" for none)')
-
-
-def main():
-    run = Run(sys.argv[1])
-    print(f"{run.directory}: {' x '.join(map(str, run.cells))} cells, box {' x '.join(f'{x:g}' for x in run.length)}")
-    for name, value in run.summary.items():
-        if name != "bodies":
-            print(f"  {name:28} {value}")
-    if run.series is not None:
-        print(f"  series: {len(run.series)} lines of {', '.join(run.series.dtype.names)}")
-    if run.bodies is not None:
-        print(f"  bodies: {len(run.bodies.id)} at {len(run.bodies.time)} times")
-    for snapshot in run.snapshots:
-        print(f"  {snapshot.path.name}: t = {snapshot.time:g}: {', '.join(snapshot.fields)}")
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
-        sys.exit(__doc__)
-    main()

@@ -1,0 +1,147 @@
+"""Runs of the program, one or many, by scripts/run: one that is finished is not repeated, one that was interrupted goes
+on."""
+import concurrent.futures
+import itertools
+import os
+import pathlib
+import signal
+import subprocess
+import threading
+
+import numpy
+
+from .reading import Run
+
+SCRIPT = pathlib.Path(__file__).parent / "shell/run"
+SCALARS = int, float, str, bool, type(None)
+
+
+class RunError(RuntimeError):
+    """A run that did not come to its end: the program's own line. exit_code is the program's (docs/reliability.md),
+    directory where the run is; table, of a sweep, the rows that did."""
+
+    def __init__(self, text, exit_code=None, directory=None, table=None):
+        super().__init__(text)
+        self.exit_code, self.directory, self.table = exit_code, directory, table
+
+
+def option_value(value):
+    """As the program reads it: True is true, a sequence has commas, numbers keep all their digits."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple, numpy.ndarray)):
+        return ",".join(option_value(one) for one in value)
+    return str(value.item() if isinstance(value, numpy.generic) else value).removesuffix(".0")
+
+
+def stop(process):
+    """Asks all that it has started to end: the program writes a checkpoint."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGTERM)
+
+
+def launch(case, directory, ranks, options, say, started=lambda process: None):
+    """Runs to the end and returns the Run; `say` gets the lines on the way."""
+    words = [word for name, value in options.items() for word in (f"-{name}", option_value(value))]
+    command = ["bash", SCRIPT, "--ranks", str(ranks), case, directory, *words]
+    # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               start_new_session=True)
+    started(process)
+    lines = []
+    try:
+        for line in process.stdout:
+            lines.append(line.rstrip())
+            say(line.rstrip())
+        process.wait()
+    finally:
+        stop(process)
+        process.wait()
+        process.stdout.close()
+    if process.returncode:
+        told = [line for line in lines if line.startswith("eulastic: error: ")] or lines[-1:] or ["it ended in silence"]
+        raise RunError(told[0].removeprefix("eulastic: error: "), process.returncode, directory)
+    return Run(directory)
+
+
+def run(case, output_dir=None, ranks=2, progress=True, **options):
+    """Runs a case, a file or the name of one that comes with the program, and returns its Run.
+
+    output_dir  where the results go, by default output/CASE
+    progress    prints the program's lines: percent, time left; a function is called with each
+    options     those of the program without dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0)
+
+    RunError says what was wrong, in the program's words. A run that is there, finished and of the same options is only
+    read; one that was interrupted goes on.
+    """
+    directory = output_dir or pathlib.Path("output") / pathlib.Path(case).stem
+    say = progress if callable(progress) else print if progress else lambda _: None
+    return launch(case, directory, ranks, options, say)
+
+
+def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options):
+    """Runs a case with every combination of the options in `grid`, {option: values}, `jobs` at a time.
+
+    Returns a numpy record array with a row per run, in the order of the grid: the options of the grid, the numbers and
+    words of summary.json, and `run`, the Run. Its directories are output_dir/OPTION=VALUE+..., by default in
+    output/CASE_sweep; what is finished there is not repeated. If runs fail the others go on to their end, and RunError
+    says what was wrong with each; its `table` has the rows of the others. `progress` prints a line when a run has ended;
+    `ranks` are those of each run, `options` are for all.
+    """
+    folder = pathlib.Path(output_dir or pathlib.Path("output") / f"{pathlib.Path(case).stem}_sweep")
+    points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
+    names = ["+".join(f"{name}={option_value(value)}" for name, value in point.items()).replace("/", "_") for point in points]
+    if len(set(names)) < len(names) or not points:
+        raise ValueError("sweep: grid: every option needs one value or more, none of them twice")
+    lock, ended, processes = threading.Lock(), [], []
+
+    def one(point, name):
+        try:
+            result = launch(case, folder / name, ranks, {**options, **point}, lambda _: None, processes.append)
+        except RunError as error:
+            result = error
+        with lock:
+            ended.append(name)
+            if progress:
+                print(f"sweep: {len(ended)} of {len(points)}: {name}: {outcome(result)}", flush=True)
+        return result
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        futures = [pool.submit(one, *job) for job in zip(points, names)]
+        try:
+            results = [future.result() for future in futures]
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in processes:
+                stop(process)
+            raise
+    rows = [(point, result) for point, result in zip(points, results) if isinstance(result, Run)]
+    table = table_of(list(grid), rows) if rows else None
+    failed = [f"{name}: {result}" for name, result in zip(names, results) if isinstance(result, RunError)]
+    if failed:
+        raise RunError("\n".join(failed), directory=folder, table=table)
+    return table
+
+
+def outcome(result):
+    if isinstance(result, RunError):
+        return str(result)
+    return f"{result.summary['steps']} steps, {result.summary['wall_seconds_total']:.3g} s"
+
+
+def table_of(swept, rows):
+    """Columns of one type each: numbers (null is nan), words, and objects for the runs."""
+    columns = {name: [point[name] for point, _ in rows] for name in swept}
+    columns = {name: values if all(isinstance(v, SCALARS) for v in values) else [option_value(v) for v in values]
+               for name, values in columns.items()}
+    for name in rows[0][1].summary:
+        values = [result.summary.get(name) for _, result in rows]
+        if name not in columns and all(isinstance(value, SCALARS) for value in values):
+            columns[name] = [numpy.nan if value is None else value for value in values]
+    arrays = {name: numpy.array(values) for name, values in columns.items()}
+    table = numpy.recarray(len(rows), [*((name, array.dtype) for name, array in arrays.items()), ("run", object)])
+    for name, array in arrays.items():
+        table[name] = array
+    for row, (_, result) in enumerate(rows):
+        table["run"][row] = result
+    return table
