@@ -34,16 +34,19 @@ def library():
 
 
 class Counts:
-    """Of one rank; {(stage, verb, kind, partner): (calls, bytes, largest)}, any number of steps."""
+    """Of one rank; {(stage, verb, kind, partner): (calls, bytes, largest)}, any number of steps.
 
-    def __init__(self, rows):
-        self.rows = rows
+    `seconds`: inside of collectives in stage Step."""
+
+    def __init__(self, rows, seconds=0.0):
+        self.rows, self.seconds = rows, seconds
 
     @classmethod
     def read(cls, path):
         with open(path) as file:
-            return cls({tuple(row[key] for key in KEYS): tuple(int(row[key]) for key in ("calls", "bytes", "largest"))
-                        for row in csv.DictReader(file)})
+            rows = list(csv.DictReader(file))
+        return cls({tuple(row[key] for key in KEYS): tuple(int(row[key]) for key in ("calls", "bytes", "largest"))
+                    for row in rows}, sum(float(row["seconds"]) for row in rows if row["stage"] in STEP))
 
     def per_step(self, before, steps):
         """Means over the steps that this run has and the run `before` does not."""
@@ -94,8 +97,8 @@ class Counting:
     def __init__(self, case, ranks):
         """`case`: what stands on the command line, files and options. Exits in the program's words if it is refused."""
         self.case, self.ranks = [str(word) for word in case], ranks
-        check = subprocess.run([program(), *self.case, "-check_only", "-ranks", str(ranks)], capture_output=True, text=True,
-                               env=ENVIRONMENT)
+        check = subprocess.run([program(), *self.case, "-check_only", "-ranks", str(ranks)], capture_output=True,
+                               text=True, env=ENVIRONMENT)
         if check.returncode:
             sys.stderr.write(check.stderr)
             sys.exit(check.returncode)
@@ -114,7 +117,8 @@ class Counting:
         with tempfile.TemporaryDirectory() as folder:
             room = pathlib.Path(folder)
             (room / "counts").mkdir()
-            command = on_ranks(self.ranks, [program(), *self.case, "-time_steps_max", steps, "-output_dir", room / "run"])
+            command = on_ranks(self.ranks, [program(), *self.case, "-time_steps_max", steps, "-output_dir",
+                                            room / "run"])
             environment = dict(ENVIRONMENT, EULASTIC_COUNT=str(room / "counts"), LD_PRELOAD=str(library()))
             done = subprocess.run(command, capture_output=True, text=True, env=environment)
             if done.returncode:

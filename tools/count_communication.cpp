@@ -3,9 +3,10 @@
 //   stage, verb    of -log_view, at the call: the innermost verb that is no exchange (PETSc 3.18 and 3.19; else empty)
 //   kind           send, or the name of a collective
 //   partner        send: the other rank of MPI_COMM_WORLD; else ranks of the communicator
-//   calls, bytes, largest
+//   calls, bytes, largest, seconds
 // Bytes are of data: of a send, or the most that a rank gives to or gets from a collective. Persistent sends count when
-// they start, neighbourhood collectives as one send to each neighbour. One-sided communication is not seen.
+// they start, neighbourhood collectives as one send to each neighbour. Seconds are those inside of collectives,
+// waiting for other ranks included, not of sends. One-sided communication is not seen.
 #define PETSC_HAVE_BROKEN_RECURSIVE_MACRO  // else PETSc counts calls by macros with the names of MPI's functions
 #include <mpi.h>
 #include <petscsys.h>
@@ -25,6 +26,7 @@ namespace {
 using Key = std::tuple<std::string, std::string, std::string, int>;
 struct Sum {
   long calls = 0, bytes = 0, largest = 0;
+  double seconds = 0;
 };
 std::map<Key, Sum> sums;
 
@@ -71,11 +73,12 @@ __attribute__((constructor)) void set() {
   if (std::getenv("EULASTIC_COUNT")) watch_verbs();
 }
 
-void add(const char *kind, int partner, long bytes) {
+Sum &add(const char *kind, int partner, long bytes) {
   Sum &sum = sums[{stage(), verbs.empty() ? "" : verbs.back(), kind, partner}];
   ++sum.calls;
   sum.bytes += bytes;
   sum.largest = std::max(sum.largest, bytes);
+  return sum;
 }
 
 long size_of(long count, MPI_Datatype type) {
@@ -121,9 +124,22 @@ void is_persistent(int to, long count, MPI_Datatype type, MPI_Comm comm, MPI_Req
   if (to != MPI_PROC_NULL && to != rank_of(comm)) persistent[request] = {in_world(to, comm), size_of(count, type)};
 }
 
-void collective(const char *kind, long bytes, MPI_Comm comm) {
-  if (ranks_of(comm) > 1) add(kind, ranks_of(comm), bytes);
-}
+// From construction to destruction.
+class Collective {
+public:
+  Collective(const char *kind, long bytes, MPI_Comm comm) : begin_(PMPI_Wtime()) {
+    if (ranks_of(comm) > 1) sum_ = &add(kind, ranks_of(comm), bytes);
+  }
+  ~Collective() {
+    if (sum_) sum_->seconds += PMPI_Wtime() - begin_;
+  }
+  Collective(const Collective &) = delete;
+  Collective &operator=(const Collective &) = delete;
+
+private:
+  double begin_;
+  Sum *sum_ = nullptr;
+};
 
 long total(const int *counts, MPI_Comm comm) { return std::accumulate(counts, counts + ranks_of(comm), 0L); }
 
@@ -141,11 +157,11 @@ void write() {
   const std::string path = std::string(directory) + "/" + std::to_string(rank_of(MPI_COMM_WORLD)) + ".csv";
   std::FILE *file = std::fopen(path.c_str(), "w");
   if (!file) return;
-  std::fprintf(file, "stage,verb,kind,partner,calls,bytes,largest\n");
+  std::fprintf(file, "stage,verb,kind,partner,calls,bytes,largest,seconds\n");
   for (const auto &[key, sum] : sums) {
     const auto &[stage, verb, kind, partner] = key;
-    std::fprintf(file, "%s,%s,%s,%d,%ld,%ld,%ld\n", stage.c_str(), verb.c_str(), kind.c_str(), partner, sum.calls,
-                 sum.bytes, sum.largest);
+    std::fprintf(file, "%s,%s,%s,%d,%ld,%ld,%ld,%.9g\n", stage.c_str(), verb.c_str(), kind.c_str(), partner, sum.calls,
+                 sum.bytes, sum.largest, sum.seconds);
   }
   std::fclose(file);
 }
@@ -210,11 +226,11 @@ int MPI_Sendrecv_replace(void *data, int n, MPI_Datatype type, int to, int tag, 
 // Collectives, each with its form that does not block: parameters, bytes, arguments.
 #define COLLECTIVE(NOW, LATER, BYTES, PARAMETERS, ...)               \
   int MPI_##NOW(PARAMETERS, MPI_Comm comm) {                         \
-    collective(#NOW, BYTES, comm);                                   \
+    const Collective scope(#NOW, BYTES, comm);                       \
     return PMPI_##NOW(__VA_ARGS__, comm);                            \
   }                                                                  \
   int MPI_##LATER(PARAMETERS, MPI_Comm comm, MPI_Request *request) { \
-    collective(#NOW, BYTES, comm);                                   \
+    const Collective scope(#NOW, BYTES, comm);                       \
     return PMPI_##LATER(__VA_ARGS__, comm, request);                 \
   }
 #define LIST(...) __VA_ARGS__
@@ -255,12 +271,12 @@ COLLECTIVE(Alltoallv, Ialltoallv,
            data, counts, places, type, in, in_counts, in_places, in_type)
 
 int MPI_Barrier(MPI_Comm comm) {
-  collective("Barrier", 0, comm);
+  const Collective scope("Barrier", 0, comm);
   return PMPI_Barrier(comm);
 }
 
 int MPI_Ibarrier(MPI_Comm comm, MPI_Request *request) {
-  collective("Barrier", 0, comm);
+  const Collective scope("Barrier", 0, comm);
   return PMPI_Ibarrier(comm, request);
 }
 
@@ -275,12 +291,12 @@ int MPI_Ineighbor_alltoallv(OUT_V, IN_V, MPI_Comm comm, MPI_Request *request) {
 }
 
 int MPI_Comm_dup(MPI_Comm comm, MPI_Comm *made) {
-  collective("Comm_dup", 0, comm);
+  const Collective scope("Comm_dup", 0, comm);
   return PMPI_Comm_dup(comm, made);
 }
 
 int MPI_Comm_split(MPI_Comm comm, int colour, int key, MPI_Comm *made) {
-  collective("Comm_split", 0, comm);
+  const Collective scope("Comm_split", 0, comm);
   return PMPI_Comm_split(comm, colour, key, made);
 }
 
