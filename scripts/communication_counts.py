@@ -46,7 +46,7 @@ class Counts:
         with open(path) as file:
             rows = list(csv.DictReader(file))
         return cls({tuple(row[key] for key in KEYS): tuple(int(row[key]) for key in ("calls", "bytes", "largest"))
-                    for row in rows}, sum(float(row["seconds"]) for row in rows if row["stage"] in STEP))
+                    for row in rows}, sum(float(row["seconds"]) for row in rows if row["stage"] == STEP[0]))
 
     def per_step(self, before, steps):
         """Means over the steps that this run has and the run `before` does not."""
