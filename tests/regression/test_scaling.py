@@ -1,6 +1,9 @@
 """scripts/paper_figure5 and paper_figure6: models by hand, what pictures say of them, and real runs."""
+import contextlib
 import csv
+import io
 import os
+import shutil
 import sys
 import unittest
 
@@ -53,6 +56,26 @@ class Model(unittest.TestCase):
     def test_cubic_splits(self):
         self.assertEqual(scaling_figures.along(8, (256, 64, 64)), (2, 2, 2))
         self.assertEqual(scaling_figures.along(8, (64, 64, 64)), (1, 2, 4))
+
+
+class Skeleton(WithFolder):
+    def test_it_sends_what_was_counted(self):
+        script = load("simulate_scaling")
+        self.assertTrue(script.counted("classic", self.folder))
+        right = script.lines_of("classic")
+        script.lines_of = lambda _: right[1:]
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            self.assertFalse(script.counted("classic", self.folder))
+        self.assertEqual(said.getvalue().count("counted"), 1)
+
+    @unittest.skipUnless(shutil.which("smpicc"), "needs SimGrid: scripts/install --simgrid")
+    def test_simulated_network(self):
+        machine = Machine.read("k")  # arithmetic is most of it
+        rows = list(load("simulate_scaling").table(machine, "classic", (27, 64)))
+        self.assertEqual([row[0] for row in rows], [27, 64])
+        for _, simulated, modelled in rows:
+            self.assertGreater(simulated, COUNTED_BOX ** 3 * machine.classic_seconds_per_cell)
+            self.assertLess(simulated, modelled)  # rounds overlap in the network, not in the model
 
 
 class Pictures(WithFolder):
