@@ -36,8 +36,8 @@ ASSUMPTIONS = [
     "every field of an exchange is a message to each neighbour and waits for one latency",
     "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
     "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
-    "levels of the V-cycle beyond those counted send five messages to each neighbour in a sweep, as the counted ones do; "
-    "their bytes are left out",
+    "levels of the V-cycle beyond those counted send five messages to a neighbour in a sweep, as the counted do; their "
+    "bytes are left out",
     "all ranks compute as long as the largest box takes; bodies are spread evenly, output and snapshots left out",
     "fast: two sweeps and about twenty viscous stages in a step, as counted; its arithmetic over that of classic is as "
     "-check_only estimates",
