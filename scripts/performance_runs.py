@@ -67,12 +67,13 @@ def markdown_table(rows, columns):
     return "\n".join(lines)
 
 
-def write_tables(tables):
-    """Puts every text between <!-- table NAME --> and <!-- end --> in docs/performance.md."""
-    page = PAGE.read_text()
+def write_tables(tables, path=None):
+    """Puts every text between <!-- table NAME --> and <!-- end --> in docs/performance.md, or in the page `path`."""
+    path = path or PAGE
+    page = path.read_text()
     for name, text in tables.items():
         page, count = re.subn(rf"<!-- table {name} -->.*?<!-- end -->",
                               lambda _: f"<!-- table {name} -->\n{text}\n<!-- end -->", page, flags=re.S)
         if count != 1:
-            sys.exit(f"docs/performance.md: no place for the table {name}")
-    PAGE.write_text(page)
+            sys.exit(f"{path}: no place for the table {name}")
+    path.write_text(page)

@@ -121,6 +121,8 @@ int program(int argc, char **argv) {
   int petsc_count = static_cast<int>(petsc.size()) - 1;
   char **petsc_arguments = petsc.data();
   if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
+  // Who sends to whom is found without a number for every rank on every rank.
+  (void)PetscCommBuildTwoSidedSetType(PETSC_COMM_WORLD, PETSC_BUILDTWOSIDED_IBARRIER);
   catch_faults();
   const int code = act(parsed);
   if (Hdf5File::left_open()) MPI_Abort(PETSC_COMM_WORLD, code);

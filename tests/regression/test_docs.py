@@ -24,6 +24,8 @@ NOT_RUN = {
     "scripts/test": "this very test is part of it",
     "scripts/tidy": "all sources", "scripts/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
     "scripts/paper_figure2": "test_scripts.py runs it", "scripts/work_precision": "many long runs",
+    "scripts/count_communication": "it has a test of its own", "scripts/scaling_tables": "it has a test of its own",
+    "scripts/paper_figure5": "it has a test of its own", "scripts/paper_figure6": "it has a test of its own",
     "scripts/paper_section5": "an hour; it has a test of its own",
     "scripts/tutorial": "it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
     "scripts/accuracy_tables": "needs the runs of scripts/validate",

@@ -1,0 +1,157 @@
+"""scripts/paper_figure5 and paper_figure6: models by hand, what pictures say of them, and real runs."""
+import contextlib
+import csv
+import io
+import os
+import shutil
+import sys
+import unittest
+
+import matplotlib.pyplot
+
+sys.dont_write_bytecode = True
+from test_scripts import SCRIPTS, WithFolder, load, start  # noqa: E402
+import scaling_figures  # noqa: E402
+from scaling_model import COUNTED_BOX, Machine, Moments, Split, Step, model  # noqa: E402
+
+
+class Model(unittest.TestCase):
+    split = Split((1024, 64, 64), (4, 4, 4), (256, 16, 16))
+
+    def test_bytes_are_those_of_the_layers(self):
+        for width in (1, 3):
+            around = (256 + 2 * width) * (16 + 2 * width) ** 2 - 256 * 16 ** 2
+            self.assertEqual(self.split.bytes((width, width ** 2, width ** 3)), 8 * around)
+        whole_x = Split((256, 64, 64), (1, 4, 4), (256, 16, 16))
+        self.assertEqual(whole_x.bytes((2, 4, 8)), 8 * 256 * (20 ** 2 - 16 ** 2))
+        self.assertEqual((self.split.neighbours, whole_x.neighbours), (26, 8))
+
+    def test_layers_are_found_in_counts(self):
+        rows = {}
+        for rank in set(range(27)) - {13}:
+            across = sum(d != 1 for d in (rank % 3, rank // 3 % 3, rank // 9))
+            rows[rank] = 3, 8 * sum(w ** across * COUNTED_BOX ** (3 - across) for w in (1, 3, 3))
+        self.assertEqual(Moments.of(rows), Moments(3, (7, 19, 55)))
+
+    def test_counts_that_are_stored(self):
+        classic, fast = Step.read("classic"), Step.read("fast")
+        # Three layers of velocity, phi and B, and one of v* and D*.
+        self.assertEqual(classic.plain, Moments(14, (10 * 3 + 4, 10 * 9 + 4, 10 * 27 + 4)))
+        self.assertEqual((classic.cycle.fields, classic.sweeps, fast.sweeps), (0, 0, 2))
+
+    def test_parts_by_hand(self):
+        machine = Machine("m", "r", 1e-6, 1e-5, 1e-6, 1e9, 4e9, [])
+        step = Step("fast", Moments(2, (2, 2, 2)), Moments(1, (1, 1, 1)), 2, [(3, 1000)], 2)
+        parts = model(machine, step, self.split)
+        # The V-cycle has a level more than counted: five messages in each of two sweeps.
+        size, hop = self.split.bytes((3, 3, 3)), 1.2e-5
+        expected = {"compute": 2e-6 * 65536, "latency": (3 + 10) * (1e-5 + 2e-6 * 26), "exchange": size / 1e9,
+                    "pack": size / 1e9, "reductions": 3 * 6 * (hop + 1e-6), "gather": 2 * (6 * hop + 8 * 1024 / 1e9)}
+        self.assertEqual(set(parts), set(expected))
+        for part, seconds in expected.items():
+            self.assertAlmostEqual(parts[part], seconds, delta=1e-12, msg=part)
+        alone = Split((64, 64, 64), (1, 1, 1), (64, 64, 64))
+        self.assertEqual(model(machine, step, alone), {"compute": 2e-6 * 64 ** 3})
+
+    def test_cubic_splits(self):
+        self.assertEqual(scaling_figures.along(8, (256, 64, 64)), (2, 2, 2))
+        self.assertEqual(scaling_figures.along(8, (64, 64, 64)), (1, 2, 4))
+
+
+class Skeleton(WithFolder):
+    def test_it_sends_what_was_counted(self):
+        script = load("simulate_scaling")
+        self.assertTrue(script.counted("classic", self.folder))
+        right = script.lines_of("classic")
+        script.lines_of = lambda _: right[1:]
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            self.assertFalse(script.counted("classic", self.folder))
+        self.assertEqual(said.getvalue().count("counted"), 1)
+
+    @unittest.skipUnless(shutil.which("smpicc"), "needs SimGrid: scripts/install --simgrid")
+    def test_simulated_network(self):
+        machine = Machine.read("k")  # arithmetic is most of it
+        rows = list(load("simulate_scaling").table(machine, "classic", (27, 64)))
+        self.assertEqual([row[0] for row in rows], [27, 64])
+        for _, simulated, modelled in rows:
+            self.assertGreater(simulated, COUNTED_BOX ** 3 * machine.classic_seconds_per_cell)
+            self.assertLess(simulated, modelled)  # rounds overlap in the network, not in the model
+
+
+class Pictures(WithFolder):
+    def test_nothing_modelled_looks_measured(self):
+        figure = load("paper_figure5").FIGURE
+        rows = [{"method": "fast", "ranks": ranks, "seconds_per_step": 1.0} for ranks in (1, 2)]
+        machine = Machine("M", "r", 1, 1, 1, 1, 1, [])
+        models = [(machine, method, [(Split((64,) * 3, (1, 1, p), (64,) * 3), {"compute": 1}) for p in (1, 2)])
+                  for method in ("fast", "classic")]
+        scaling_figures.draw(figure, rows, models, self.folder / "x.png")
+        axes = matplotlib.pyplot.gcf().axes[0]
+        self.assertIn("model", axes.get_title())
+        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertEqual(len(labels), 3)
+        for line, label in zip(axes.get_lines(), labels):
+            is_model = label.startswith("model, not measured")
+            self.assertEqual(is_model, not label.startswith("measured"))
+            self.assertEqual(line.get_linestyle() != "-", is_model)
+            self.assertEqual(line.get_marker() == "None", is_model)
+            self.assertEqual(line.get_color() in ("0.5", "0.7"), is_model)
+
+    def test_model_prints_what_it_assumes(self):
+        done = start(SCRIPTS / "paper_figure5", "--model", "k", "--output", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for word in ("Assumed:", "MODEL, not measured", "(assumed)", "ms a step are not explained", "82944"):
+            self.assertIn(word, done.stdout)
+        self.assertTrue((self.folder / "paper_figure5.png").exists())
+
+    def test_real_runs(self):
+        done = start(SCRIPTS / "paper_figure5", "--measure", "--ranks", "1,2", "--box", "32,32,32", "--steps", 2,
+                     "--output", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "paper_figure5.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["method"], row["ranks"], row["cells"]) for row in rows],
+                         [(method, ranks, cells) for method in ("fast", "classic")
+                          for ranks, cells in (("1", "32768"), ("2", "65536"))])
+        for row in rows:
+            exchange, wait, reductions = (float(row[key]) for key in ("exchange", "wait", "reductions"))
+            self.assertEqual(exchange > 0 and reductions > 0, row["ranks"] == "2")
+            self.assertTrue(0 <= wait <= exchange <= 1 and reductions <= 1, row)
+
+    def test_job(self):
+        job = self.folder / "job.sh"
+        done = start(SCRIPTS / "paper_figure6", "--job", job, "--ranks", "4,8", "--cells", "256,64,64", "-threads", 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = job.read_text()
+        self.assertIn("#SBATCH --ntasks=8", text)
+        self.assertIn("scripts/paper_figure6 --measure --ranks 4,8 --steps 10", text)
+        self.assertIn("--cells 256,64,64 -threads 2", text)
+        self.assertEqual(start("bash", "-n", job).returncode, 0)
+
+    def test_slurm_starts_ranks(self):
+        os.environ["SLURM_JOB_ID"] = "1"
+        self.addCleanup(os.environ.pop, "SLURM_JOB_ID")
+        keep = os.environ.pop("EULASTIC_MPIEXEC", None)
+        if keep:
+            self.addCleanup(os.environ.__setitem__, "EULASTIC_MPIEXEC", keep)
+        self.assertEqual(scaling_figures.launch(8, ["program", "-x"]), ["srun", "-n", "8", "program", "-x"])
+
+    def test_help(self):
+        for script in ("count_communication", "paper_figure5", "paper_figure6"):
+            done = start(SCRIPTS / script, "--help", cwd=self.folder)
+            self.assertEqual(done.returncode, 0, script)
+            self.assertIn(script, done.stdout.splitlines()[0])
+
+    def test_refusals(self):
+        (self.folder / "bad.json").write_text('{"name": "x"}')
+        for words, reason in (((), "nothing to do"), (("--model", "nowhere"), "accepted: hdr, k, or"),
+                              (("--model", self.folder / "bad.json"), "is no machine"),
+                              (("--measure", "--ranks", "0"), "--ranks"), (("--measure", "--box", "8,8"), "--box")):
+            done = start(SCRIPTS / "paper_figure5", *words, "--output", self.folder / "none")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(reason, done.stderr)
+            self.assertFalse((self.folder / "none").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
