@@ -225,8 +225,6 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-time_integrator staggered"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_initial_stretch 2,1,1",
-        {"-a_initial_stretch", "-a_initial_area_stretch"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
        {"-a_law rigid -a_shear_modulus 1", {"-a_shear_modulus", "-a_law neo_hookean"}},
        {"-a_law rigid -a_viscosity 1", {"-a_viscosity", "accepted: without"}},
