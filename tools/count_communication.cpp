@@ -41,8 +41,11 @@ std::vector<std::string> verbs;  // under way
 #if defined(PETSC_USE_LOG) && PETSC_VERSION_LT(3, 20, 0)
 const char *event_name(PetscLogEvent event) { return petsc_stageLog->eventLog->eventInfo[event].name; }
 
+// Not the stages, which are events as well, and not what every verb does.
 bool is_verb(const char *name) {
-  return !std::strncmp(name, "Eul", 3) && std::strcmp(name, "EulExchange") && std::strcmp(name, "EulWait");
+  for (const char *other : {"EulExchange", "EulWait", "EulSetup", "EulStep", "EulOutput"})
+    if (!std::strcmp(name, other)) return false;
+  return !std::strncmp(name, "Eul", 3);
 }
 
 PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscObject, PetscObject) {

@@ -68,8 +68,8 @@ EULASTIC_INLINE Tensor<Dim> turn(const Tensor<Dim> &B, const Vector<Dim> &from, 
   return out;
 }
 
-/// F P_0 F^T of a surface with the normal n in a body with B = F F^T, P_0 that of the surface before F: B less what F makes
-/// of its normal there, which lies along B n. Exactly P where B is 1.
+/// F P_0 F^T of a surface with the normal n in a body with B = F F^T, P_0 that of the surface before F: B less what F
+/// makes of its normal there, which lies along B n. Exactly P where B is 1.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> surface_part(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
   Vector<Dim> Bn{};

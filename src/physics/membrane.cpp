@@ -112,7 +112,8 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
     const auto set = [&](auto dim) {
-      Tensor<dim> value = kernels::surface_part<dim>(tensor_at<dim>(phase->tensor, cell.at), normal_of<dim>(cell.normal));
+      Tensor<dim> value =
+          kernels::surface_part<dim>(tensor_at<dim>(phase->tensor, cell.at), normal_of<dim>(cell.normal));
       for (auto &row : value)
         for (double &entry : row) entry *= stretch;
       set_tensor<dim>(phase->tensor, cell.at, value);

@@ -26,10 +26,16 @@ public:
 
   /// `drifts`: as of SurfaceTension, for bending.
   MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
-      : grid_(&grid), work_(&work), exchange_(&exchange), surface_(grid, exchange), bending_(grid, exchange), drifts_(drifts) {}
+      : grid_(&grid),
+        work_(&work),
+        exchange_(&exchange),
+        surface_(grid, exchange),
+        bending_(grid, exchange),
+        drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
-  /// B_s of an undeformed membrane, or one stretched alike in all directions. Five ghosts of phi, here and below.
+  /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch. Five
+  /// ghosts of phi, here and below.
   PetscErrorCode start(Phase *phase);
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase);

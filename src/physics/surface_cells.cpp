@@ -80,16 +80,15 @@ struct Steps {
   double sharp, spread;  ///< from -1/2 to 1/2 across the surface
 };
 // The integral over x of the normal distribution N, in units of its width (Abramowitz and Stegun 26.2.17, 1e-7), and
-// that of N (1 + .9 (1 - x^2)), whose integral with |x| is small, of the whole band with what reads the velocity nearly
-// 0.
+// that of N (1 + .7 (1 - x^2)), whose mean |x| is a third of that of N; docs/method.md, (26a).
 EULASTIC_INLINE Steps steps_at(double x) {
-  constexpr double peak = 0.3989422804014327, ends = 0.5004501;  // of the second at `far`
+  constexpr double peak = 0.3989422804014327, ends = 0.5003431;  // of the second at `far`
   const double away = std::min(__builtin_fabs(x), far), xx = away * away, N = peak * kernels::exp(-0.5 * xx);
   const double t = 1 / kernels::fma(0.2316419, away, 1.0);
   double tail = 1.330274429;
   for (const double c : {-1.821255978, 1.781477937, -0.356563782, 0.319381530}) tail = kernels::fma(tail, t, c);
   const double sharp = kernels::fma(-N, tail * t, 0.5);
-  const double spread = kernels::fma(0.9 * N, away, sharp) * (0.5 / ends);
+  const double spread = kernels::fma(0.7 * N, away, sharp) * (0.5 / ends);
   return {x < 0 ? -sharp : sharp, x < 0 ? -spread : spread};
 }
 
