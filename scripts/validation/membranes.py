@@ -1,4 +1,5 @@
-"""V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule in shear flow, by a boundary-integral
+"""V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule
+in shear flow, by a boundary-integral
 method in unbounded Stokes flow. docs/method.md, section 18."""
 import numpy
 
@@ -102,7 +103,7 @@ CASES = (
     Case("V3", "Ring that slips back", "bending_ring", slipping,
          fast_at((8, 16, 32)), fast_at((8,)),
          (Measure("rate of slip, of that in this box", slip_rate, {"fast": lambda n: 2.72 / n},
-                  "2 k <|d|>, k = 2/R, for a third of .8 s and the cells that velocities are read from: <|d|> = .68 h", SLIP, True),),
+                  "asked for: 17 % at 16 cells per radius; first order", SLIP, True),),
          lambda run: ((run.series.time, run.series.surface_energy), None), ("t", "energy")),
     Case("V4", "Capsule in shear flow, small deformation", "capsule_in_shear", small,
          fast_at(((8, 6), (12, 6))), fast_at(((6, 5),)),
