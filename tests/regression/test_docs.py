@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts/lib"))
 sys.dont_write_bytecode = True
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
 
@@ -22,14 +22,14 @@ FLAT = {"python.md": SHORT.replace("16,16,16", "16,16,1")}  # pages of 2-D cases
 NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
-    "scripts/tidy": "all sources", "scripts/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
-    "scripts/paper_figure2": "test_scripts.py runs it", "scripts/work_precision": "many long runs",
-    "scripts/count_communication": "it has a test of its own", "scripts/scaling_tables": "it has a test of its own",
-    "scripts/paper_figure5": "it has a test of its own", "scripts/paper_figure6": "it has a test of its own",
-    "scripts/paper_section5": "an hour; it has a test of its own",
-    "scripts/tutorial": "it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
-    "scripts/accuracy_tables": "needs the runs of scripts/validate",
-    "scripts/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
+    "scripts/dev/tidy": "all sources", "scripts/dev/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
+    "scripts/studies/paper/paper_figure2": "test_scripts.py runs it", "scripts/studies/performance/work_precision": "many long runs",
+    "scripts/count_communication": "it has a test of its own", "scripts/studies/scaling/scaling_tables": "it has a test of its own",
+    "scripts/studies/paper/paper_figure5": "it has a test of its own", "scripts/studies/paper/paper_figure6": "it has a test of its own",
+    "scripts/studies/paper/paper_section5": "an hour; it has a test of its own",
+    "scripts/dev/tutorial": "it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
+    "scripts/studies/validation/accuracy_tables": "needs the runs of scripts/validate",
+    "scripts/studies/stability/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",
     "srun": "needs SLURM",
 }
@@ -76,7 +76,7 @@ class Docs(unittest.TestCase):
     def test_commands(self):
         ran = 0
         for page in pages():
-            if page.name == "tutorial.md":  # scripts/tutorial follows it, and has a test of its own
+            if page.name == "tutorial.md":  # scripts/dev/tutorial follows it, and has a test of its own
                 continue
             shutil.rmtree(self.room / "output", ignore_errors=True)
             if page.name in BEFORE:
@@ -100,7 +100,7 @@ class Docs(unittest.TestCase):
 
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():
-            for name in set(re.findall(r"\bscripts/[a-z0-9_.]+[a-z0-9_]", page.read_text())):
+            for name in set(re.findall(r"\bscripts/[a-z0-9_./]+[a-z0-9_]", page.read_text())):
                 self.assertTrue((ROOT / name).exists(), f"{page.name}: {name}")
 
     def test_options_that_are_mentioned_exist(self):

@@ -1,7 +1,5 @@
-"""The scripts: help, counting of tests, reader, plots, pictures and comparison on known data, and a real run reused."""
+"""The scripts: reader, plots, pictures and comparison on known data, and a real run reused."""
 import hashlib
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import shutil
@@ -16,26 +14,19 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
-sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
+sys.path[:0] = [str(SCRIPTS), str(SCRIPTS / "lib"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
 from eulastic import Run, is_finished  # noqa: E402
 from eulastic.labels import Units  # noqa: E402
 from eulastic.reading import parse_options  # noqa: E402
+from load_script import load  # noqa: E402
 
 
 def listing(folder):
     """{file: checksum} of all that is in a folder."""
     return {path.relative_to(folder): hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.rglob("*")
             if path.is_file()}
-
-
-def load(script):
-    """A script without suffix as a module."""
-    loader = importlib.machinery.SourceFileLoader(script, str(SCRIPTS / script))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(script, loader))
-    loader.exec_module(module)
-    return module
 
 
 def start(*command, **keywords):
@@ -46,71 +37,6 @@ class WithFolder(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
-
-
-class Shell(WithFolder):
-    def shell_scripts(self):
-        return [path for path in [*SCRIPTS.iterdir(), ROOT / ".ci/run"]
-                if path.is_file() and (path.name == "environment" or path.read_text().startswith("#!/bin/bash"))]
-
-    def test_syntax(self):
-        self.assertGreaterEqual(len(self.shell_scripts()), 6)
-        for path in self.shell_scripts():
-            self.assertEqual(start("bash", "-n", path).returncode, 0, path)
-
-    def test_help_from_anywhere(self):
-        for script in ("install", "build", "test", "tidy", "sanitize", "fuzz", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
-                       "paper_figure2", "paper_section5", "tutorial", "dimple_study", "profile"):
-            done = start(SCRIPTS / script, "--help", cwd=self.folder)
-            self.assertEqual(done.returncode, 0, script)
-            self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
-
-    def test_unknown_option_of_test_is_refused(self):
-        done = start(SCRIPTS / "test", "--quik")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("--quik", done.stderr)
-
-    def count(self, cmake, *arguments):
-        """scripts/test on a project of its own: exit status and last line."""
-        shutil.copytree(SCRIPTS, self.folder / "scripts", dirs_exist_ok=True)
-        (self.folder / "scripts/install").write_text("#!/bin/bash\n")  # a toy needs no packages
-        shutil.copy(ROOT / "CMakePresets.json", self.folder)
-        (self.folder / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.22)\nproject(toy LANGUAGES NONE)\nenable_testing()\n" + cmake)
-        done = start(self.folder / "scripts/test", *arguments, cwd="/")
-        return done.returncode, done.stdout.splitlines()[-1], done.stdout
-
-    TOY = """
-add_custom_target(quick)
-add_test(NAME a COMMAND true)
-add_test(NAME b COMMAND true)
-add_test(NAME c COMMAND {})
-add_test(NAME d COMMAND true)
-add_test(NAME e COMMAND true)
-set_tests_properties(a PROPERTIES LABELS "unit;quick")
-set_tests_properties(b PROPERTIES LABELS "mpi;quick")
-set_tests_properties(c PROPERTIES LABELS "convergence")
-set_tests_properties(d PROPERTIES LABELS "full")
-"""
-
-    def test_every_test_is_counted_once(self):
-        status, last, out = self.count(self.TOY.format("true"))
-        self.assertEqual((status, last), (0, "4 passed, 0 failed"))
-        self.assertRegex(out, r"(?m)^unit\+mpi +\d+:\d\d +5$")
-        self.assertNotIn("regression", out)  # no such test, no such part
-        self.assertEqual(self.count(self.TOY.format("true"), "--quick")[:2], (0, "2 passed, 0 failed"))
-        self.assertEqual(self.count(self.TOY.format("true"), "--full")[:2], (0, "5 passed, 0 failed"))
-
-    def test_failures_count(self):
-        self.assertEqual(self.count(self.TOY.format("false"))[:2], (1, "3 passed, 1 failed"))
-
-    def test_no_test_is_a_failure(self):
-        self.assertEqual(self.count("")[:2], (1, "0 passed, 0 failed"))
-
-    def test_a_broken_build_is_a_failure(self):
-        broken = self.TOY.format("true") + "add_custom_target(broken ALL COMMAND false)\n"
-        self.assertEqual(self.count(broken)[:2], (1, "0 passed, 1 failed"))
-        self.assertEqual(self.count(broken, "--quick")[:2], (0, "2 passed, 0 failed"))  # builds only what it runs
 
 
 class Reader(WithFolder):
