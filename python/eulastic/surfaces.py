@@ -1,4 +1,4 @@
-"""Bodies in a snapshot as pieces of its grid, and fields that only cells at a surface hold, for scripts/render. Arrays are
+"""Bodies in a snapshot as pieces of its grid, and fields that only cells at a surface hold. Arrays are
 (nz, ny, nx)."""
 import numpy
 
@@ -63,6 +63,18 @@ def spread(values):
 
     weight = smooth((values != 0).astype(float))
     return smooth(values) / numpy.where(weight > 0, weight, 1)
+
+
+def sample(values, places, periodic):
+    """Interpolated linearly to places (n, 3), x before y before z, in cells from the centre of the first one; across periodic
+    sides (of z, y, x) values go on, beyond others they are those of the last cell."""
+    low = numpy.floor(places).astype(int)
+    part, total = places - low, numpy.zeros(len(places))
+    for corner in numpy.ndindex(2, 2, 2):
+        cell = [index % n if wraps else numpy.clip(index, 0, n - 1)
+                for index, n, wraps in zip((low + corner).T, values.shape[::-1], periodic[::-1])]
+        total += numpy.prod(numpy.where(corner, part, 1 - part), axis=1) * values[cell[2], cell[1], cell[0]]
+    return total
 
 
 def at_points(values, places):

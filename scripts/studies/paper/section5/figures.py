@@ -5,35 +5,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 from eulastic.labels import Units  # noqa: E402
-from load_script import load  # noqa: E402
+from eulastic.scene import BLUES, Look, Scene, plane_range  # noqa: E402
 
 from . import measures  # noqa: E402
-
-render = load("render")
 
 
 def percent(run):
     """Hematocrit that was asked for, in %."""
     return 100 * float(run.options.get("rbc_hematocrit", 0))
-
-
-class Panel(render.Scene):
-    """A picture without words, seen from the side and a little from above."""
-
-    def add_bar(self, *_):
-        pass
-
-    def add_text(self, *_):
-        pass
-
-    def place_camera(self, renderer):
-        centre, size = self.run.length / 2, numpy.linalg.norm(self.run.length)
-        camera = renderer.GetActiveCamera()
-        camera.SetFocalPoint(*centre)
-        camera.SetPosition(*(centre + size * numpy.array([0.2, 0.4, 1.9])))
-        camera.SetViewUp(0, 1, 0)
-        camera.SetViewAngle(16.5)
-        renderer.ResetCameraClippingRange()
 
 
 def save(figure, path, **options):
@@ -45,12 +24,12 @@ def save(figure, path, **options):
 def snapshots(runs, work, path):
     """Fig. 7: the beginning and the end of every run."""
     pairs = {case: (run.snapshots[0], run.snapshots[-1]) for case, run in runs.items()}
-    speed = render.speed_range([snapshot for pair in pairs.values() for snapshot in pair])
+    speed = plane_range([snapshot for pair in pairs.values() for snapshot in pair])
     figure, axes = plt.subplots(len(runs), 2, figsize=(9.4, 2.15 * len(runs) + 0.3), squeeze=False,
                                 gridspec_kw=dict(left=0.06, right=0.88, top=1 - 0.3 / (2.15 * len(runs) + 0.3), bottom=0.005,
                                                  wspace=0.02, hspace=0.03))
     for row, (case, pair) in zip(axes, pairs.items()):
-        scene = Panel(runs[case], (960, 500), Units(""), speed, 0)
+        scene = Scene(runs[case], (960, 500), Units(""), speed, 0, Look(camera=(6, 12), words=False))
         for axis, snapshot in zip(row, pair):
             picture = work / f"{case}_{int(snapshot is pair[1])}.png"
             scene.draw(snapshot, picture)
@@ -60,7 +39,7 @@ def snapshots(runs, work, path):
             if axis in axes[0]:
                 axis.set_title(f"t = {snapshot.time / 1000:.2g} ms", fontsize=10)
         row[0].set_ylabel(f"{percent(runs[case]):.0f} %")
-    blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", render.BLUES)
+    blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", BLUES)
     colours = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*speed), blues)
     figure.colorbar(colours, cax=figure.add_axes([0.9, 0.25, 0.018, 0.5]), label="u in the middle plane (µm/µs)")
     save(figure, path)
