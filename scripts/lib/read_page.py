@@ -1,7 +1,7 @@
 """Reads the commands, files and Python programs in the pages of docs/: for scripts/dev/tutorial and the tests."""
 import re
 
-PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake", "git", ".ci/", "sbatch", "srun")
+PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake", "git", ".ci/", "sbatch", "srun", "for ")
 
 
 def blocks(page):
@@ -34,6 +34,8 @@ def is_python(block):
 
 def commands(block):
     """The block's commands without comments, continued lines joined; none if it is no shell."""
+    if is_python(block):
+        return []
     text = re.sub(r"\\\n\s*", "", "\n".join(block))
     found = [re.sub(r"\s+#.*", "", line).strip() for line in text.splitlines()]
     return [line for line in found if line.startswith(PROGRAMS) and not re.search(r"\[|\bDIRECTORY\b|\bCASE\b", line)]

@@ -36,7 +36,7 @@ options/capillary_paper.opts: `-check_only` says what it takes, {memory} of memo
 ![Snapshots at five hematocrits](images/section5_snapshots.png)
 
 *At the beginning and at the end. Of the vessel the far side of the lumen is
-drawn, behind it the velocity along x in the middle plane. Cells that cross a periodic end are drawn whole.*
+drawn, behind it the velocity along x in the middle plane. Cells that cross a periodic end are cut there and drawn at both.*
 
 ## Figure 8: where the platelets are
 
