@@ -6,10 +6,10 @@ install(TARGETS eulastic)
 install(DIRECTORY options DESTINATION ${share} FILES_MATCHING PATTERN *.opts PATTERN *.csv PATTERN *.stl PATTERN *.h5)
 install(PROGRAMS scripts/run scripts/plot scripts/render scripts/compare_pressure_solvers scripts/make_vessel scripts/profile
   DESTINATION ${share}/scripts)
-install(FILES scripts/environment scripts/body_surfaces.py scripts/eulastic DESTINATION ${share}/scripts)
+install(FILES scripts/environment scripts/eulastic DESTINATION ${share}/scripts)
 install(DIRECTORY python/eulastic DESTINATION ${share}/python PATTERN __pycache__ EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.jpg)
 file(RELATIVE_PATH cases /${CMAKE_INSTALL_DOCDIR} /${share}/options)  # for links of the documents
 file(CREATE_LINK ${cases} ${PROJECT_BINARY_DIR}/options SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/options DESTINATION ${CMAKE_INSTALL_DOCDIR})

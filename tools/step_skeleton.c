@@ -1,5 +1,5 @@
 /* A step without its arithmetic: the messages and collectives of tools/step_counts.csv on a periodic box of ranks, for
-   scripts/simulate_scaling. With MPI it sends what the program sends; with SimGrid's SMPI it also says how long that
+   scripts/studies/scaling/simulate_scaling. With MPI it sends what the program sends; with SimGrid's SMPI it also says how long that
    takes. Usage: step_skeleton X Y Z SECONDS FILE; SECONDS of arithmetic; FILE has lines
      send DX DY DZ CALLS BYTES      to the rank at that place from here, bytes of all calls together
      Allreduce CALLS BYTES          bytes of all calls together

@@ -68,12 +68,14 @@ class Snapshot:
         """Size of the shear stress on vessels and obstacles in the cells that their surface cuts, 0 in others."""
         return numpy.linalg.norm(self["wall_shear_stress"].astype(float), axis=-1)
 
-    def plane(self, z=None):
-        """Index k of the plane at height z; by default the one that cuts the most solid, without any the middle."""
-        if z is not None:
-            return int(numpy.clip(z / self.run.spacing[2], 0, self.run.cells[2] - 1))
-        solid = self["solid_fraction"].sum(axis=(1, 2)) if "solid_fraction" in self else numpy.zeros(1)
-        return int(solid.argmax()) if solid.any() else self.run.cells[2] // 2
+    def plane(self, d=2, place=None):
+        """Index of the plane of cells normal to d (0, 1, 2) at `place`; by default the one that cuts the most solid, without
+        any the middle."""
+        if place is not None:
+            return int(numpy.clip(place / self.run.spacing[d], 0, self.run.cells[d] - 1))
+        others = tuple({0, 1, 2} - {2 - d})
+        solid = self["solid_fraction"].sum(axis=others) if "solid_fraction" in self else numpy.zeros(1)
+        return int(solid.argmax()) if solid.any() else self.run.cells[d] // 2
 
 
 def is_finished(directory):

@@ -10,7 +10,7 @@ import re
 import sys
 import unittest
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / "scripts")]
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / "scripts/lib")]
 sys.dont_write_bytecode = True
 from communication_counts import ROOT, Counting, Counts  # noqa: E402
 from test_scripts import SCRIPTS, start  # noqa: E402

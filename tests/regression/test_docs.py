@@ -5,6 +5,7 @@ end well, is what is tested. Commands that install, compile or test everything a
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -12,33 +13,43 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts/lib"))
 sys.dont_write_bytecode = True
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
-FLAT = {"python.md": SHORT.replace("16,16,16", "16,16,1")}  # pages of 2-D cases
+FLAT = SHORT.replace("16,16,16", "16,16,1")
+OTHERS = {"python.md": FLAT, "sweep.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2",
+          "long_run.md": "-grid_cells 16,16,1 -checkpoint_interval 30"}
+NO_COMMANDS = "tutorial.md", "gallery.md"  # scripts/dev/tutorial follows the one, a test below looks at the other
 NOT_RUN = {
     "scripts/quickstart": "installs and builds; its run, plot and render are commands of their own here",
     "scripts/test": "this very test is part of it",
-    "scripts/tidy": "all sources", "scripts/sanitize": "compiles", "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
-    "scripts/paper_figure2": "test_scripts.py runs it", "scripts/work_precision": "many long runs",
-    "scripts/count_communication": "it has a test of its own", "scripts/scaling_tables": "it has a test of its own",
-    "scripts/paper_figure5": "it has a test of its own", "scripts/paper_figure6": "it has a test of its own",
-    "scripts/paper_section5": "an hour; it has a test of its own",
-    "scripts/tutorial": "it has a test of its own", "scripts/validate": "hours, and a part of scripts/test",
-    "scripts/accuracy_tables": "needs the runs of scripts/validate",
-    "scripts/stability_map": "many runs", ".ci/": "scripts/test again", "cmake": "compiles",
+    "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
+    "scripts/studies/paper/paper_figure2": "test_scripts.py runs it", "scripts/studies/performance/work_precision": "many long runs",
+    "scripts/count_communication": "it has a test of its own", "scripts/studies/scaling/scaling_tables": "it has a test of its own",
+    "scripts/studies/paper/paper_figure5": "it has a test of its own", "scripts/studies/paper/paper_figure6": "it has a test of its own",
+    "scripts/studies/paper/paper_section5": "an hour; it has a test of its own",
+    "scripts/validate": "hours, and a part of scripts/test",
+    "scripts/studies/validation/accuracy_tables": "needs the runs of scripts/validate",
+    "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",
     "srun": "needs SLURM",
 }
+EVIDENCE = ("validation", "accuracy", "dimple", "performance", "scaling", "stability", "robustness", "contact", "capillary")
 # What a page takes for granted.
 BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_interval 1e-9 -output_dir output"}
 
 
 def pages():
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def tables_by_hand(text):
+    """Rows of tables outside of the marks of scripts."""
+    rest = re.sub(r"<!-- table\b.*?<!-- end( of table)? -->", "", text, flags=re.DOTALL)
+    return [line for line in rest.splitlines() if line.startswith("|")]
 
 
 def reason_not_to_run(command):
@@ -62,25 +73,27 @@ class Docs(unittest.TestCase):
         cls.environment.pop("EULASTIC", None)
         cls.environment["PATH"] = f"{cls.room / 'build/release'}:{os.environ['PATH']}"
 
-    def run_line(self, command):
-        done = subprocess.run(command, shell=True, cwd=self.room, env=self.environment, capture_output=True, text=True,
+    def environment_of(self, page):
+        return dict(self.environment, PETSC_OPTIONS=OTHERS.get(page.name, SHORT))
+
+    def run_line(self, command, page):
+        done = subprocess.run(command, shell=True, cwd=self.room, env=self.environment_of(page), capture_output=True, text=True,
                               timeout=300)
         self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
 
     def run_python(self, page, block):
-        environment = dict(self.environment, PETSC_OPTIONS=FLAT.get(page.name, SHORT))
-        done = subprocess.run([sys.executable, "-B", "-c", "\n".join(block)], cwd=self.room, env=environment,
+        done = subprocess.run([sys.executable, "-B", "-c", "\n".join(block)], cwd=self.room, env=self.environment_of(page),
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, "\n".join(block) + done.stderr)
 
     def test_commands(self):
         ran = 0
         for page in pages():
-            if page.name == "tutorial.md":  # scripts/tutorial follows it, and has a test of its own
+            if page.name in NO_COMMANDS:
                 continue
             shutil.rmtree(self.room / "output", ignore_errors=True)
             if page.name in BEFORE:
-                self.run_line(BEFORE[page.name])
+                self.run_line(BEFORE[page.name], page)
             for before, block in blocks(page):
                 if name := file_name(before):
                     (self.room / name).write_text("\n".join(block) + "\n")
@@ -90,7 +103,7 @@ class Docs(unittest.TestCase):
                             self.assertTrue(not command.startswith(("scripts/", ".ci/")) or
                                             (ROOT / command.split()[0]).exists())
                             continue
-                        self.run_line(command)
+                        self.run_line(command, page)
                         ran += 1
                 if is_python(block):
                     with self.subTest(page=page.name, python=block[0]):
@@ -98,9 +111,48 @@ class Docs(unittest.TestCase):
                         ran += 1
         self.assertGreaterEqual(ran, 5)
 
+    def test_gallery(self):
+        """Every case once, with options that the program takes, its picture, and what it is as the file says."""
+        page = ROOT / "docs/gallery.md"
+        text = page.read_text()
+        cases = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
+        self.assertEqual(sorted(re.findall(r"^### (\w+)$", text, re.MULTILINE)), cases)
+        pictures = re.findall(r"\]\((images/gallery_[\w.]+)\)", text)
+        self.assertEqual(len(pictures), len(cases))
+        self.assertLess(sum((ROOT / "docs" / name).stat().st_size for name in pictures), 4e6)
+        runs = [shlex.split(c) for _, block in blocks(page) for c in commands(block) if c.startswith("scripts/run ")]
+        self.assertEqual(sorted(pathlib.Path(words[1]).stem for words in runs), cases)
+        for _, case, directory, *options in runs:
+            done = subprocess.run([BINARY, ROOT / case, *options, "-print_options"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_every_page_is_in_the_index(self):
+        index = ROOT / "docs/README.md"
+        named = {(index.parent / target).resolve() for target in re.findall(r"\]\(([\w/.]+\.md)\)", index.read_text())}
+        self.assertEqual(set(pages()) - named - {index, ROOT / "README.md"}, set())
+
+    def test_length_of_the_front_pages(self):
+        for page in (ROOT / "README.md", *sorted((ROOT / "docs/howto").glob("*.md"))):
+            self.assertLessEqual(page.read_text().count("\n"), 110 if page.name == "README.md" else 60, page.name)
+
+    def test_numbers_of_evidence_are_written_by_scripts(self):
+        """A table of an evidence page stands between marks that a script writes, or the whole page is a script's; it says once with
+        which program, when, on what and by which script it was made."""
+        self.assertEqual(tables_by_hand("a\n| 1 |\n<!-- table x -->\n| 2 |\n<!-- end -->\n"), ["| 1 |"])
+        for name in EVIDENCE:
+            text = (ROOT / f"docs/{name}.md").read_text()
+            stamps = re.findall(r"^> Made with eulastic [\d.]+ \(\w[\w-]*\), \d{4}-\d\d-\d\d, on .+, by `(scripts/[\w/]+)`", text, re.M)
+            self.assertEqual(len(stamps), 1, name)
+            self.assertTrue((ROOT / stamps[0]).exists(), stamps)
+            script = re.search(r"^Written by `(scripts/[\w/]+)`.*?; do not edit\.", text, re.M)
+            if script:
+                self.assertEqual(script[1], stamps[0])
+            else:
+                self.assertEqual(tables_by_hand(text), [], name)
+
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():
-            for name in set(re.findall(r"\bscripts/[a-z0-9_.]+[a-z0-9_]", page.read_text())):
+            for name in set(re.findall(r"\bscripts/[a-z0-9_./]+[a-z0-9_]", page.read_text())):
                 self.assertTrue((ROOT / name).exists(), f"{page.name}: {name}")
 
     def test_options_that_are_mentioned_exist(self):

@@ -23,7 +23,7 @@ class Kills(Restart):
         self.run_case("run", *FLAT, "-time_steps_max", 4, *OFTEN, ranks=2)
 
     def test_kills(self):
-        result = subprocess.run([sys.executable, ROOT / "scripts/kill_test", "20", "--seed", "5"], env=self.environment,
+        result = subprocess.run([sys.executable, ROOT / "scripts/dev/kill_test", "20", "--seed", "5"], env=self.environment,
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertRegex(result.stdout, r"\A20 kills ")

@@ -27,13 +27,13 @@ class Performance(WithFolder):
                                  "cost_of_bodies", "small_body", "memory"})
 
     def test_table_of_verbs(self):
-        table1 = load("paper_table1")
+        table1 = load("studies/paper/paper_table1")
         run = {"bytes_per_cell": 100, "flops_per_cell": 100, "ns_per_cell": 6, "peak": 50, "triad": 25}
         text = table1.verbs_table(128, {f"{verb}/128": run for verb in table1.VERBS})
         self.assertIn("| D* by itself (fast) | 100 | 100 | 4.00 | 2.00 | 6.00 | 1.50 |", text)
 
     def test_table_of_two_cores(self):
-        table1 = load("paper_table1")
+        table1 = load("studies/paper/paper_table1")
         run = lambda ns, triad, peak: {f"{name}/64": {"ns_per_cell": ns, "triad": triad, "peak": peak}
                                        for name in table1.TWO_CORES}
         rounds = [[run(10, 20, 50), run(5, 30, 90), run(4, 40, 100)], [run(12, 20, 50), run(8, 40, 90), run(8, 20, 50)],
@@ -43,13 +43,13 @@ class Performance(WithFolder):
         self.assertIn("| RKL stage | 1.50 (100.0 %) | 2.00 (125.0 %) |", text)
 
     def test_the_paper_has_its_own_rate(self):
-        table1 = load("paper_table1")
+        table1 = load("studies/paper/paper_table1")
         run = {"ns_per_cell": 0.73e9 / 8.39e6, "flops_per_cell": 1, "GFlops": 1, "peak": 128, "of_peak": .5}
         text = table1.parts_table({"64/64/64": "64^3"}, *[{f"{part}/64/64/64": run for part, *_ in table1.PARTS}] * 2)
         self.assertIn(f"31.2 % | {table1.PAPER_RATE:.3f} |", text)
 
     def test_errors_and_times_beside_the_whole_method(self):
-        tables = load("performance_tables")
+        tables = load("studies/performance/performance_tables")
         row = lambda setting, pressure, cells, error, seconds, dt="auto": {
             "case": "a_b", "setting": setting, "pressure": pressure, "cells": cells, "dt": dt, "error": error,
             "wall_seconds": seconds}
@@ -70,12 +70,12 @@ class Performance(WithFolder):
                 for d, (half, c, h, length) in enumerate(zip((3, 0.65, 3), (1, 5.1, 6), spacing, run.length))]
         snapshot = type("Snapshot", (dict,), {"time": 0.0})
         phi = part[2][:, None, None] * part[1][:, None] * part[0]
-        thickness, largest = load("dimple_study").middle(run, snapshot(solid_fraction=phi))
+        thickness, largest = load("studies/validation/dimple_study").middle(run, snapshot(solid_fraction=phi))
         self.assertAlmostEqual(thickness, 1.3, delta=1e-3)
         self.assertAlmostEqual(largest, 1, delta=1e-12)
 
     def test_cost_of_bodies(self):
-        done = start(SCRIPTS / "cost_of_bodies", "--quick", "--only", "share", "memory")
+        done = start(SCRIPTS / "studies/performance/cost_of_bodies", "--quick", "--only", "share", "memory")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("|")]
         self.assertEqual([row[1] for row in rows[2:5]], ["0.000", "0.562", "1.000"])  # half, and the cells cut

@@ -1,4 +1,4 @@
-"""The exact solutions of scripts/validation/exact.py against closed forms, sampling and their own equations."""
+"""The exact solutions of scripts/studies/validation/exact.py against closed forms, sampling and their own equations."""
 import math
 import pathlib
 import sys
@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/studies"))
 sys.dont_write_bytecode = True
 from validation import exact  # noqa: E402
 

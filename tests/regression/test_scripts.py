@@ -1,7 +1,5 @@
-"""The scripts: help, counting of tests, reader, plots, pictures and comparison on known data, and a real run reused."""
+"""The scripts: reader, plots, pictures and comparison on known data, and a real run reused."""
 import hashlib
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import shutil
@@ -13,29 +11,23 @@ import unittest
 import matplotlib.colors
 import matplotlib.image
 import numpy
+from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
-sys.path[:0] = [str(SCRIPTS), str(ROOT / "tests/support")]
+sys.path[:0] = [str(SCRIPTS), str(SCRIPTS / "lib"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
-from eulastic import Run, is_finished  # noqa: E402
+from eulastic import Run, derived, is_finished, scene, surfaces  # noqa: E402
 from eulastic.labels import Units  # noqa: E402
 from eulastic.reading import parse_options  # noqa: E402
+from load_script import load  # noqa: E402
 
 
 def listing(folder):
     """{file: checksum} of all that is in a folder."""
     return {path.relative_to(folder): hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.rglob("*")
             if path.is_file()}
-
-
-def load(script):
-    """A script without suffix as a module."""
-    loader = importlib.machinery.SourceFileLoader(script, str(SCRIPTS / script))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(script, loader))
-    loader.exec_module(module)
-    return module
 
 
 def start(*command, **keywords):
@@ -46,71 +38,6 @@ class WithFolder(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
-
-
-class Shell(WithFolder):
-    def shell_scripts(self):
-        return [path for path in [*SCRIPTS.iterdir(), ROOT / ".ci/run"]
-                if path.is_file() and (path.name == "environment" or path.read_text().startswith("#!/bin/bash"))]
-
-    def test_syntax(self):
-        self.assertGreaterEqual(len(self.shell_scripts()), 6)
-        for path in self.shell_scripts():
-            self.assertEqual(start("bash", "-n", path).returncode, 0, path)
-
-    def test_help_from_anywhere(self):
-        for script in ("install", "build", "test", "tidy", "sanitize", "fuzz", "quickstart", "run", "plot", "render", "compare_pressure_solvers",
-                       "paper_figure2", "paper_section5", "tutorial", "dimple_study", "profile"):
-            done = start(SCRIPTS / script, "--help", cwd=self.folder)
-            self.assertEqual(done.returncode, 0, script)
-            self.assertIn(f"{script}", done.stdout.splitlines()[0], script)
-
-    def test_unknown_option_of_test_is_refused(self):
-        done = start(SCRIPTS / "test", "--quik")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("--quik", done.stderr)
-
-    def count(self, cmake, *arguments):
-        """scripts/test on a project of its own: exit status and last line."""
-        shutil.copytree(SCRIPTS, self.folder / "scripts", dirs_exist_ok=True)
-        (self.folder / "scripts/install").write_text("#!/bin/bash\n")  # a toy needs no packages
-        shutil.copy(ROOT / "CMakePresets.json", self.folder)
-        (self.folder / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.22)\nproject(toy LANGUAGES NONE)\nenable_testing()\n" + cmake)
-        done = start(self.folder / "scripts/test", *arguments, cwd="/")
-        return done.returncode, done.stdout.splitlines()[-1], done.stdout
-
-    TOY = """
-add_custom_target(quick)
-add_test(NAME a COMMAND true)
-add_test(NAME b COMMAND true)
-add_test(NAME c COMMAND {})
-add_test(NAME d COMMAND true)
-add_test(NAME e COMMAND true)
-set_tests_properties(a PROPERTIES LABELS "unit;quick")
-set_tests_properties(b PROPERTIES LABELS "mpi;quick")
-set_tests_properties(c PROPERTIES LABELS "convergence")
-set_tests_properties(d PROPERTIES LABELS "full")
-"""
-
-    def test_every_test_is_counted_once(self):
-        status, last, out = self.count(self.TOY.format("true"))
-        self.assertEqual((status, last), (0, "4 passed, 0 failed"))
-        self.assertRegex(out, r"(?m)^unit\+mpi +\d+:\d\d +5$")
-        self.assertNotIn("regression", out)  # no such test, no such part
-        self.assertEqual(self.count(self.TOY.format("true"), "--quick")[:2], (0, "2 passed, 0 failed"))
-        self.assertEqual(self.count(self.TOY.format("true"), "--full")[:2], (0, "5 passed, 0 failed"))
-
-    def test_failures_count(self):
-        self.assertEqual(self.count(self.TOY.format("false"))[:2], (1, "3 passed, 1 failed"))
-
-    def test_no_test_is_a_failure(self):
-        self.assertEqual(self.count("")[:2], (1, "0 passed, 0 failed"))
-
-    def test_a_broken_build_is_a_failure(self):
-        broken = self.TOY.format("true") + "add_custom_target(broken ALL COMMAND false)\n"
-        self.assertEqual(self.count(broken)[:2], (1, "0 passed, 1 failed"))
-        self.assertEqual(self.count(broken, "--quick")[:2], (0, "2 passed, 0 failed"))  # builds only what it runs
 
 
 class Reader(WithFolder):
@@ -143,7 +70,8 @@ class Reader(WithFolder):
         numpy.testing.assert_allclose(snapshot.velocity()[0, 0, :, 0].max(), 0.02, rtol=0.01)
         self.assertTrue("pressure" in snapshot and "left_cauchy_green_xx" not in snapshot)
         self.assertIn(snapshot.plane(), (7, 8))  # the bodies' centres are at z = 2, between these planes
-        self.assertEqual(snapshot.plane(z=0.3), 1)
+        self.assertEqual(snapshot.plane(place=0.3), 1)
+        self.assertEqual(snapshot.plane(0, 7.9), 31)
 
     def test_an_unfinished_run_and_none(self):
         for name in ("summary.json", "bodies.h5", "series.csv"):
@@ -177,12 +105,17 @@ class Pictures(WithFolder):
         for name in ("series", "bodies", "slices"):
             picture = matplotlib.image.imread(self.folder / "plots" / f"plot_{name}.png")[..., :3]
             self.assertGreater((picture < 0.5).any(axis=2).sum(), 1000, name)  # ink
+        done = start(SCRIPTS / "plot", self.directory, "--only", "slices", "--plane", "y=3", "--field", "speed", "--format", "svg")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        words = (self.directory / "plot_slices.svg").read_text()
+        for word in ("speed (µm/µs)", "z (µm)", "x (µm)", "y = 3.125 µm"):
+            self.assertIn(f">{word}", words.replace("t = 100 µs, ", ">"))
 
     def test_bodies_are_whole(self):
         snapshot = Run(self.directory).snapshots[0]
         fraction = snapshot["solid_fraction"].astype(float)
         pieces = {body: (piece, begin) for body, piece, begin in
-                  load("render").body_pieces(fraction, snapshot["body"], [True, False, True])}
+                  surfaces.body_pieces(fraction, snapshot["body"], [True, False, True])}
         self.assertEqual(set(pieces), {1, 2})
         self.assertAlmostEqual(sum(piece.sum() for piece, _ in pieces.values()), fraction.sum(), places=3)
         for body, (piece, begin) in pieces.items():  # the first one crosses x = 0: its box starts on the far side
@@ -193,8 +126,8 @@ class Pictures(WithFolder):
     def test_the_surface_of_a_body_encloses_its_volume(self):
         """A box of many cells: 1/2, its corners aside; of one full cell: the surface of its tent of the same volume."""
         box = numpy.pad(numpy.ones((12, 12, 12)), 2)
-        self.assertAlmostEqual(load("render").enclosing(box), 0.5, delta=0.07)
-        level = load("render").enclosing(numpy.pad(numpy.ones((1, 1, 1)), 2))
+        self.assertAlmostEqual(surfaces.enclosing(box), 0.5, delta=0.07)
+        level = surfaces.enclosing(numpy.pad(numpy.ones((1, 1, 1)), 2))
         x = (numpy.arange(200) + 0.5) / 100 - 1
         tent = 1 - abs(x)
         volume = ((tent[:, None, None] * tent[:, None] * tent) > level).sum() / 100**3
@@ -209,11 +142,51 @@ class Pictures(WithFolder):
         self.assertTrue((pixels[0, -1] == 1).all())  # white background
         hue = matplotlib.colors.rgb_to_hsv(pixels)
         for body in (1, 2):
-            wanted = matplotlib.colors.rgb_to_hsv(load("render").colour(body))[0]
+            wanted = matplotlib.colors.rgb_to_hsv(scene.colour(body))[0]
             near = (abs(hue[..., 0] - wanted) < 0.03) & (hue[..., 1] > 0.4)
             self.assertGreater(near.sum(), 500, f"body {body}")
         wall = numpy.abs(pixels - [.08, .38, .28]).max(axis=-1) < 0.02  # the largest stress everywhere
         self.assertGreater(wall.sum(), 1000)
+
+    def test_what_crosses_an_end_is_drawn_at_both(self):
+        """The first body crosses x = 0: a third of it is on the right of the picture then, or none."""
+        shares = []
+        for words in ((), ("--whole",)):
+            picture = self.folder / "bodies.png"
+            done = start(SCRIPTS / "render", self.directory, "--output", picture, "--size", 400, 320, "--plain", "--camera", "0,0",
+                         "--behind", "none", "--time", 0, *words)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            hue = matplotlib.colors.rgb_to_hsv(matplotlib.image.imread(picture)[..., :3])
+            near = (abs(hue[..., 0] - matplotlib.colors.rgb_to_hsv(scene.colour(1))[0]) < 0.03) & (hue[..., 1] > 0.4)
+            shares.append(near[:, 200:].sum() / near.sum())
+        self.assertGreater(shares[0], 0.2)  # the body begins at x = .25, its radius is 1: a third of its disc
+        self.assertLess(shares[0], 0.45)
+        self.assertEqual(shares[1], 0)
+
+    def test_fields_that_follow_from_others(self):
+        """Solid rotation has the vorticity 2; u = y (6 - y)/9 along x has (2 y - 6)/9 of its speed."""
+        snapshot = Run(self.directory).snapshots[-1]
+        y = snapshot.run.centres(1)
+        shear = derived.field(snapshot, "vorticity_z")[0, 1:-1, 0]
+        numpy.testing.assert_allclose(shear, synthetic_run.SPEED * (2 * y[1:-1] - 6) / 9, atol=1e-8)
+        numpy.testing.assert_allclose(derived.field(snapshot, "speed"), snapshot.velocity()[0], atol=1e-9)
+        with self.assertRaisesRegex(KeyError, "accepted: body, pressure"):
+            derived.field(snapshot, "colour")
+        self.assertEqual(derived.limits("pressure", numpy.array([-1.0, 3]), 0), (-3, 3))
+        self.assertEqual(derived.limits("pressure", numpy.array([-1e-9, 1e-9]), 1e-6), (-1e-6, 1e-6))
+
+    def test_picture_options(self):
+        picture = self.folder / "bodies.png"
+        done = start(SCRIPTS / "render", self.directory, "--output", picture, "--size", 300, 240, "--transparent", "--field", "pressure",
+                     "--clip", "z=2", "--dpi", 300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(matplotlib.image.imread(picture)[0, -1, 3], 0)
+        for script, words, reason in (("render", ("--clip", "w=1"), "such as z=10.5"), ("render", ("--camera", "3"), "AZIMUTH"),
+                                      ("render", ("--field", "heat"), "accepted: body"), ("plot", ("--field", "heat"), "accepted: body"),
+                                      ("plot", ("--plane", "w"), "accepted: x, y or z")):
+            done = start(SCRIPTS / script, self.directory, *words)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(reason, done.stderr)
 
     def test_movie(self):
         done = start(SCRIPTS / "render", self.directory, "--movie", self.folder / "movie", "--size", 200, 160)
@@ -221,6 +194,10 @@ class Pictures(WithFolder):
         frames = sorted((self.folder / "movie").iterdir())
         self.assertEqual([frame.name for frame in frames], [f"frame_{n:04}.png" for n in range(3)])
         self.assertNotEqual(frames[0].read_bytes(), frames[2].read_bytes())
+        done = start(SCRIPTS / "render", self.directory, "--movie", self.folder / "film.gif", "--size", 200, 160)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with Image.open(self.folder / "film.gif") as film:
+            self.assertEqual((film.n_frames, film.size), (3, (200, 160)))
 
     def test_a_run_that_is_not_there_is_one_line(self):
         for script, *words in (("plot", "nosuch"), ("render", "nosuch"), ("run", "nosuch.opts"),
@@ -298,7 +275,7 @@ class RealRun(WithFolder):
         self.assertFalse((self.folder / "new").exists())
 
     def test_figure_of_the_paper(self):
-        command = SCRIPTS / "paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10
+        command = SCRIPTS / "studies/paper/paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10
         done = start(*command)
         self.assertEqual(done.returncode, 0, done.stderr)
         runs = [Run(self.folder / solver) for solver in ("smac", "acm")]

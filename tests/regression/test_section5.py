@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/paper_section5: its measures against closed formulas and published numbers, and all of it on a small vessel."""
+"""scripts/studies/paper/paper_section5: its measures against closed formulas and published numbers, and all of it on a small vessel."""
 import os
 import pathlib
 import re
@@ -14,7 +14,7 @@ import matplotlib.image
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts" / room) for room in ("", "lib", "studies/paper")]
 sys.dont_write_bytecode = True
 from eulastic import Run  # noqa: E402
 from section5 import measures, page  # noqa: E402
@@ -97,7 +97,7 @@ class Small(unittest.TestCase):
         room = tempfile.TemporaryDirectory()
         cls.addClassCleanup(room.cleanup)
         cls.room = pathlib.Path(room.name)
-        cls.command = [ROOT / "scripts/paper_section5", "--ranks", "1", "--only", "plasma,h10", "--work", cls.room,
+        cls.command = [ROOT / "scripts/studies/paper/paper_section5", "--ranks", "1", "--only", "plasma,h10", "--work", cls.room,
                        "--docs", cls.room / "docs", *SMALL]
         cls.done = subprocess.run(cls.command, capture_output=True, text=True)
         cls.page = (cls.room / "docs/capillary.md").read_text()

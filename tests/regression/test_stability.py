@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The judge of scripts/stability_map: with moving walls, energy that is made is a death, energy that was paid for is not.
+"""The judge of scripts/studies/stability/stability_map: with moving walls, energy that is made is a death, energy that was paid for is not.
 
 Needs EULASTIC.
 """
@@ -14,7 +14,7 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts/studies/stability")]
 sys.dont_write_bytecode = True
 from eulastic import Run  # noqa: E402
 from stability_judge import MADE, energy_growth, energy_made, judge  # noqa: E402

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/tutorial.md, typed from beginning to end by scripts/tutorial; the runs are cut short from outside, through
+"""docs/tutorial.md, typed from beginning to end by scripts/dev/tutorial; the runs are cut short from outside, through
 PETSC_OPTIONS, which the commands do not say anything against."""
 import os
 import pathlib
@@ -12,7 +12,7 @@ import unittest
 import matplotlib.image
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts/lib"))
 sys.dont_write_bytecode = True
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
 from eulastic import Run  # noqa: E402
@@ -29,10 +29,10 @@ class Tutorial(unittest.TestCase):
         with tempfile.TemporaryDirectory() as room:
             room = pathlib.Path(room)
             before = pictures()
-            done = subprocess.run([ROOT / "scripts/tutorial", "--folder", room / "clone"],
+            done = subprocess.run([ROOT / "scripts/dev/tutorial", "--folder", room / "clone"],
                                   env=dict(os.environ, PETSC_OPTIONS="-time_steps_max 2"), capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-            self.assertEqual(pictures(), before, "scripts/tutorial changed the clone")
+            self.assertEqual(pictures(), before, "scripts/dev/tutorial changed the clone")
             wanted = re.findall(r"images/(tutorial_\w+\.png)", PAGE.read_text())
             self.assertGreaterEqual(len(wanted), 5)
             self.assertEqual(sorted(path.name for path in (room / "clone/docs/images").iterdir()), sorted(wanted))

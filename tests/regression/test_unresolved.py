@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
+sys.path[:0] = [str(ROOT / room) for room in ("scripts", "scripts/studies/stability", "tests/support")]
 sys.dont_write_bytecode = True
 from processor import has_avx512  # noqa: E402
 from eulastic import Run  # noqa: E402

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts/studies")]
 sys.dont_write_bytecode = True
 from validation import bodies, drops, exact, fluid, properties, report, solid  # noqa: E402
 from validation.case import Measure, Setting  # noqa: E402

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Every case of options/ for three steps with three threads, coarse, with both methods and some of their parts: the
-thread sanitizer finds nothing. Needs EULASTIC, built with it (scripts/sanitize --threads)."""
+thread sanitizer finds nothing. Needs EULASTIC, built with it (scripts/dev/sanitize --threads)."""
 import os
 import pathlib
 import subprocess

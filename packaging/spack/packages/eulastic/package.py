@@ -7,7 +7,7 @@ class Eulastic(CMakePackage):
 
     license("BSD-3-Clause")
 
-    version("0.1.0")
+    version("0.2.0")
 
     variant("fftw", default=True, description="the pressure solver SMAC")
     variant("int64", default=False, description="more than 2147483647 cells")

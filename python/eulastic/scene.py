@@ -1,0 +1,317 @@
+"""Pictures of 3-D runs by VTK, for scripts/render and the studies: one window, one snapshot after the other."""
+import colorsys
+import dataclasses
+import itertools
+import os
+import sys
+
+import numpy
+
+from . import derived
+from .framing import Framed
+from .surfaces import at_points, body_pieces, enclosing, sample, spread
+
+BLUES = (.97, .98, 1), (.80, .88, .95), (.58, .76, .88), (.30, .58, .79), (.10, .36, .62)  # of a size
+BOTH = (.13, .40, .67), (.57, .77, .87), (.97, .97, .97), (.96, .65, .51), (.70, .09, .17)  # of what has a sign
+GREENS = (.90, .91, .92), (.74, .86, .78), (.50, .75, .60), (.25, .58, .43), (.08, .38, .28)  # of wall shear stress
+VESSELS = "tube", "constricted_tube", "voxels"
+RED, HUES = 0.99, (0.13, 0.36, 0.78, 0.5)  # of red cells, and of other species, if there are several
+
+
+@dataclasses.dataclass
+class Look:
+    camera: tuple = (19.5, 16.5)  # degrees around y from z, and up
+    zoom: float = 1
+    field: str = ""  # colours bodies
+    behind: str = "velocity_x"  # on the plane behind the bodies; "": no plane
+    clip: tuple = ()  # (direction, place): what is nearer to the eye is cut away
+    transparent: bool = False
+    words: bool = True
+    whole: bool = False  # bodies across a periodic end are drawn whole, not cut and at both ends
+
+
+def start_display():
+    """Starts this script again under a virtual display when there is none: Debian's VTK cannot do without."""
+    if not os.environ.get("DISPLAY"):
+        first = f"--server-num={100 + os.getpid() % 400}"  # scripts that start together must not race for one number
+        os.execvp("xvfb-run", ["xvfb-run", "-a", first, "-s", "-screen 0 640x480x24", sys.executable, "-B", *sys.argv])
+
+
+def colour(body, hue=None):
+    """Neighbouring labels get far hues, or far shades of one (golden ratio)."""
+    turn = 0.618034 * body % 1
+    if hue is None:
+        return colorsys.hsv_to_rgb((0.02 + turn) % 1, 0.55, 0.92)
+    return colorsys.hsv_to_rgb(hue, 0.55 + 0.35 * turn, 0.98 - 0.25 * turn)
+
+
+def species(run):
+    """{name: hue} of each: None if it is the only one, "vessel" of vessels."""
+    shape = {name: run.options.get(name + "_shape") for name in run.options.get("species", "").split(",")}
+    hues = iter(HUES * len(shape))
+    return {name: "vessel" if kind in VESSELS else None if len(shape) == 1 else RED if kind == "biconcave" else next(hues)
+            for name, kind in shape.items()}
+
+
+def on_plane(snapshot, name):
+    """In the plane z = 0; at a wall there is nothing to see, so the middle one."""
+    return derived.field(snapshot, name)[snapshot.run.cells[2] // 2 if snapshot.run.is_bounded(2) else 0]
+
+
+def plane_range(snapshots, name="velocity_x"):
+    """One for all frames of a movie, 0 in the middle where it has both signs, else included, so that the quarters are short
+    numbers."""
+    low, high = 0.0, 0.0
+    for snapshot in snapshots:
+        values = on_plane(snapshot, name)
+        low, high = min(low, values.min()), max(high, values.max())
+    floor = derived.least(snapshots[-1], name)
+    if max(-low, high) <= floor:
+        low, high = 0.0, floor
+    if low < -0.02 * high and derived.is_signed(name):
+        high = max(high, -low)
+        low = -high if high > 0 else low
+    quarter = (high - low) / 4 or 1.0
+    digit = 10 ** (numpy.floor(numpy.log10(quarter)) - 1)
+    quarter = digit * numpy.ceil(quarter / digit - 1e-9)
+    return (-2 * quarter, 2 * quarter) if low < -0.02 * high else (0.0, 4 * quarter)
+
+
+def stress_range(snapshots):
+    """Largest shear stress on walls and surfaces in all frames, rounded up to two digits; 0 without any."""
+    walls = [name for name in snapshots[-1].fields if name.startswith("wall_shear_stress")]
+    largest = max((numpy.linalg.norm(snapshot[name], axis=-1).max() for snapshot in snapshots for name in walls), default=0)
+    digit = 10 ** (numpy.floor(numpy.log10(largest)) - 1) if largest > 0 else 1
+    return float(digit * numpy.ceil(largest / digit))
+
+
+def field_range(snapshots, name):
+    """Of a field in bodies, in all frames."""
+    inside = [derived.field(s, name)[s["solid_fraction"] > 0.5] for s in snapshots]
+    values = numpy.concatenate([v for v in inside if v.size] or [numpy.zeros(1)])
+    return derived.limits(name, values, derived.least(snapshots[-1], name))
+
+
+class Scene(Framed):
+    def __init__(self, run, size, units, speed, stress, look=Look(), body_range=(0, 1)):
+        import vtkmodules.all as vtk  # opens the display
+        self.vtk, self.run, self.units, self.speed, self.stress = vtk, run, units, speed, stress
+        self.look, self.body_range = look, body_range
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetMultiSamples(8)
+        self.window.SetAlphaBitPlanes(int(look.transparent))
+        self.window.SetSize(*(size or self.fitting_size()))
+
+    def draw(self, snapshot, path):
+        vtk = self.vtk
+        renderer = vtk.vtkRenderer()
+        renderer.SetBackground(1, 1, 1)
+        renderer.SetBackgroundAlpha(0 if self.look.transparent else 1)
+        vtk.vtkLightKit().AddLightsToRenderer(renderer)
+        self.window.GetRenderers().RemoveAllItems()
+        self.window.AddRenderer(renderer)
+        self.add_bodies(renderer, snapshot)
+        self.add_box(renderer, snapshot)
+        if self.look.behind:
+            self.add_slice(renderer, snapshot)
+        self.place_camera(renderer)
+        if self.look.words:
+            self.add_words(renderer, snapshot)
+        self.window.Render()
+        image = vtk.vtkWindowToImageFilter()
+        image.SetInput(self.window)
+        image.SetInputBufferType(vtk.VTK_RGBA if self.look.transparent else vtk.VTK_RGB)
+        image.ReadFrontBufferOff()
+        writer = vtk.vtkPNGWriter()
+        writer.SetFileName(str(path))
+        writer.SetInputConnection(image.GetOutputPort())
+        writer.Write()
+
+    def actor(self, renderer, source, rgb, **properties):
+        mapper = self.vtk.vtkPolyDataMapper()
+        mapper.SetInputConnection(source.GetOutputPort())
+        mapper.ScalarVisibilityOff()
+        actor = self.vtk.vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().SetColor(*rgb)
+        for name, value in properties.items():
+            getattr(actor.GetProperty(), "Set" + name)(value)
+        renderer.AddActor(actor)
+        return actor
+
+    def periodic(self):
+        return [not self.run.is_bounded(d) for d in (2, 1, 0)]
+
+    def add_bodies(self, renderer, snapshot):
+        names = species(self.run)
+        field = derived.field(snapshot, self.look.field) if self.look.field else None
+        for name, hue in names.items():
+            tail = "_" + name if len(names) > 1 else ""
+            fraction = snapshot["solid_fraction" + tail]
+            if hue == "vessel":
+                self.add_vessel(renderer, snapshot, fraction)
+                continue
+            for body, piece, begin in body_pieces(fraction, snapshot["body" + tail].astype(int), self.periodic()):
+                for part in self.parts(self.surface(piece, begin, enclosing(piece)), piece.shape, begin):
+                    actor = self.actor(renderer, self.with_normals(part), colour(body, hue), Specular=0.35, SpecularPower=25,
+                                       Ambient=0.12)
+                    if field is not None:
+                        self.colour_by(actor, field)
+
+    def colour_by(self, actor, field):
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        actor.GetMapper().Update()
+        surface = actor.GetMapper().GetInput()
+        if surface.GetNumberOfPoints() == 0:
+            return
+        places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing - 0.5
+        surface.GetPointData().SetScalars(numpy_to_vtk(sample(field, places, self.periodic()), deep=1))
+        actor.GetMapper().ScalarVisibilityOn()
+        actor.GetMapper().SetLookupTable(self.table(*self.body_range))
+
+    def parts(self, surface, shape, begin):
+        """The surface as it is, or cut at the ends of the box that it crosses, once for each; and cut by the look's clip."""
+        planes = [self.plane(*self.look.clip, -numpy.sign(self.direction()[self.look.clip[0]]))] if self.look.clip else []
+        shifts = []
+        for d, (first, count, n, periodic) in enumerate(zip(begin[::-1], shape[::-1], self.run.cells, self.periodic()[::-1])):
+            low, high = first + 2 < 0, first + count - 2 > n  # two cells around a body are empty
+            beyond = periodic and not self.look.whole and (low or high)
+            shifts.append((0, 1 if low else -1) if beyond else (0,))
+            if beyond:
+                planes += [self.plane(d, 0, 1), self.plane(d, self.run.length[d], -1)]
+        for shift in itertools.product(*shifts):
+            part = surface
+            if any(shift):
+                move = self.vtk.vtkTransform()
+                move.Translate(*(shift * self.run.length))
+                part = self.vtk.vtkTransformPolyDataFilter()
+                part.SetTransform(move)
+                part.SetInputConnection(surface.GetOutputPort())
+            if planes:
+                cut, collection = self.vtk.vtkClipClosedSurface(), self.vtk.vtkPlaneCollection()
+                for plane in planes:
+                    collection.AddItem(plane)
+                cut.SetClippingPlanes(collection)
+                cut.SetInputConnection(part.GetOutputPort())
+                part = cut
+            yield part
+
+    def plane(self, d, place, towards):
+        """What lies towards +1 or -1 of `place` along d stays."""
+        plane = self.vtk.vtkPlane()
+        plane.SetOrigin(*(place if axis == d else 0 for axis in range(3)))
+        plane.SetNormal(*(towards if axis == d else 0 for axis in range(3)))
+        return plane
+
+    def add_vessel(self, renderer, snapshot, fraction):
+        """The far side of the lumen, coloured by the shear stress on it; ends of it that leave the box are open."""
+        def widened(values):
+            for axis in range(3):
+                beyond = [(1, 1) if d == axis else (0, 0) for d in range(3)]
+                values = numpy.pad(values, beyond, mode="wrap" if self.periodic()[axis] else "edge")
+            return values
+
+        surface = self.with_normals(self.surface(widened(fraction), numpy.full(3, -1)))
+        look = dict(BackfaceCulling=True)
+        if "wall_shear_stress" not in snapshot:
+            self.actor(renderer, surface, (0.80, 0.72, 0.70), Opacity=0.45, **look)
+            return
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        surface.Update()
+        lumen = surface.GetOutput()
+        places = vtk_to_numpy(lumen.GetPoints().GetData()) / self.run.spacing + 0.5
+        stress = spread(widened(snapshot.surface_shear_stress()))
+        lumen.GetPointData().SetScalars(numpy_to_vtk(at_points(stress, places), deep=1))
+        mapper = self.actor(renderer, surface, (1, 1, 1), Ambient=0.25, **look).GetMapper()
+        mapper.ScalarVisibilityOn()
+        mapper.SetLookupTable(self.table(0, self.stress, GREENS))
+
+    def surface(self, fraction, begin, level=0.5):
+        """phi = level, smoothed; begin: index (k,j,i) of the first cell."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        h = self.run.spacing
+        image = self.vtk.vtkImageData()
+        image.SetDimensions(*fraction.shape[::-1])
+        image.SetSpacing(*h)
+        image.SetOrigin(*((begin[::-1] + 0.5) * h))
+        image.GetPointData().SetScalars(numpy_to_vtk(numpy.ascontiguousarray(fraction, dtype=float).ravel(), deep=1))
+        surface = self.vtk.vtkFlyingEdges3D()
+        surface.SetInputData(image)
+        surface.SetValue(0, level)
+        smooth = self.vtk.vtkWindowedSincPolyDataFilter()  # takes the steps of a sharp phi out of the picture
+        smooth.SetInputConnection(surface.GetOutputPort())
+        smooth.SetNumberOfIterations(20 if fraction.sum() > 50 else 4)  # it would shrink a body of few cells
+        smooth.SetPassBand(0.1)
+        smooth.NormalizeCoordinatesOn()
+        return smooth
+
+    def with_normals(self, surface):
+        normals = self.vtk.vtkPolyDataNormals()
+        normals.SetInputConnection(surface.GetOutputPort())
+        normals.SetFeatureAngle(60)  # sharp where a body is cut
+        return normals
+
+    def add_box(self, renderer, snapshot):
+        length = self.run.length
+        cube = self.vtk.vtkCubeSource()
+        cube.SetBounds(0, length[0], 0, length[1], 0, length[2])
+        edges = self.vtk.vtkExtractEdges()
+        edges.SetInputConnection(cube.GetOutputPort())
+        self.actor(renderer, edges, (0.35, 0.35, 0.4), LineWidth=2, Lighting=False)
+        for d, side in ((0, 0), (0, 1), (1, 0)):  # in front and on top it stays open, behind is the plane
+            if self.run.side(d, side) == "wall":
+                self.add_wall(renderer, snapshot, d, side)
+
+    def table(self, low, high, colours=None):
+        table = self.vtk.vtkColorTransferFunction()
+        for x, rgb in zip(numpy.linspace(low, high, 5), colours or (BOTH if low < 0 < high else BLUES)):
+            table.AddRGBPoint(x, *rgb)
+        return table
+
+    def add_wall(self, renderer, snapshot, d, side):
+        """A wall, coloured by the size of the shear stress on it where the snapshot has that."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        points = [n + 1 for n in self.run.cells]
+        points[d] = 1
+        origin = numpy.zeros(3)
+        origin[d] = side * self.run.length[d]
+        wall = self.vtk.vtkImageData()
+        wall.SetDimensions(*points)
+        wall.SetSpacing(*self.run.spacing)
+        wall.SetOrigin(*origin)
+        mapper = self.vtk.vtkDataSetMapper()
+        mapper.SetInputData(wall)
+        actor = self.vtk.vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().SetColor(0.82, 0.83, 0.86)
+        actor.GetProperty().LightingOff()
+        if self.stress > 0:
+            wall.GetCellData().SetScalars(numpy_to_vtk(snapshot.wall_shear_stress(d, side).ravel(), deep=1))
+            mapper.SetLookupTable(self.table(0, self.stress, GREENS))
+        renderer.AddActor(actor)
+
+    def add_slice(self, renderer, snapshot):
+        """A field on the plane z = 0, behind the bodies."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        run, vtk = self.run, self.vtk
+        values = numpy.pad(on_plane(snapshot, self.look.behind), 1, mode="edge")
+        for end in (0, -1):
+            wall = run.side(1, -end) == "wall" and self.look.behind.startswith("velocity_")
+            if wall:
+                moves = run.options.get(f"wall_y{('min', 'max')[-end]}_velocity", "0,0,0").split(",")
+                values[end] = float(moves["xyz".index(self.look.behind[-1])])
+        grid = vtk.vtkRectilinearGrid()
+        grid.SetDimensions(*values.shape[::-1], 1)
+        for d, place in enumerate((grid.SetXCoordinates, grid.SetYCoordinates)):
+            place(numpy_to_vtk(numpy.concatenate(([0], run.centres(d), [run.length[d]])), deep=1))
+        grid.SetZCoordinates(numpy_to_vtk(numpy.zeros(1), deep=1))
+        grid.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
+        mapper = vtk.vtkDataSetMapper()
+        mapper.SetInputData(grid)
+        mapper.SetLookupTable(self.table(*self.speed))
+        mapper.InterpolateScalarsBeforeMappingOn()
+        actor = vtk.vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().LightingOff()
+        renderer.AddActor(actor)

@@ -1,0 +1,205 @@
+"""The time of a step on many ranks, from counted messages and the program's own split; nothing here is measured.
+
+    machine, step = Machine.read("k"), Step.read("classic")
+    parts = model(machine, step, Split.planned((256, 192, 160), (96, 27, 32)))
+    parts["compute"], parts["latency"], parts["exchange"], parts["pack"], parts["reductions"], parts["gather"]  # s
+
+LogGP's terms (Alexandrov et al. 1995): latency and overhead of a message, bandwidth of a rank; and what memory takes to
+pack and unpack. tools/step_counts.csv, by scripts/studies/scaling/scaling_tables --count, is of the inner one of 27 ranks with boxes of
+32^3 cells: bytes to neighbours across faces, edges and corners give the sums of w, w^2 and w^3 over the fields of a
+step, w layers each, and with them the bytes of a box of any size.
+"""
+import collections
+import csv
+import dataclasses
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+
+from communication_counts import program
+from performance_runs import ENVIRONMENT, ROOT
+
+COUNTS = ROOT / "tools/step_counts.csv"
+CASE = ROOT / "options/channel_rbc.opts"
+COUNTED_BOX, COUNTED_SPLIT = 32, 3
+LEVEL_GATHERED = 4096  # cells: what the V-cycle gathers on every rank
+SPACING = 21.12 / 96   # of CASE as counted
+# What stands on the command line of scripts/count_communication beside CASE, for the counts and for -check_only.
+SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
+            "classic": ["-method", "classic", "-time_step", "0.004"]}
+ASSUMPTIONS = [
+    "a rank's messages leave one after the other, nothing overlaps, no other traffic, no contention in the network",
+    "every field of an exchange is a message to each neighbour and waits for one latency",
+    "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
+    "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
+    "levels of the V-cycle beyond those counted send five messages to a neighbour in a sweep, as the counted do; their "
+    "bytes are left out",
+    "all ranks compute as long as the largest box takes; bodies are spread evenly, output and snapshots left out",
+    "fast: two sweeps and about twenty viscous stages in a step, as counted; its arithmetic over that of classic is as "
+    "-check_only estimates",
+]
+
+
+@dataclasses.dataclass
+class Machine:
+    name: str
+    rank: str                        # what a rank is
+    classic_seconds_per_cell: float  # and step, of a rank
+    latency: float                   # s
+    overhead: float                  # s, for each message at each end
+    bandwidth: float                 # B/s into and out of a rank
+    memory_bandwidth: float          # B/s of a rank
+    sources: list
+
+    @classmethod
+    def read(cls, name):
+        """Of tools/machines/NAME.json, or of a file. Exits with one line if it is none."""
+        path = next((p for p in (ROOT / f"tools/machines/{name}.json", pathlib.Path(name)) if p.is_file()), None)
+        known = ", ".join(sorted(p.stem for p in (ROOT / "tools/machines").glob("*.json")))
+        if not path:
+            sys.stderr.write(f"--model {name}: no such machine; accepted: {known}, or a file like theirs\n")
+            sys.exit(2)
+        fields = [field.name for field in dataclasses.fields(cls)]
+        try:
+            values = json.loads(path.read_text())
+            assert isinstance(values, dict) and set(values) == set(fields)
+            machine = cls(**values)
+            assert all(getattr(machine, key) > 0 for key in fields[2:-1])
+        except (ValueError, AssertionError, TypeError):
+            sys.stderr.write(f"--model {name}: {path} is no machine; accepted: JSON with {', '.join(fields)}, as in "
+                             "tools/machines/k.json\n")
+            sys.exit(2)
+        return machine
+
+
+@dataclasses.dataclass
+class Moments:
+    """Of a group of fields: messages to each neighbour in a step, and the sums of w, w^2, w^3 over them."""
+    fields: float = 0
+    w: tuple = (0, 0, 0)
+
+    @classmethod
+    def of(cls, rows):
+        """`rows`: {rank: (calls, bytes)} of the inner one of 3 x 3 x 3."""
+        found = collections.defaultdict(list)
+        for rank, (calls, size) in rows.items():
+            across = sum(d != 1 for d in (rank % 3, rank // 3 % 3, rank // 9))
+            found[across].append((calls, size))
+        mean = {across: [sum(column) / len(pairs) for column in zip(*pairs)] for across, pairs in found.items()}
+        return cls(mean[1][0], tuple(mean[k][1] / 8 / COUNTED_BOX ** (3 - k) for k in (1, 2, 3)))
+
+
+@dataclasses.dataclass
+class Step:
+    method: str
+    plain: Moments       # all but those of the V-cycle
+    cycle: Moments
+    sweeps: float        # with a V-cycle
+    reductions: list     # [(calls, bytes of one)]
+    relative: float      # arithmetic of a cell over that of classic
+
+    @classmethod
+    def read(cls, method, path=COUNTS):
+        groups = {False: collections.defaultdict(lambda: (0, 0)), True: collections.defaultdict(lambda: (0, 0))}
+        reductions, gathers = [], 0.0
+        with open(path) as file:
+            rows = [row for row in csv.DictReader(file) if row["setting"] == method and row["stage"] == "Step"]
+        if not rows:
+            sys.exit(f"{path}: nothing of {method}; scripts/studies/scaling/scaling_tables --count writes it")
+        for row in rows:
+            calls, size = float(row["calls"]), float(row["bytes"])
+            if row["kind"] == "send":
+                group, rank = groups[row["verb"] == "EulACM"], int(row["partner"])
+                group[rank] = group[rank][0] + calls, group[rank][1] + size
+            elif row["kind"] == "Allgatherv":
+                gathers += calls
+            else:
+                reductions.append((calls, size / calls))
+        plain, cycle = (Moments.of(group) if group else Moments() for group in (groups[False], groups[True]))
+        return cls(method, plain, cycle, gathers, reductions, estimate(method) / estimate("classic"))
+
+
+@dataclasses.dataclass
+class Split:
+    cells: tuple
+    ranks: tuple   # along x, y, z
+    box: tuple     # the largest one
+
+    @classmethod
+    def planned(cls, box, along, by_hand=True):
+        """As the program splits along * box cells; into `along` ranks, or as it likes on as many."""
+        return cls.of([n * p for n, p in zip(box, along)], math.prod(along), along if by_hand else None)
+
+    @classmethod
+    def of(cls, cells, ranks, along=None):
+        hand = [word for d, p in zip("xyz", along) for word in (f"-da_processors_{d}", str(p))] if along else []
+        text = check(cells, ["-ranks", str(ranks), *hand])
+        numbers = lambda pattern: tuple(map(int, re.search(pattern, text, re.M).groups()))
+        parts = numbers(r"^ranks: (\d+) x (\d+) x (\d+) = ")
+        most = numbers(r"^largest box of a rank: (\d+) x (\d+) x (\d+) ") if ranks > 1 else tuple(cells)
+        return cls(tuple(cells), parts, most)
+
+    @property
+    def count(self):
+        return math.prod(self.ranks)
+
+    @property
+    def neighbours(self):
+        return math.prod(min(p, 3) for p in self.ranks) - 1
+
+    @property
+    def unevenness(self):
+        return math.prod(self.box) * self.count / math.prod(self.cells)
+
+    def bytes(self, w):
+        """That a rank sends of fields whose layers have these sums of w, w^2, w^3."""
+        cut = [p > 1 for p in self.ranks]
+        sides = [[n, 0] if not c else [n, 2] for n, c in zip(self.box, cut)]  # along the box, or one of two ends
+        total = 0.0
+        for ends in ((x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)):
+            if sum(ends):
+                total += math.prod(side[end] for side, end in zip(sides, ends)) * w[sum(ends) - 1]
+        return 8 * total
+
+
+def check(cells, words):
+    """What -check_only says of CASE with so many cells, as large as they are wide."""
+    line = [str(program()), str(CASE), "-grid_cells", ",".join(map(str, cells)), "-grid_length",
+            ",".join(f"{n * SPACING:.9g}" for n in cells), "-rbc_count", "1,1,1", "-check_only", *words]
+    done = subprocess.run(line, capture_output=True, text=True, env=ENVIRONMENT)
+    if done.returncode:
+        sys.exit(done.stderr.strip())
+    return done.stdout
+
+
+def estimate(method):
+    """Microseconds for a cell and step on a core."""
+    return float(re.search(r"([\d.e+-]+) us per cell, step and core", check((96, 96, 96), SETTINGS[method]))[1])
+
+
+def shared_levels(cells):
+    """Of the V-cycle, above the one that every rank has."""
+    return max(0, math.ceil(math.log(math.prod(cells) / LEVEL_GATHERED, 8) - 1e-9))
+
+
+def model(machine, step, split):
+    """{part of a step: seconds}; their sum is the step."""
+    parts = {"compute": math.prod(split.box) * machine.classic_seconds_per_cell * step.relative}
+    if split.count == 1:
+        return parts
+    levels = shared_levels(split.cells)
+    more = 5 * step.sweeps * (levels - shared_levels([COUNTED_BOX * COUNTED_SPLIT] * 3))
+    fields = step.plain.fields + step.cycle.fields + more
+    size = split.bytes(step.plain.w) + split.bytes(step.cycle.w)
+    rounds = math.ceil(math.log2(split.count))
+    hop = machine.latency + 2 * machine.overhead
+    gathered = 8 * math.prod(split.cells) / 8 ** levels
+    parts["latency"] = fields * (machine.latency + 2 * machine.overhead * split.neighbours)
+    parts["exchange"] = size / machine.bandwidth
+    parts["pack"] = 4 * size / machine.memory_bandwidth
+    parts["reductions"] = sum(calls * rounds * (hop + bytes / machine.bandwidth) for calls, bytes in step.reductions)
+    parts["gather"] = step.sweeps * (rounds * hop + gathered / machine.bandwidth)
+    return parts

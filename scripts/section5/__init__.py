@@ -1,1 +1,0 @@
-"""What scripts/paper_section5 measures, draws and writes."""

@@ -1,0 +1,116 @@
+"""The pictures of scripts/studies/paper/paper_section5, from {case: run}."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy  # noqa: E402
+from eulastic.labels import Units  # noqa: E402
+from eulastic.scene import BLUES, Look, Scene, plane_range  # noqa: E402
+
+from . import measures  # noqa: E402
+
+
+def percent(run):
+    """Hematocrit that was asked for, in %."""
+    return 100 * float(run.options.get("rbc_hematocrit", 0))
+
+
+def save(figure, path, **options):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=100, pil_kwargs={"optimize": True}, **options)
+    plt.close(figure)
+
+
+def snapshots(runs, work, path):
+    """Fig. 7: the beginning and the end of every run."""
+    pairs = {case: (run.snapshots[0], run.snapshots[-1]) for case, run in runs.items()}
+    speed = plane_range([snapshot for pair in pairs.values() for snapshot in pair])
+    figure, axes = plt.subplots(len(runs), 2, figsize=(9.4, 2.15 * len(runs) + 0.3), squeeze=False,
+                                gridspec_kw=dict(left=0.06, right=0.88, top=1 - 0.3 / (2.15 * len(runs) + 0.3), bottom=0.005,
+                                                 wspace=0.02, hspace=0.03))
+    for row, (case, pair) in zip(axes, pairs.items()):
+        scene = Scene(runs[case], (960, 500), Units(""), speed, 0, Look(camera=(6, 12), words=False))
+        for axis, snapshot in zip(row, pair):
+            picture = work / f"{case}_{int(snapshot is pair[1])}.png"
+            scene.draw(snapshot, picture)
+            axis.imshow(plt.imread(picture), interpolation="antialiased")
+            axis.set(xticks=[], yticks=[])
+            axis.spines[:].set_visible(False)
+            if axis in axes[0]:
+                axis.set_title(f"t = {snapshot.time / 1000:.2g} ms", fontsize=10)
+        row[0].set_ylabel(f"{percent(runs[case]):.0f} %")
+    blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", BLUES)
+    colours = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*speed), blues)
+    figure.colorbar(colours, cax=figure.add_axes([0.9, 0.25, 0.018, 0.5]), label="u in the middle plane (µm/µs)")
+    save(figure, path)
+
+
+def platelets(runs, path):
+    """Fig. 8: distances of all platelets from the axis, without red cells and with the most."""
+    chosen = [runs[case] for case in (list(runs)[0], list(runs)[-1])]
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True, layout="constrained")
+    for axis, run in zip(axes, chosen):
+        axis.plot(run.bodies.time / 1000, measures.radial(run)[0], lw=0.9)
+        axis.axhline(measures.tube(run)[0], color="0.4", lw=2)
+        axis.set(title=f"hematocrit {percent(run):.0f} %", xlabel="t (ms)", xlim=(0, run.bodies.time[-1] / 1000),
+                 ylim=(0, measures.tube(run)[0] + 0.4))
+    axes[0].set_ylabel("distance from the axis (µm)")
+    save(figure, path)
+
+
+def windows(time, width):
+    """Slices of rows, each about `width` of time long."""
+    edges = numpy.searchsorted(time, numpy.arange(time[0], time[-1] + width / 2, width))
+    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:]) if b > a]
+
+
+def radial_velocity(runs, path):
+    """Fig. 9: rms of the radial velocity of the platelets, in time and as a mean of the later part."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True, layout="constrained",
+                                         width_ratios=(1.5, 1))
+    for n, run in enumerate(runs.values()):
+        velocity, time = measures.radial(run)[1], run.bodies.time
+        parts = windows(time, time[-1] / 20)
+        colour = plt.cm.plasma(0.85 * n / max(1, len(runs) - 1))
+        left.plot([time[part].mean() / 1000 for part in parts],
+                  [1e3 * numpy.sqrt((velocity[part] ** 2).mean()) for part in parts], color=colour, marker=".",
+                  label=f"{percent(run):.0f} %")
+        value, error = measures.radial_rms(run)
+        right.errorbar(percent(run), 1e3 * value, 1e3 * error, color=colour, marker="o", capsize=3)
+    left.set(xlabel="t (ms)", ylabel="rms of radial velocity (µm/ms)", ylim=(0, None))
+    left.legend(title="hematocrit", fontsize=8)
+    right.set(xlabel="hematocrit (%)", title="mean over the last two thirds", xlim=(-1, None))
+    save(figure, path)
+
+
+def stress(runs, path):
+    """Which part of the shear stress plasma and cells carry, at the end."""
+    chosen = [runs[case] for case in (list(runs)[0], list(runs)[-1])]
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), sharey=True, layout="constrained")
+    for axis, run in zip(axes, chosen):
+        radius = measures.tube(run)[0]
+        radii = numpy.linspace(0.05 * radius, min(1.04 * radius, run.length[1] / 2 - 1.01 * run.spacing[1]), 100)
+        viscous, elastic = 1e3 * measures.shear_stress(run, run.snapshots[-1], radii)
+        axis.stackplot(radii, viscous, elastic, colors=("#9ecae1", "#ef8a80"), labels=("viscous", "elastic"))
+        axis.plot(radii, 1e3 * measures.force(run) * radii / 2, "k--", lw=1, label="force × r/2")
+        axis.axvline(radius, color="0.4", lw=2)
+        axis.set(title=f"hematocrit {percent(run):.0f} %", xlabel="r (µm)", xlim=(radii[0], radii[-1]))
+        axis.legend(fontsize=8, loc="upper left")
+    axes[0].set_ylabel("shear stress (ρ µm²/ms/µs)")
+    save(figure, path)
+
+
+def viscosity(runs, path):
+    """Relative apparent viscosity beside that of blood in glass tubes."""
+    plasma = measures.flow_rate(runs["plasma"])[0]
+    diameter = 2 * measures.tube(runs["plasma"])[0]
+    figure, axis = plt.subplots(figsize=(5, 3.4), layout="constrained")
+    cells = {case: run for case, run in runs.items() if case != "plasma"}
+    discharge = [measures.hematocrit(run)[1] for run in cells.values()]
+    axis.plot([0] + [100 * h for h in discharge], [1] + [plasma / measures.flow_rate(run)[0] for run in cells.values()], "o-",
+              label="here")
+    line = numpy.linspace(0, max([0.25, *discharge]), 50)
+    axis.plot(100 * line, measures.pries(diameter, line), "k--", label=f"Pries et al. 1992, {diameter:g} µm")
+    axis.set(xlabel="discharge hematocrit (%)", ylabel="relative apparent viscosity", ylim=(0.95, None))
+    axis.legend(fontsize=8)
+    save(figure, path)

@@ -1,0 +1,339 @@
+"""docs/capillary.md: checks, a table, the pictures."""
+import math
+import os
+import pathlib
+import re
+import subprocess
+
+import numpy
+from eulastic import read_options
+
+from . import measures
+
+ROOT = pathlib.Path(__file__).resolve().parents[4]
+CASE, PAPER = ROOT / "options/capillary_plasma.opts", ROOT / "options/capillary_paper.opts"
+
+WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
+
+PAGE = """# Red cells and platelets in a capillary
+
+Written by `scripts/studies/paper/paper_section5`; do not edit. Section 5 of Sugiyama et al. (HPCS 2013), red cells and platelets in
+an elastic vessel at hematocrits of 0, 5, 10, 15 and 20 %, at a size for two cores instead of the K computer:
+
+    scripts/studies/paper/paper_section5                # everything: about an hour; called again, it goes on
+    scripts/studies/paper/paper_section5 --finished     # run nothing: the page of what is there
+    scripts/studies/paper/paper_section5 --only h20     # of {cases}
+
+The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (tube) in a box of {cells} cells of
+{spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest; lengths in µm,
+times in µs, density 1; they end at {end:g}. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
+same places whatever the hematocrit. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's
+own case, a vessel of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is
+options/capillary_paper.opts: `-check_only` says what it takes, {memory} of memory and about {time} of one core.
+
+{unfinished}## Figure 7: the cells
+
+![Snapshots at five hematocrits](images/section5_snapshots.png)
+
+*At the beginning and at the end. Of the vessel the far side of the lumen is
+drawn, behind it the velocity along x in the middle plane. Cells that cross a periodic end are cut there and drawn at both.*
+
+## Figure 8: where the platelets are
+
+![Distance of platelets from the axis](images/section5_platelets.png)
+
+*Distance of every platelet from the axis, without red cells and with the most of them. The grey line is the wall.*
+
+## Figure 9: how much they fluctuate
+
+![Radial velocity of platelets](images/section5_radial_velocity.png)
+
+*Root mean square of the radial velocity over the platelets: in twentieths of the run, and over its last two thirds; bars:
+standard error from the differences between platelets.*
+
+{trend}
+
+## Checks
+
+| check | {names} | wanted | verdict |
+|---|{columns}---|---|
+{checks}
+
+Rows without a verdict are reported. Means are over the last two thirds of a run, stresses those of the last snapshot.
+
+**The wall shear stress** is that at the lumen's surface, which no wall of the grid coincides with. It is taken from the
+fields: on a cylinder of radius r around the axis the mean of sigma_xr = mu du/dr + sum of G phi B_xr over bodies (less
+the flux of momentum), from the staggered velocities and the B of every species in the snapshot, is the force per area
+that what is inside passes on. A steady flow has force x r/2 there, at every r and whatever the bodies do; at the wall
+that is force x diameter/4. It says that the flow is steady, that the stress in momentum equation and bodies is the one
+the fields show, and that no force gets lost at the surface, where half of it is viscous and half elastic in the cell
+that contains it. The force on the walls of the box balances the body force on all that is in the box, the vessel
+included.
+
+**The wall** is an elastic solid that begins without stress. The sides of the box that it reaches hold it, as they hold
+fluid; there is no spring that pulls it back. The flow shears it by {shear:.2f}, which moves its surface along x by about
+{elastic:.2f} µm where it is thinnest. Cells that pass press on it: the outward displacement of its
+surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is there at the first snapshot
+already; its mean is zero, volume is kept. What cells leave behind must not grow by itself ([method.md](method.md),
+section 7): the rms of the last snapshot is set against that of the first. With cells the wall also creeps a little along
+x: at its mean velocity within two cells of the lumen, {creep:.3f} µm in 1000 µs where it is fastest.
+
+![Shares of the shear stress](images/section5_stress.png)
+
+*Shear stress at the distance r from the axis at the end: what viscosity and what elastic bodies carry.*
+{tube}{flow}"""
+
+FLOW = """
+## Flow rate
+
+![Relative apparent viscosity](images/section5_viscosity.png)
+
+*Relative apparent viscosity: flow rate of plasma over that of blood at the same force; dashed: the fit of Pries,
+Neuhaus and Gaehtgens (Am. J. Physiol. 263, H1770, 1992) to blood in glass tubes of this diameter. The discharge
+hematocrit is the red cells' share of the volume that flows.*
+
+| hematocrit | red cells | asked | seeded | discharge | flow rate, µm³/ms | apparent viscosity | Pries et al. | gap |
+|---|---|---|---|---|---|---|---|---|
+{flow}
+
+Where the gap comes from, by what the runs say themselves:
+
+| hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same places | layer, µm | layer for Pries et al., µm |
+|---|---|---|---|---|---|---|---|
+{layers}
+
+Sixths of the run: from the second on. From the profile: the apparent viscosity of a tube with the cells where they are
+at the end and the local viscosity {local}, H the local share of cells; that is a fit to force x r/2 over
+the slope of u at all radii and later snapshots of all runs. Blood in the same places: likewise, with the viscosity that
+Pries et al. give for wide tubes. Layer: how wide a layer without cells at the wall would have to be to give the
+apparent viscosity here, the cells evenly in what is left; then likewise for the one of Pries et al. at the discharge
+hematocrit that results. Such a layer is an equivalent, not what the profile looks like.
+
+1. **Where the cells are.** They were seeded in the whole lumen and have not gathered around the axis as in a long tube:
+   the tube hematocrit is too near to that of the discharge, the layer too thin. With the layer of the last column the
+   gap would be closed. {strain:.0f} units of shear at the wall are few for that; the sixths say how far it has come.
+2. **What the cells are.** In the same places blood would flow more easily: a cell here is a lump of neo-Hookean solid as
+   viscous as plasma, not a membrane around a fluid, and cannot tank-tread; few grid cells span its thickness
+   ([dimple.md](dimple.md)), less than one the plasma between two of them.
+
+It is not the vessel: the flow rate of plasma is right to {plasma}.{coarse}
+The period, two diameters, has not been varied.
+"""
+
+TUBE = """
+## Plasma alone: Poiseuille's flow in the tube
+
+The same vessel and force without any cell, four cells long, until it is steady; the surface cuts the cells of the grid
+anywhere. tests/convergence/tube_test.cpp asserts the order.
+
+| cells across the lumen | rms error of u | order | error of flow rate | rms velocity of the wall / largest of plasma |
+|---|---|---|---|---|
+{rows}
+
+u: root mean square over the lumen, in parts of the largest; order: from half as many cells, it scatters as the surface
+cuts the cells otherwise; flow rate: relative. From 40 cells on the wall is four cells thick where it is thinnest; in
+two or three the errors are larger than the order says. The last line is `-vessel_attached false`, which treats the wall like a
+free body ([method.md](method.md), section 7): it stands as well, but its surface is of first order and
+the lumen acts as if it were narrower.
+"""
+
+
+def percent(value, digits=2):
+    return f"{100 * value:.{digits}f} %"
+
+
+def estimate(case, line, value):
+    """What -check_only says about an options file."""
+    program = os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
+    report = subprocess.run([program, case, "-check_only"], check=True, capture_output=True, text=True).stdout
+    return re.search(rf"^{line}.*?: ({value})", report, re.MULTILINE)[1]
+
+
+def checks(runs):
+    """(name, {case: text}, what is wanted, verdict or None) of every check that the runs allow."""
+    wall = {case: measures.wall_shear_stress(run) for case, run in runs.items()}
+    yield ("wall shear stress / (force x diameter/4)", {c: f"{w:.4f}" for c, w in wall.items()}, "1, within 1 %",
+           all(abs(w - 1) < 0.01 for w in wall.values()))
+    held = {case: measures.held_by_walls(run) for case, run in runs.items()}
+    yield ("force on the box / body force on all in it", {c: f"{w:.4f}" for c, w in held.items()}, "1, within 1 %",
+           all(abs(w - 1) < 0.01 for w in held.values()))
+    cells = {case: run for case, run in runs.items() if case != "plasma"}
+    off = {case: cells_off(run) for case, run in cells.items()}
+    yield ("red cells more or less than asked", {c: f"{n:+.2f}" for c, n in off.items()}, "within one",
+           all(abs(n) < 1 for n in off.values()))
+    rate = {case: measures.flow_rate(run)[0] / measures.poiseuille(run) for case, run in runs.items()}
+    yield ("flow rate / Poiseuille's", {c: f"{q:.4f}" for c, q in rate.items()}, "falls; plasma 1, within 1 %",
+           verdict(runs, lambda: abs(rate["plasma"] - 1) < 0.01 and list(rate.values()) == sorted(rate.values(), reverse=True)))
+    rms = {case: measures.radial_rms(run)[0] for case, run in runs.items()}
+    yield ("radial rms velocity of platelets, µm/ms", {c: f"{1e3 * v:.3f}" for c, v in rms.items()},
+           "more with red cells than without", verdict(runs, lambda: min(rms[c] for c in cells) > 2 * rms["plasma"]))
+    drift = {case: abs(run.series.solid_volume / run.series.solid_volume[0] - 1).max() for case, run in runs.items()}
+    yield ("change of the bodies' volume, all together", {c: f"{d:.1e}" for c, d in drift.items()}, "", None)
+    own = {case: run.series.volume_drift.max() for case, run in runs.items()}
+    yield ("change of a body's volume, the worst", {c: f"{d:.1e}" for c, d in own.items()}, "", None)
+    yield ("overlap of bodies, in parts of the red cells", {c: f"{measures.overlap(run):.1g}" for c, run in cells.items()}, "", None)
+    if all("phases" in run.summary for run in runs.values()):  # not in runs of before
+        phases = {case: estimate(run.directory / "options.txt", "phases", r"\d+") for case, run in runs.items()}
+        yield ("phases as -check_only estimates; at the end",
+               {c: f"{phases[c]}; {run.summary['phases']}" for c, run in runs.items()}, "", None)
+    moved = {case: measures.wall_displacements(run) for case, run in runs.items()}
+    yield ("wall: outward displacement, rms at the snapshots, µm",
+           {c: ", ".join(f"{x.std():.3f}" for x in d) for c, d in moved.items()}, "", None)
+    growth = {case: d[-1].std() / d[0].std() for case, d in moved.items()}
+    yield ("wall: that at the last snapshot / at the first", {c: f"{g:.2f}" for c, g in growth.items()}, "below 2",
+           verdict(runs, lambda: max(growth.values()) < 2))
+    yield ("wall: the largest ever, µm", {c: f"{abs(d).max():.2f}" for c, d in moved.items()}, "", None)
+    speed = {case: measures.wall_speed(run) for case, run in runs.items()}
+    yield ("wall: mean velocity at the end / largest of plasma", {c: f"{v[0]:+.0e}" for c, v in speed.items()}, "", None)
+    yield ("wall: rms velocity at the end / largest of plasma", {c: f"{v[1]:.0e}" for c, v in speed.items()}, "", None)
+
+
+def verdict(runs, holds):
+    """None as long as there is nothing to compare."""
+    return bool(holds()) if "plasma" in runs and len(runs) > 1 else None
+
+
+def cells_off(run):
+    """By how many cells the number of red cells differs from the hematocrit that was asked for."""
+    wanted = float(run.options["rbc_hematocrit"]) * measures.area(run) * run.length[0]
+    count = len(measures.of_species(run, "rbc"))
+    volume = run.bodies.volume[0, measures.of_species(run, "rbc")].sum() / count
+    return count - wanted / volume
+
+
+def flow_rows(runs):
+    diameter = 2 * measures.tube(runs["plasma"])[0]
+    plasma = measures.flow_rate(runs["plasma"])[0]
+    for case, run in runs.items():
+        rate, spread = measures.flow_rate(run)
+        text = f"{1e3 * rate:.0f} ± {1e3 * spread:.0f}"
+        if case == "plasma":
+            yield f"| 0 | 0 | 0 | 0 | 0 | {text} | 1 | 1 | |"
+            continue
+        seeded, discharge = measures.hematocrit(run)
+        here, there = plasma / rate, measures.pries(diameter, discharge)
+        count = len(measures.of_species(run, "rbc"))
+        asked = float(run.options["rbc_hematocrit"])
+        yield (f"| {percent(asked, 0)} | {count} | {percent(asked)} | {percent(seeded)} | {percent(discharge)} | {text} | "
+               f"{here:.3f} | {there:.3f} | {percent(here / there - 1, 0)} |")
+
+
+def local_fit(runs):
+    cells = [run for case, run in runs.items() if case != "plasma"]
+    a, b = measures.local_viscosity(cells)
+    return f"1 {'-+'[a > 0]} {abs(a):.2f} H {'-+'[b > 0]} {abs(b):.1f} H²", lambda h: 1 + a * h + b * h ** 2
+
+
+def layer_rows(runs):
+    plasma, viscosity = runs["plasma"], local_fit(runs)[1]
+    for case, run in runs.items():
+        if case == "plasma":
+            continue
+        radius = measures.tube(run)[0]
+        seeded, discharge = measures.hematocrit(run)
+        r, share, _ = measures.profiles(run, run.snapshots[-1])
+        at = lambda x: numpy.interp(x, r, share, right=0)  # noqa: E731
+        here = measures.flow_rate(plasma)[0] / measures.flow_rate(run)[0]
+        ends = [n / 6 * run.series.time[-1] for n in range(1, 7)]
+        rate = [run.series.bulk_velocity_x[(run.series.time >= t0) & (run.series.time <= t1)].mean()
+                for t0, t1 in zip(ends[:-1], ends[1:])]
+        steady = plasma.series.bulk_velocity_x[-1]
+        there = measures.cell_free_layer(radius, seeded, viscosity, lambda h: measures.pries(2 * radius, h))
+        yield (f"| {percent(float(run.options['rbc_hematocrit']), 0)} | {seeded / discharge:.2f} | "
+               f"{measures.pries_ratio(2 * radius, discharge):.2f} | " + ", ".join(f"{steady / q:.3f}" for q in rate)
+               + f" | {measures.tube_flow(radius, at, viscosity)[0]:.3f} | "
+               f"{measures.tube_flow(radius, at, measures.pries_bulk)[0]:.3f} | "
+               f"{measures.cell_free_layer(radius, seeded, viscosity, lambda h: here):.1f} | {there:.1f} |")
+
+
+def grid_effect(runs, coarse):
+    """The apparent viscosity at 10 % on two grids, over the time that all have."""
+    if len(coarse) < 2 or "h10" not in runs:
+        return ""
+    fine = {"plasma": runs["plasma"], "h10": runs["h10"]}
+    end = min(run.series.time[-1] for run in [*fine.values(), *coarse.values()])
+
+    def viscosity(pair):
+        plasma, blood = (run.series.bulk_velocity_x[(run.series.time >= end / 3) & (run.series.time <= end)].mean() for run in pair)
+        return f"{plasma / blood:.3f}"
+    return (f"\nNor is it the grid in the first place: at 10 % the apparent viscosity from {end / 3:.0f} to {end:.0f} is "
+            f"{viscosity(coarse.values())} on {' x '.join(map(str, list(coarse.values())[0].cells))} cells and "
+            f"{viscosity(fine.values())} here.")
+
+
+def flow(runs, coarse, strain):
+    error = abs(measures.flow_rate(runs["plasma"])[0] / measures.poiseuille(runs["plasma"]) - 1)
+    return FLOW.format(flow="\n".join(flow_rows(runs)), layers="\n".join(layer_rows(runs)), local=local_fit(runs)[0],
+                       strain=strain, plasma=percent(error, 1), coarse=grid_effect(runs, coarse))
+
+
+def tube_rows(tubes):
+    errors = {}
+    for name, run in tubes.items():
+        cells = run.cells[1]
+        radius, (y0, z0) = measures.tube(run)
+        y, z = run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0
+        share = 1 - (y ** 2 + z ** 2) / radius ** 2
+        largest = 2 * measures.poiseuille(run) / measures.area(run)
+        u = run.snapshots[-1]["velocity_x"].astype(float).mean(axis=2) / largest
+        error = math.sqrt(((u - share)[share > 0] ** 2).mean())
+        if name != "free":
+            errors[cells] = error
+        rate = run.series.bulk_velocity_x[-1] * run.length[1] * run.length[2] / measures.poiseuille(run) - 1
+        order = f"{math.log2(errors[cells // 2] / error):.2f}" if cells // 2 in errors and name != "free" else ""
+        label = f"{2 * radius / run.spacing[1]:.1f}" + (", not attached" if name == "free" else "")
+        yield f"| {label} | {error:.2e} | {order} | {rate:+.2e} | {measures.wall_speed(run)[1]:.0e} |"
+
+
+def trend(runs):
+    """What Fig. 9 says, in words."""
+    if "plasma" not in runs or len(runs) < 2:
+        return "Not all runs are there yet."
+    rms = {case: [1e3 * v for v in measures.radial_rms(run)] for case, run in runs.items()}
+    cells = list(rms)[1:]
+    value = [rms[c][0] for c in cells]
+    rises = value == sorted(value)
+    words = "grows with every step of hematocrit" if rises else "grows with the hematocrit, though not with every step of it" \
+        if value[-1] > value[0] else "does not grow with the hematocrit beyond that"
+    return (f"In plasma alone platelets stay on their circles: {rms['plasma'][0]:.3f} µm/ms. Red cells push them about, "
+            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast with the fewest cells; the rms {words}: "
+            + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
+            + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. That is "
+            "what the paper is about: the motion of the red cells makes the platelets fluctuate"
+            + (", the more the more cells." if rises else ".\nThe order among the hematocrits is within the scatter of so few "
+               "platelets in so short a time."))
+
+
+def other_options(run):
+    """How the runs differ from the files of options/, in words."""
+    file, changed = read_options(CASE), []
+    for name in ("grid_cells", "grid_length", "time_end"):
+        if [float(x) for x in file[name].split(",")] != [float(x) for x in run.options[name].split(",")]:
+            changed.append(f"-{name} {run.options[name]}")
+    return f"**The runs of this page were made with `{' '.join(changed)}`, other than in options/.**\n\n" if changed else ""
+
+
+def write(runs, tubes, coarse, missing, path):
+    """Returns whether no check failed."""
+    run = list(runs.values())[0]
+    rows = list(checks(runs))
+    radius = measures.tube(run)[0]
+    wall_stress = measures.force(run) * radius / 2
+    strain = wall_stress / float(run.options["fluid_viscosity"]) * run.bodies.time[-1]
+    text = PAGE.format(
+        cases="plasma, h05, h10, h15, h20, tube, coarse", diameter=2 * radius, length=run.length[0],
+        end=run.bodies.time[-1], cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
+        viscosity=float(run.options["fluid_viscosity"]), platelets=len(measures.of_species(run, "platelet")),
+        capillary=wall_stress / measures.shear_modulus(run, "platelet"),
+        memory=estimate(PAPER, "memory", r"[\d.]+ GB"), time=estimate(PAPER, "wall time", r"[\d.]+ \w+"),
+        shear=wall_stress / measures.shear_modulus(run, "vessel"), patch=radius * math.pi / 8,
+        creep=max(1e3 * measures.wall_speed(run)[0] * 2 * measures.poiseuille(run) / measures.area(run) for run in runs.values()),
+        elastic=wall_stress / measures.shear_modulus(run, "vessel") * (run.length[1] / 2 - radius),
+        unfinished=other_options(run) + (f"**Not run yet: {', '.join(missing)}.**\n\n" if missing else ""), trend=trend(runs),
+        names=" | ".join(runs), columns="---|" * len(runs),
+        checks="\n".join(f"| {name} | {' | '.join(values.get(case, '') for case in runs)} | {wanted} | {WORDS[passed]} |"
+                         for name, values, wanted, passed in rows),
+        tube=TUBE.format(rows="\n".join(tube_rows(tubes))) if tubes else "",
+        flow=flow(runs, coarse, strain) if "plasma" in runs and len(runs) > 1 else "")
+    path.write_text(text)
+    return not any(passed is False for *_, passed in rows)
