@@ -32,7 +32,7 @@ SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "
             "classic": ["-method", "classic", "-time_step", "0.004"]}
 ASSUMPTIONS = [
     "a rank's messages leave one after the other, nothing overlaps, no other traffic, no contention in the network",
-    "every field of an exchange is a message to each neighbour and waits for one latency",
+    "an exchange of a block of fields is a message to each neighbour and waits for one latency",
     "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
     "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
     "levels of the V-cycle beyond those counted send five messages to a neighbour in a sweep, as the counted do; their "
@@ -77,8 +77,8 @@ class Machine:
 
 @dataclasses.dataclass
 class Moments:
-    """Of a group of fields: messages to each neighbour in a step, and the sums of w, w^2, w^3 over them."""
-    fields: float = 0
+    """Of a group of exchanges: messages to each neighbour in a step, and the sums of w, w^2, w^3 over their fields."""
+    messages: float = 0
     w: tuple = (0, 0, 0)
 
     @classmethod
@@ -192,12 +192,12 @@ def model(machine, step, split):
         return parts
     levels = shared_levels(split.cells)
     more = 5 * step.sweeps * (levels - shared_levels([COUNTED_BOX * COUNTED_SPLIT] * 3))
-    fields = step.plain.fields + step.cycle.fields + more
+    messages = step.plain.messages + step.cycle.messages + more
     size = split.bytes(step.plain.w) + split.bytes(step.cycle.w)
     rounds = math.ceil(math.log2(split.count))
     hop = machine.latency + 2 * machine.overhead
     gathered = 8 * math.prod(split.cells) / 8 ** levels
-    parts["latency"] = fields * (machine.latency + 2 * machine.overhead * split.neighbours)
+    parts["latency"] = messages * (machine.latency + 2 * machine.overhead * split.neighbours)
     parts["exchange"] = size / machine.bandwidth
     parts["pack"] = 4 * size / machine.memory_bandwidth
     parts["reductions"] = sum(calls * rounds * (hop + bytes / machine.bandwidth) for calls, bytes in step.reductions)

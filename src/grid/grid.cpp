@@ -42,8 +42,7 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
 
 Int3 Grid::decompose(const GridSpec &spec, int ranks) {
   constexpr double worth = 1.3;  // of the cost, before x is split more than it must be
-  constexpr double share =
-      .25;  // of a cell's time in that of a ghost cell and its opposite, in all exchanges of a step
+  constexpr double share = .125;  // of a cell's time in that of a layer's ghost cell, in all exchanges of a step
   Int3 best{0, 0, 0}, shorter{0, 0, 0};
   double best_cost = 0, shorter_cost = 0;
   for (int px = 1; px <= ranks; ++px) {

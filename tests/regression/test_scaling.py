@@ -37,7 +37,7 @@ class Model(unittest.TestCase):
         classic, fast = Step.read("classic"), Step.read("fast")
         # Three layers of velocity, phi and B, and one of v* and D*.
         self.assertEqual(classic.plain, Moments(14, (10 * 3 + 4, 10 * 9 + 4, 10 * 27 + 4)))
-        self.assertEqual((classic.cycle.fields, classic.sweeps, fast.sweeps), (0, 0, 2))
+        self.assertEqual((classic.cycle.messages, classic.sweeps, fast.sweeps), (0, 0, 2))
 
     def test_parts_by_hand(self):
         machine = Machine("m", "r", 1e-6, 1e-5, 1e-6, 1e9, 4e9, [])
