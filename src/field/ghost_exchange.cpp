@@ -33,7 +33,7 @@ bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->
 
 }  // namespace
 
-PetscErrorCode GhostExchange::make_forest(int width, PetscSF *sf) {
+PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
   const Layout &own = grid_->layout();
   const std::ptrdiff_t unit = by_rows() ? own.sy : 1;
@@ -43,22 +43,24 @@ PetscErrorCode GhostExchange::make_forest(int width, PetscSF *sf) {
   if (grid_->owned_count() == 0) points[2].clear();  // nothing is around no cells
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  for (const Point &z : points[2])
-    for (const Point &y : points[1])
-      for (const Point &x : points[0]) {
-        const auto place_in = [&](const Layout &layout, int i, int j, int k) {
-          return static_cast<PetscInt>((layout.offset(i, j, k) - first_offset(layout)) / unit);
-        };
-        const int rank = grid_->rank_at({x.place, y.place, z.place});
-        const PetscInt leaf = place_in(own, x.here, y.here, z.here),
-                       root = place_in(grid_->layout_of(rank), x.there, y.there, z.there);
-        if (rank == grid_->rank() && root == leaf) continue;  // owned
-        leaves.push_back(leaf);
-        roots.push_back({rank, root});
-      }
+  const auto place_in = [&](const Layout &layout, int f, const std::array<int, 3> &point) {
+    const std::ptrdiff_t offset = layout.offset(point[0], point[1], point[2]) - first_offset(layout);
+    return static_cast<PetscInt>((f * static_cast<std::ptrdiff_t>(layout.size) + offset) / unit);
+  };
+  for (int f = 0; f < fields; ++f)
+    for (const Point &z : points[2])
+      for (const Point &y : points[1])
+        for (const Point &x : points[0]) {
+          const int rank = grid_->rank_at({x.place, y.place, z.place});
+          const PetscInt leaf = place_in(own, f, {x.here, y.here, z.here}),
+                         root = place_in(grid_->layout_of(rank), f, {x.there, y.there, z.there});
+          if (rank == grid_->rank() && root == leaf) continue;  // owned
+          leaves.push_back(leaf);
+          roots.push_back({rank, root});
+        }
   PetscCall(PetscSFCreate(grid_->comm(), sf));
   PetscCall(PetscSFSetFromOptions(*sf));
-  PetscCall(PetscSFSetGraph(*sf, static_cast<PetscInt>(own.size / unit), static_cast<PetscInt>(leaves.size()),
+  PetscCall(PetscSFSetGraph(*sf, static_cast<PetscInt>(fields * own.size / unit), static_cast<PetscInt>(leaves.size()),
                             leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
   if (unit_.type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
@@ -67,17 +69,14 @@ PetscErrorCode GhostExchange::make_forest(int width, PetscSF *sf) {
   PetscFunctionReturn(0);
 }
 
-// Field by field, all under way together: a PetscSF keeps buffers by field, which blocks of any number then share.
-PetscErrorCode GhostExchange::for_fields(const WantedGhosts &wanted,
-                                         PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
+PetscErrorCode GhostExchange::bring(const WantedGhosts &wanted,
+                                    PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
   FieldBlock &block = *wanted.block;
-  SfHandle &forest = forests_[wanted.width];
-  if (!forest) PetscCall(make_forest(wanted.width, forest.put()));
-  for (int f = 0; f < block.count(); ++f) {
-    double *first = block.field(f) + first_offset(block.layout());
-    PetscCall(bcast(forest.get(), unit_.type, first, first, MPI_REPLACE));
-  }
+  SfHandle &forest = forests_[{wanted.width, block.count()}];
+  if (!forest) PetscCall(make_forest(wanted.width, block.count(), forest.put()));
+  double *first = block.data() + first_offset(block.layout());
+  PetscCall(bcast(forest.get(), unit_.type, first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
@@ -85,7 +84,7 @@ PetscErrorCode GhostExchange::begin(const WantedGhosts &wanted) {
   PetscFunctionBeginUser;
   if (is_inside(wanted)) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(for_fields(wanted, PetscSFBcastBegin));
+  PetscCall(bring(wanted, PetscSFBcastBegin));
   PetscFunctionReturn(0);
 }
 
@@ -94,7 +93,7 @@ PetscErrorCode GhostExchange::end(const WantedGhosts &wanted) {
   VerbScope scope(Verb::exchange);
   if (!is_inside(wanted)) {
     VerbScope wait(Verb::wait);
-    PetscCall(for_fields(wanted, PetscSFBcastEnd));
+    PetscCall(bring(wanted, PetscSFBcastEnd));
   }
   wrap_rows(wanted);
   PetscFunctionReturn(0);

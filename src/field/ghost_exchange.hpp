@@ -1,15 +1,16 @@
 // Ghosts of the local arrays, by PETSc: a PetscSF whose roots are the values a rank owns and whose leaves are its
 // ghosts, across periodic sides too. The grid's DMDA says who owns what.
 //
-// While x is not split, roots and leaves are whole rows, and the ghosts at their ends are the other end of the same
-// row. Index N of a wall direction (the high wall of staggered fields), which a DMDA does not number, belongs to the
-// owner of N - 1: its values travel like any others.
+// The fields of a block travel in one message to each neighbour. While x is not split, roots and leaves are whole rows,
+// and the ghosts at their ends are the other end of the same row. Index N of a wall direction (the high wall of
+// staggered fields), which a DMDA does not number, belongs to the owner of N - 1: its values travel like any others.
 #pragma once
 
 #include "field/field_block.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <map>
+#include <utility>
 
 namespace eulastic {
 
@@ -48,14 +49,14 @@ private:
     }
   };
   bool by_rows() const { return grid_->processors(0) == 1; }
-  PetscErrorCode make_forest(int width, PetscSF *sf);
-  PetscErrorCode for_fields(const WantedGhosts &wanted,
-                            PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
+  PetscErrorCode make_forest(int width, int fields, PetscSF *sf);
+  PetscErrorCode bring(const WantedGhosts &wanted,
+                       PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
   const Grid *grid_;
   Unit unit_;
-  std::map<int, SfHandle> forests_;  ///< of a field, by width
+  std::map<std::pair<int, int>, SfHandle> forests_;  ///< by width and number of fields
 };
 
 }  // namespace eulastic
