@@ -54,8 +54,10 @@ def species(run):
 
 
 def on_plane(snapshot, name):
-    """In the plane z = 0; at a wall there is nothing to see, so the middle one."""
-    return derived.field(snapshot, name)[snapshot.run.cells[2] // 2 if snapshot.run.is_bounded(2) else 0]
+    """In the plane z = 0; at a wall, or inside of one, there is nothing to see, so the middle one."""
+    speed = derived.field(snapshot, "speed")
+    still = snapshot.run.is_bounded(2) or speed[0].max() < 1e-3 * speed.max()
+    return derived.field(snapshot, name)[snapshot.run.cells[2] // 2 if still else 0]
 
 
 def plane_range(snapshots, name="velocity_x"):

@@ -31,9 +31,9 @@ NOT_RUN = {
     "scripts/count_communication": "it has a test of its own", "scripts/studies/scaling/scaling_tables": "it has a test of its own",
     "scripts/studies/paper/paper_figure5": "it has a test of its own", "scripts/studies/paper/paper_figure6": "it has a test of its own",
     "scripts/studies/paper/paper_section5": "an hour; it has a test of its own",
-    "scripts/validate": "hours, and a part of scripts/test",
+    "scripts/validate": "hours, and a part of scripts/test", "scripts/make_vessel": "test_voxels.py runs it",
     "scripts/studies/validation/accuracy_tables": "needs the runs of scripts/validate",
-    "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", ".ci/": "scripts/test again", "cmake": "compiles",
+    "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", "scripts/docs": "it has a test of its own", ".ci/": "scripts/test again", "cmake": "compiles",
     "git": "a clone is there", "sbatch": "needs SLURM",
     "srun": "needs SLURM",
 }
@@ -149,6 +149,34 @@ class Docs(unittest.TestCase):
                 self.assertEqual(script[1], stamps[0])
             else:
                 self.assertEqual(tables_by_hand(text), [], name)
+
+    def test_anchors_exist(self):
+        """Links into pages, as GitHub and the site name their headings."""
+        def anchors(page):
+            headings = re.findall(r"^#+ (.+)$", page.read_text(), re.MULTILINE)
+            return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+        for page in pages():
+            for target, anchor in re.findall(r"\]\(([\w/.]*)#([\w-]+)\)", page.read_text()):
+                self.assertIn(anchor, anchors(page.parent / target if target else page), f"{page.name}: {target}#{anchor}")
+
+    @unittest.skipUnless(shutil.which("mkdocs") and shutil.which("doxygen") and pathlib.Path("/usr/share/javascript/mathjax").exists(),
+                         "scripts/install --docs")
+    def test_site(self):
+        """Every page is on it, no link leads nowhere, equations and search need no network."""
+        site = self.room / "site"
+        done = subprocess.run([ROOT / "scripts/docs", "--output", site, "--without-api"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn(", 0 links lead nowhere", done.stdout)
+        for page in pages():
+            place = site / page.relative_to(ROOT).with_suffix(".html")
+            self.assertTrue((place.with_name("index.html") if page.name == "README.md" else place).exists(), place)
+        method = (site / "docs/method.html").read_text()
+        self.assertIn('<span class="arithmatex">\\(', method)
+        self.assertIn('src="../mathjax/MathJax.js', method)
+        self.assertTrue((site / "mathjax/MathJax.js").exists() and (site / "search/search_index.json").exists())
+        for place in site.rglob("*.html"):
+            loaded = re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(https?:[^"]+)"', place.read_text())
+            self.assertEqual([url for url in loaded if "canonical" not in url], [], place)
 
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():

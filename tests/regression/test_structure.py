@@ -8,7 +8,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 LEVELS = [{"base"}, {"grid"}, {"kernels"}, {"field"}, {"physics", "pressure", "bodies", "diagnostics", "io"},
           {"solver"}, {"app"}]
 LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
-ROOMS = ["src", "tests", "options", "scripts", "python", "packaging", "docs", "tools", "cmake", ".ci"]
+ROOMS = ["src", "tests", "options", "scripts", "python", "packaging", "docs", "tools", "cmake", ".ci", ".github"]
 LINES_MAX = 350
 
 
