@@ -35,8 +35,8 @@ class Model(unittest.TestCase):
 
     def test_counts_that_are_stored(self):
         classic, fast = Step.read("classic"), Step.read("fast")
-        # Three layers of velocity, phi and B, and one of v* and D*.
-        self.assertEqual(classic.plain, Moments(14, (10 * 3 + 4, 10 * 9 + 4, 10 * 27 + 4)))
+        # Three layers of velocity, phi and B, and one of v* and D*: five exchanges of blocks.
+        self.assertEqual(classic.plain, Moments(5, (10 * 3 + 4, 10 * 9 + 4, 10 * 27 + 4)))
         self.assertEqual((classic.cycle.messages, classic.sweeps, fast.sweeps), (0, 0, 2))
 
     def test_parts_by_hand(self):
