@@ -43,7 +43,7 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
   if (grid_->owned_count() == 0) points[2].clear();  // nothing is around no cells
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  const auto place_in = [&](const Layout &layout, int f, const std::array<int, 3> &point) {
+  const auto place_in = [&](const Layout &layout, int f, const Int3 &point) {
     const std::ptrdiff_t offset = layout.offset(point[0], point[1], point[2]) - first_offset(layout);
     return static_cast<PetscInt>((f * static_cast<std::ptrdiff_t>(layout.size) + offset) / unit);
   };
@@ -60,8 +60,10 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
         }
   PetscCall(PetscSFCreate(grid_->comm(), sf));
   PetscCall(PetscSFSetFromOptions(*sf));
-  PetscCall(PetscSFSetGraph(*sf, static_cast<PetscInt>(fields * own.size / unit), static_cast<PetscInt>(leaves.size()),
-                            leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
+  PetscInt count;
+  PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * own.size / unit, &count));  // an error where it has no room
+  PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
+                            roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
   if (unit_.type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Type_contiguous(static_cast<int>(unit), MPIU_REAL, &unit_.type));

@@ -41,7 +41,7 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
 }  // namespace
 
 Int3 Grid::decompose(const GridSpec &spec, int ranks) {
-  constexpr double worth = 1.3;  // of the cost, before x is split more than it must be
+  constexpr double worth = 1.3;   // of the cost, before x is split more than it must be
   constexpr double share = .125;  // of a cell's time in that of a layer's ghost cell, in all exchanges of a step
   Int3 best{0, 0, 0}, shorter{0, 0, 0};
   double best_cost = 0, shorter_cost = 0;
