@@ -9,12 +9,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts/studies")]
 sys.dont_write_bytecode = True
-from validation import bodies, drops, exact, fluid, properties, report, solid  # noqa: E402
+from validation import exact, report  # noqa: E402
 from validation.case import Measure, Setting  # noqa: E402
+from validation.ladder import CASES  # noqa: E402
 from validation.runner import Runner  # noqa: E402
-from validation import long_runs, membranes, surfaces  # noqa: E402
-
-CASES = fluid.CASES + solid.CASES + bodies.CASES + drops.CASES + membranes.CASES + long_runs.CASES + surfaces.CASES + properties.CASES
 
 
 class Validation(unittest.TestCase):
