@@ -6,6 +6,7 @@
 
 #include "kernels/membrane_law.hpp"
 #include "kernels/stencils.hpp"
+#include "kernels/tensor.hpp"
 
 #include <array>
 
@@ -48,24 +49,39 @@ EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) 
   return out;
 }
 
-/// A tangential tensor of the plane normal to `from`, turned with it into the plane normal to n by the smallest
-/// rotation.
-template <int Dim>
-EULASTIC_INLINE Tensor<Dim> turn(const Tensor<Dim> &B, const Vector<Dim> &from, const Vector<Dim> &n) noexcept {
-  Vector<Dim> Bn{}, w;
-  double nBn = 0, cosine = 0;
-  for (int a = 0; a < Dim; ++a) {
-    for (int b = 0; b < Dim; ++b) Bn[a] = fma(B[a][b], n[b], Bn[a]);
-    nBn = fma(n[a], Bn[a], nBn);
-    cosine = fma(n[a], from[a], cosine);
+/// Tangential tensors B[field][m] of the planes normal to from[d][m], turned with them into the plane normal to n by the
+/// smallest rotation and multiplied by share[m]; m < count.
+template <int Dim, int Most>
+EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, const double (*from)[Most],
+                          double (*B)[Most]) noexcept {
+  alignas(64) double Bn[Dim][Most], w[Dim][Most], nBn[Most];
+#pragma omp simd
+  for (int m = 0; m < count; ++m) {
+    double cosine = fma(n[1], from[1][m], n[0] * from[0][m]);
+    if (Dim > 2) cosine = fma(n[Dim - 1], from[Dim - 1][m], cosine);
+    nBn[m] = 1 / (1 + (cosine > -0.5 ? cosine : -0.5));
   }
-  const double scale = 1 / (1 + (cosine > -0.5 ? cosine : -0.5));
-  for (int a = 0; a < Dim; ++a) w[a] = scale * (n[a] + from[a]);
-  Tensor<Dim> out;
   for (int a = 0; a < Dim; ++a)
-    for (int b = a; b < Dim; ++b)
-      out[a][b] = out[b][a] = (B[a][b] - (w[a] * Bn[b] + Bn[a] * w[b])) + nBn * (w[a] * w[b]);
-  return out;
+#pragma omp simd
+    for (int m = 0; m < count; ++m) {
+      w[a][m] = nBn[m] * (n[a] + from[a][m]);
+      double sum = fma(B[position<Dim>(a, 1)][m], n[1], B[position<Dim>(a, 0)][m] * n[0]);
+      if (Dim > 2) sum = fma(B[position<Dim>(a, Dim - 1)][m], n[Dim - 1], sum);
+      Bn[a][m] = sum;
+    }
+#pragma omp simd
+  for (int m = 0; m < count; ++m) {
+    double sum = fma(n[1], Bn[1][m], n[0] * Bn[0][m]);
+    if (Dim > 2) sum = fma(n[Dim - 1], Bn[Dim - 1][m], sum);
+    nBn[m] = sum;
+  }
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b) {
+      double *out = B[position<Dim>(a, b)];
+#pragma omp simd
+      for (int m = 0; m < count; ++m)
+        out[m] = share[m] * ((out[m] - (w[a][m] * Bn[b][m] + Bn[a][m] * w[b][m])) + nBn[m] * (w[a][m] * w[b][m]));
+    }
 }
 
 /// F P_0 F^T of a surface with the normal n in a body with B = F F^T, P_0 that of the surface before F: B less what F

@@ -7,7 +7,7 @@
 namespace eulastic {
 
 template <int Dim>
-kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff_t at) {
+EULASTIC_INLINE kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff_t at) {
   const auto value = [&](int f) { return B[f].origin[at]; };
   if constexpr (Dim == 2) {
     return {{{value(0), value(2)}, {value(2), value(1)}}};
@@ -17,13 +17,13 @@ kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff_t at) {
 }
 
 template <int Dim>
-void set_tensor(FieldBlock &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
+EULASTIC_INLINE void set_tensor(FieldBlock &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
   for (int a = 0; a < Dim; ++a)
     for (int b = a; b < Dim; ++b) B[a == b ? a : Dim == 2 ? 2 : 6 - a - b].origin[at] = t[a][b];
 }
 
 template <int Dim>
-kernels::Vector<Dim> normal_of(const Real3 &n) {
+EULASTIC_INLINE kernels::Vector<Dim> normal_of(const Real3 &n) {
   kernels::Vector<Dim> v;
   for (int d = 0; d < Dim; ++d) v[d] = n[d];
   return v;

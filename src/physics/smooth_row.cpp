@@ -34,17 +34,21 @@ EULASTIC_CLONES void smooth_row(int dim, ConstView q, int j, int k, int begin, i
   }
 }
 
+// Force on a face takes the row before, and that what is around.
+bool cleared_around(const Grid &grid, const OccupiedRows &rows, int j, int k) {
+  const int reach = half + 1, reach_z = grid.dimension() == 3 ? reach : 0;
+  for (int m = -reach_z; m <= reach_z; ++m)
+    for (int o = -reach; o <= reach; ++o)
+      if (!rows.idle(j + o, k + m)) return true;
+  return false;
+}
+
 void clear_around(const Grid &grid, const OccupiedRows &rows, int ghosts, View field) {
   const Int3 &n = grid.owned();
   const int dim = grid.dimension(), width = rows.inside() ? 0 : ghosts, deep = dim == 3 ? ghosts : 0;
-  // Force on a face takes the row before, and that what is around.
-  const int reach = half + 1, reach_z = dim == 3 ? reach : 0;
   const auto near = [&](int j, int k) {
     if (width > 0 && (j < width || j >= n[1] - width || (dim == 3 && (k < width || k >= n[2] - width)))) return true;
-    for (int m = -reach_z; m <= reach_z; ++m)
-      for (int o = -reach; o <= reach; ++o)
-        if (!rows.idle(j + o, k + m)) return true;
-    return false;
+    return cleared_around(grid, rows, j, k);
   };
   for (int k = -deep; k < n[2] + deep; ++k)
     for (int j = -ghosts; j < n[1] + ghosts; ++j) {

@@ -6,8 +6,6 @@
 #include "grid/threads.hpp"
 #include "kernels/bending.hpp"
 #include "kernels/exp.hpp"
-#include "kernels/tensor.hpp"
-#include "physics/membrane_tensor.hpp"
 #include "physics/smooth_row.hpp"
 
 #include <algorithm>
@@ -33,81 +31,39 @@ EULASTIC_CLONES void level_row(const double *once, const double *twice, int begi
   }
 }
 
-// Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
-template <int Dim>
-EULASTIC_INLINE double nested_sum(const double *v) {
-  const auto along = [](const double *q, int s) { return (q[0] + q[2 * s]) + q[s]; };
-  double rows[9], planes[3];
-  for (int r = 0; r < (Dim == 3 ? 9 : 3); ++r) rows[r] = along(v + 3 * r, 1);
-  if constexpr (Dim == 2) return along(rows, 1);
-  for (int p = 0; p < 3; ++p) planes[p] = along(rows + 3 * p, 1);
-  return along(planes, 1);
-}
-
-// One point of a layer from those of its neighbours that are nearer to the surface, weighted by how far they lie
-// towards it, and turned into its plane.
-template <int Dim>
-void fill_point(const std::vector<SurfaceCells::Cell> &cells, const int *number, const SurfaceCells::Cell &cell,
-                const std::ptrdiff_t *stride, FieldBlock &tensor) {
-  constexpr int count = Dim == 3 ? 27 : 9, fields = Dim == 3 ? 6 : 3;
-  double weight[count], plain[count], values[fields][count] = {};
-  const SurfaceCells::Cell *from[count];
-  const kernels::Vector<Dim> normal = normal_of<Dim>(cell.normal);
-  int n = 0;
-  for (int z = Dim == 3 ? -1 : 0; z <= (Dim == 3 ? 1 : 0); ++z)
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x, ++n) {
-        const int at = number[cell.at + x + y * stride[1] + z * stride[2]];
-        from[n] = at >= 0 && cells[at].layer < cell.layer ? &cells[at] : nullptr;
-        plain[n] = from[n] ? 1 : 0;
-        double along = (x * cell.normal[0] + y * cell.normal[1]) + z * cell.normal[2];
-        if (cell.distance > 0) along = -along;
-        weight[n] = from[n] && along > 0 ? along / __builtin_sqrt(double(x * x + y * y + z * z)) : 0;
-      }
-  const double towards = nested_sum<Dim>(weight);
-  const double *w = towards > 0 ? weight : plain, sum = towards > 0 ? towards : nested_sum<Dim>(plain);
-  for (int m = 0; m < count; ++m) {
-    if (!(w[m] > 0)) continue;
-    const kernels::Tensor<Dim> turned =
-        kernels::turn<Dim>(tensor_at<Dim>(tensor, from[m]->at), normal_of<Dim>(from[m]->normal), normal);
-    for (int a = 0; a < Dim; ++a)
-      for (int b = a; b < Dim; ++b) values[kernels::position<Dim>(a, b)][m] = w[m] * turned[a][b];
-  }
-  for (int f = 0; f < fields; ++f) tensor[f].origin[cell.at] = nested_sum<Dim>(values[f]) / sum;
-}
-
-struct Steps {
-  double sharp, spread;  ///< from -1/2 to 1/2 across the surface
-};
 // The integral over x of the normal distribution N, in units of its width (Abramowitz and Stegun 26.2.17, 1e-7), and
-// that of N (1 + .7 (1 - x^2)), whose mean |x| is a third of that of N; docs/method.md, (26a).
-EULASTIC_INLINE Steps steps_at(double x) {
+// that of N (1 + .7 (1 - x^2)), whose mean |x| is a third of that of N; docs/method.md, (26a). Both from -1/2 to 1/2
+// across the surface.
+EULASTIC_CLONES void steps_row(const double *level, int begin, int end, double *sharp, double *spread) {
   constexpr double peak = 0.3989422804014327, ends = 0.5003431;  // of the second at `far`
-  const double away = std::min(__builtin_fabs(x), far), xx = away * away, N = peak * kernels::exp(-0.5 * xx);
-  const double t = 1 / kernels::fma(0.2316419, away, 1.0);
-  double tail = 1.330274429;
-  for (const double c : {-1.821255978, 1.781477937, -0.356563782, 0.319381530}) tail = kernels::fma(tail, t, c);
-  const double sharp = kernels::fma(-N, tail * t, 0.5);
-  const double spread = kernels::fma(0.7 * N, away, sharp) * (0.5 / ends);
-  return {x < 0 ? -sharp : sharp, x < 0 ? -spread : spread};
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    const double x = far - level[i], size = __builtin_fabs(x), away = size < far ? size : far;
+    const double N = peak * kernels::exp(-0.5 * (away * away)), t = 1 / kernels::fma(0.2316419, away, 1.0);
+    double tail = 1.330274429;
+    tail = kernels::fma(tail, t, -1.821255978);
+    tail = kernels::fma(tail, t, 1.781477937);
+    tail = kernels::fma(tail, t, -0.356563782);
+    tail = kernels::fma(tail, t, 0.319381530);
+    const double first = kernels::fma(-N, tail * t, 0.5), second = kernels::fma(0.7 * N, away, first) * (0.5 / ends);
+    sharp[i] = x < 0 ? -first : first;
+    spread[i] = x < 0 ? -second : second;
+  }
 }
 
 }  // namespace
 
 // Differences of the steps add up to 1 across a surface. Those of the sharp one are too small by
 // (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which turns normals towards the axes.
-SurfaceCells::Cell SurfaceCells::cell_at(ConstView levels, const Int3 &place) const {
-  Cell cell{};
-  cell.place = place;
-  cell.at = place[0] + place[1] * levels.sy + place[2] * levels.sz;
-  const double *p = levels.origin + cell.at;
+void SurfaceCells::describe(const FieldBlock &fields, Cell *described) const {
+  Cell &cell = *described;
   const Real3 &h = grid_->spacing();
   Real3 sharp_step{}, spread_step{};
   for (int d = 0; d < grid_->dimension(); ++d) {
-    const double low = far - p[-levels.stride(d)], high = far - p[levels.stride(d)];
-    const Steps at_low = steps_at(low), at_high = steps_at(high);
-    sharp_step[d] = (at_high.sharp - at_low.sharp) / (2 * h[d]);
-    spread_step[d] = (at_high.spread - at_low.spread) / (2 * h[d]);
+    const std::ptrdiff_t s = fields[level].stride(d);
+    const double *at_sharp = fields[sharp].origin + cell.at, *at_spread = fields[spread].origin + cell.at;
+    sharp_step[d] = (at_sharp[s] - at_sharp[-s]) / (2 * h[d]);
+    spread_step[d] = (at_spread[s] - at_spread[-s]) / (2 * h[d]);
   }
   const auto dot = [](const Real3 &a, const Real3 &b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; };
   double width = 0;
@@ -120,7 +76,7 @@ SurfaceCells::Cell SurfaceCells::cell_at(ConstView levels, const Int3 &place) co
     }
   };
   normalise(sharp_step);
-  const double x = far - *p, xx = std::min(x * x, 3.0), slope = (1 - xx) / 6,
+  const double x = far - fields[level].origin[cell.at], xx = std::min(x * x, 3.0), slope = (1 - xx) / 6,
                bend = kernels::fma(xx - 6, xx, 3.0) / 120;
   Real3 mended = sharp_step;
   for (int d = 0; d < 3 && width > 0; ++d) {
@@ -132,8 +88,7 @@ SurfaceCells::Cell SurfaceCells::cell_at(ConstView levels, const Int3 &place) co
   cell.delta = dot(cell.normal, sharp_step);
   cell.spread = dot(cell.normal, spread_step);
   cell.owned = true;
-  for (int d = 0; d < 3; ++d) cell.owned = cell.owned && place[d] >= 0 && place[d] < grid_->owned()[d];
-  return cell;
+  for (int d = 0; d < 3; ++d) cell.owned = cell.owned && cell.place[d] >= 0 && cell.place[d] < grid_->owned()[d];
 }
 
 // Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
@@ -142,10 +97,9 @@ Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const 
   return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
-// psi, levels, and the cells within reach of the surface.
-PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
+// psi, levels and steps.
+PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::membrane);
   const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
   const Int3 &n = grid_->owned();
   const ConstView phi = phase.fraction[0];
@@ -174,79 +128,124 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
     smooth_row(dim, once, j, k, begin, end, scratch.row(0), scratch.row(1));
     level_row(once.row(j, k), scratch.row(1), begin, end, fields[level].row(j, k));
   }));
-  cells_.clear();
+  const int deep = dim == 3 ? ghosts : 0, rows = n[1] + 2 * ghosts, planes = n[2] + 2 * deep;
+  const int parts = row_parts(*grid_);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece piece(std::size_t(rows) * planes, part, parts);
+    for (std::size_t r = piece.begin; r < piece.end; ++r) {
+      const int j = static_cast<int>(r % rows) - ghosts, k = static_cast<int>(r / rows) - deep;
+      if (cleared_around(*grid_, phase.rows, j, k))
+        steps_row(fields[level].row(j, k), -ghosts, n[0] + ghosts, fields[sharp].row(j, k), fields[spread].row(j, k));
+    }
+  });
+  PetscFunctionReturn(0);
+}
+
+// The cells within reach of the surface.
+void SurfaceCells::find_nearest(const Phase &phase, ConstView levels) {
   const double within = far - reach / __builtin_sqrt(variance);
   const auto range = [&](int d) { return near_box(phase, d, layers + 1); };
-  const ConstView levels = fields[level];
+  const ConstView phi = phase.fraction[0];
+  cells_.clear();
   for (int k = range(2).begin; k < range(2).end; ++k)
     for (int j = range(1).begin; j < range(1).end; ++j) {
       const OccupiedRows::Span s = phase.rows.span(j, k);
       for (int i = std::max(s.begin, range(0).begin); i < std::min(s.end, range(0).end); ++i) {
         const double value = levels(i, j, k);
         if (!(value >= within && value <= 2 * far - within && phi(i, j, k) > solid)) continue;
-        const Cell cell = cell_at(levels, {i, j, k});
-        if (cell.delta > 0) cells_.push_back(cell);
+        cells_.push_back({});
+        cells_.back().place = {i, j, k};
+        cells_.back().at = i + j * levels.sy + k * levels.sz;
       }
     }
-  find_layers(phase, levels);
-  scope.flops(double(phase.rows.cells()) * (dim == 2 ? 90 : 270));
+}
+
+PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::membrane);
+  PetscCall(find_level(phase, fields));
+  find_nearest(phase, fields[level]);
+  const auto describe_from = [&](std::size_t first) {
+    const int parts = row_parts(*grid_);
+    in_parallel(parts, parts, [&](int part) {
+      const Piece piece(cells_.size() - first, part, parts);
+      for (std::size_t c = first + piece.begin; c < first + piece.end; ++c) describe(fields, &cells_[c]);
+    });
+  };
+  describe_from(0);
+  cells_.erase(std::remove_if(cells_.begin(), cells_.end(), [](const Cell &cell) { return !(cell.delta > 0); }),
+               cells_.end());
+  find_layers(phase);
+  describe_from(nearest());
+  scope.flops(double(phase.rows.cells()) * (grid_->dimension() == 2 ? 90 : 270));
   PetscFunctionReturn(0);
 }
 
-// Synchronous: layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1.
-void SurfaceCells::find_layers(const Phase &phase, ConstView levels) {
+// Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order of
+// memory.
+void SurfaceCells::find_layers(const Phase &phase) {
   const Layout &layout = grid_->layout();
-  const int dim = grid_->dimension();
+  const int deep = grid_->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
+  enum : unsigned char { nothing, first };  // first + L: of layer L
+  std::vector<unsigned char> layer(layout.size, nothing);
+  std::vector<int> last_layer(std::size_t(rows_y) * (layout.cells[2] + 2 * layout.ghosts[2]), -1);  // of every row
+  const auto row_of = [&](int j, int k) { return layer.data() + layout.origin + j * layout.sy + k * layout.sz; };
+  const auto last_of = [&](int j, int k) -> int & {
+    return last_layer[(j + layout.ghosts[1]) + std::size_t(rows_y) * (k + layout.ghosts[2])];
+  };
   number_.assign(layout.size, -1);
   int *number = number_.data() + layout.origin;
-  for (std::size_t n = 0; n < cells_.size(); ++n) number[cells_[n].at] = static_cast<int>(n);
+  for (std::size_t n = 0; n < cells_.size(); ++n) {
+    const Cell &cell = cells_[n];
+    number[cell.at] = static_cast<int>(n);
+    row_of(0, 0)[cell.at] = first;
+    last_of(cell.place[1], cell.place[2]) = 0;
+  }
   first_[0] = 0;
   first_[1] = cells_.size();
+  std::vector<unsigned char> beside(layout.cells[0] + 2 * layout.ghosts[0]);
   for (int l = 1; l <= layers; ++l) {
-    Grid::Range range[3];
-    for (int d = 0; d < 3; ++d) range[d] = near_box(phase, d, layers + 1 - l);
-    for (std::size_t n = first_[l - 1]; n < first_[l]; ++n) {
-      const Int3 middle = cells_[n].place;
-      for (int z = dim == 3 ? -1 : 0; z <= (dim == 3 ? 1 : 0); ++z)
-        for (int y = -1; y <= 1; ++y)
-          for (int x = -1; x <= 1; ++x) {
-            const Int3 place{middle[0] + x, middle[1] + y, middle[2] + z};
-            bool inside = true;
-            for (int d = 0; d < 3; ++d) inside = inside && place[d] >= range[d].begin && place[d] < range[d].end;
-            if (!inside) continue;
-            int &at = number[place[0] + place[1] * layout.sy + place[2] * layout.sz];
-            if (at >= 0) continue;
-            at = static_cast<int>(cells_.size());
-            cells_.push_back(cell_at(levels, place));
-            cells_.back().layer = l;
-          }
-    }
+    const Grid::Range x = near_box(phase, 0, layers + 1 - l), y = near_box(phase, 1, layers + 1 - l),
+                      z = near_box(phase, 2, layers + 1 - l);
+    const auto each_row = [&](const auto &row) {
+      for (int k = z.begin; k < z.end; ++k)
+        for (int j = y.begin; j < y.end; ++j) row(j, k);
+    };
+    each_row([&](int j, int k) {
+      unsigned char *around = beside.data() + layout.ghosts[0];
+      bool any = false;
+      for (int m = -deep; m <= deep; ++m)
+        for (int o = -1; o <= 1; ++o) {
+          if (last_of(j + o, k + m) < l - 1) continue;
+          if (!any) std::fill(beside.begin(), beside.end(), 0);
+          any = true;
+          const unsigned char *from = row_of(j + o, k + m), before = first + l - 1;
+          for (int i = x.begin - 1; i < x.end + 1; ++i) around[i] |= from[i] == before;
+        }
+      if (!any) return;
+      unsigned char *own = row_of(j, k), found = 0;
+      for (int i = x.begin; i < x.end; ++i) {
+        const bool in = own[i] == nothing && (around[i - 1] | around[i] | around[i + 1]);
+        own[i] = in ? first + l : own[i];
+        found |= in;
+      }
+      if (found) last_of(j, k) = l;
+    });
+    each_row([&](int j, int k) {
+      if (last_of(j, k) < l) return;
+      const unsigned char *own = row_of(j, k);
+      for (int i = x.begin; i < x.end; ++i) {
+        if (own[i] != first + l) continue;
+        Cell cell{};
+        cell.place = {i, j, k};
+        cell.at = i + j * layout.sy + k * layout.sz;
+        cell.layer = l;
+        number[cell.at] = static_cast<int>(cells_.size());
+        cells_.push_back(cell);
+      }
+    });
     first_[l + 1] = cells_.size();
   }
-}
-
-PetscErrorCode SurfaceCells::exchange(const Phase &phase, FieldBlock &tensor, int width) const {
-  PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, width, &phase.rows));
-  fill_wall_ghosts_centred_tensor(*grid_, tensor, width, &phase.rows);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SurfaceCells::extend(const Phase &phase, FieldBlock &tensor) const {
-  PetscFunctionBeginUser;
-  PetscCall(exchange(phase, tensor, layers + 1));
-  const Layout &layout = grid_->layout();
-  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
-  const int parts = row_parts(*grid_);
-  for (int l = 1; l <= layers; ++l)
-    in_parallel(parts, parts, [&](int part) {
-      const Piece piece(first_[l + 1] - first_[l], part, parts);
-      for (std::size_t c = first_[l] + piece.begin; c < first_[l] + piece.end; ++c)
-        (grid_->dimension() == 2 ? fill_point<2> : fill_point<3>)(cells_, number_.data() + layout.origin, cells_[c],
-                                                                  stride, tensor);
-    });
-  PetscCall(exchange(phase, tensor, Grid::stencil_width));
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode SurfaceCells::find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const {

@@ -24,9 +24,9 @@ public:
 
   SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
   /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
-  /// of the phase, and levels of the surface.
-  static constexpr int work_fields = 2;
-  enum Field { smoothed, level };
+  /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
+  static constexpr int work_fields = 4;
+  enum Field { smoothed, level, sharp, spread };
   /// Five ghosts of phi.
   PetscErrorCode find(const Phase &phase, FieldBlock &fields);
   /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
@@ -41,8 +41,10 @@ public:
 
 private:
   Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
-  Cell cell_at(ConstView levels, const Int3 &place) const;
-  void find_layers(const Phase &phase, ConstView levels);
+  PetscErrorCode find_level(const Phase &phase, FieldBlock &fields);
+  void find_nearest(const Phase &phase, ConstView levels);
+  void find_layers(const Phase &phase);
+  void describe(const FieldBlock &fields, Cell *cell) const;
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
 
   const Grid *grid_;
