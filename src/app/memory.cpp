@@ -65,6 +65,7 @@ double fields(const Config &config) {
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
+  if (membranes) sum += dimension;  // their force
   if (method.interface == InterfaceScheme::weno5) sum += 1;
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);

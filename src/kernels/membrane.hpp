@@ -49,8 +49,8 @@ EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) 
   return out;
 }
 
-/// Tangential tensors B[field][m] of the planes normal to from[d][m], turned with them into the plane normal to n by the
-/// smallest rotation and multiplied by share[m]; m < count.
+/// Tangential tensors B[field][m] of the planes normal to from[d][m], turned with them into the plane normal to n by
+/// the smallest rotation and multiplied by share[m]; m < count.
 template <int Dim, int Most>
 EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, const double (*from)[Most],
                           double (*B)[Most]) noexcept {

@@ -187,10 +187,10 @@ PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field
   PetscFunctionReturn(0);
 }
 
-void MembraneBending::force_row(const FieldBlock &fields, int a, int j, int k, double scale, double *out) const {
+void MembraneBending::force_row(const FieldBlock &fields, int a, int j, int k, double *out) const {
   const ForceRows rows{fields[smoothed].row(j, k), fields[mean].row(j, k), fields[weight].row(j, k),
                        fields[delta].row(j, k)};
-  force_of_row(rows, fields[smoothed].stride(a), scale / grid_->spacing()[a], grid_->owned()[0], out);
+  force_of_row(rows, fields[smoothed].stride(a), 1 / grid_->spacing()[a], grid_->owned()[0], out);
 }
 
 double MembraneBending::energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at) {

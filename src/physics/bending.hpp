@@ -15,8 +15,8 @@ public:
   /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
   /// around the rows of the phase.
   PetscErrorCode find(const Phase &phase, ConstView smooth, FieldBlock &fields);
-  /// The force along `a` on the owned faces of a row, times `scale`, into out[0 .. cells); of the last find().
-  void force_row(const FieldBlock &fields, int a, int j, int k, double scale, double *out) const;
+  /// The force along `a` on the owned faces of a row into out[0 .. cells); of the last find().
+  void force_row(const FieldBlock &fields, int a, int j, int k, double *out) const;
   /// Energy per area at a cell; 0 where no curvature is known.
   static double energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at);
 

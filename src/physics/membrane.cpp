@@ -103,6 +103,7 @@ bool MembraneTransport::exists(const std::vector<Phase> &phases) {
 
 PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscFunctionBeginUser;
+  force_known_ = false;
   WorkSpace::Lease surface;
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(*phase, surface.fields()));
@@ -129,6 +130,7 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
 
 PetscErrorCode MembraneTransport::extend(Phase *phase) {
   PetscFunctionBeginUser;
+  force_known_ = false;
   WorkSpace::Lease surface;
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(*phase, surface.fields()));
@@ -136,53 +138,67 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
-// Heun. First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2.
+// First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same.
 template <int Dim>
-void MembraneTransport::stage(double dt, const FieldBlock &velocity, bool second, FieldBlock &tensor,
-                              FieldBlock &next) const {
-  const Local<Dim> local(*grid_, velocity[0]);
-  const int parts = row_parts(*grid_);
-  in_parallel(parts, parts, [&](int part) {
-    const Piece piece(surface_.nearest(), part, parts);
-    for (std::size_t c = piece.begin; c < piece.end; ++c) {
-      const SurfaceCells::Cell &cell = surface_.all()[c];
-      if (!cell.owned) continue;
-      const Vector<Dim> n = normal_of<Dim>(cell.normal);
-      const Flow<Dim> flow = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
-      const FieldBlock &from = second ? next : tensor;
-      Tensor<Dim> rate = rate_of<Dim>(local, from, cell.at, flow), value = tensor_at<Dim>(from, cell.at);
-      for (int a = 0; a < Dim; ++a)
-        for (int b = 0; b < Dim; ++b) value[a][b] = kernels::fma(dt, rate[a][b], value[a][b]);
-      if (second) {
-        const Tensor<Dim> old = tensor_at<Dim>(tensor, cell.at);
-        for (int a = 0; a < Dim; ++a)
-          for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
-        value = kernels::project_surface<Dim>(value, n);
-      }
-      set_tensor<Dim>(second ? tensor : next, cell.at, value);
-    }
-  });
-}
-
-PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, Phase *phase) {
+PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension();
-  WorkSpace::Lease surface, lease;
-  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-  PetscCall(work_->take("first stage of B_s", phase->tensor.count(), &lease));
-  PetscCall(surface_.find(*phase, surface.fields()));
-  FieldBlock &next = lease.fields();
+  const Local<Dim> local(*grid_, velocity[0]);
+  std::vector<Flow<Dim>> flows(surface_.nearest());
+  FieldBlock &tensor = phase->tensor;
+  const auto stage = [&](bool second, std::size_t c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) return;
+    const Vector<Dim> n = normal_of<Dim>(cell.normal);
+    if (!second) flows[c] = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
+    const FieldBlock &from = second ? next : tensor;
+    const Tensor<Dim> rate = rate_of<Dim>(local, from, cell.at, flows[c]);
+    Tensor<Dim> value = tensor_at<Dim>(from, cell.at);
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) value[a][b] = kernels::fma(dt, rate[a][b], value[a][b]);
+    if (second) {
+      const Tensor<Dim> old = tensor_at<Dim>(tensor, cell.at);
+      for (int a = 0; a < Dim; ++a)
+        for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
+      value = kernels::project_surface<Dim>(value, n);
+    }
+    set_tensor<Dim>(second ? tensor : next, cell.at, value);
+  };
+  const int parts = row_parts(*grid_);
   for (const bool second : {false, true}) {
     {
       VerbScope scope(Verb::membrane);
-      if (dim == 2)
-        stage<2>(dt, velocity, second, phase->tensor, next);
-      else
-        stage<3>(dt, velocity, second, phase->tensor, next);
-      scope.flops(double(surface_.nearest()) * (dim == 2 ? 700 : 3200));
+      in_parallel(parts, parts, [&](int part) {
+        const Piece piece(surface_.nearest(), part, parts);
+        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c);
+      });
+      scope.flops(double(surface_.nearest()) * (Dim == 2 ? 450 : 2000));
     }
-    PetscCall(surface_.extend(*phase, second ? phase->tensor : next));
+    PetscCall(surface_.extend(*phase, second ? tensor : next));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, bool keeps_force,
+                                          std::vector<Phase> *phases) {
+  PetscFunctionBeginUser;
+  NetForce net(*grid_, keeps_force && drives_all(*phases));
+  if (keeps_force) begin_force();
+  for (Phase &phase : *phases) {
+    if (!phase.material.is_membrane()) continue;
+    WorkSpace::Lease surface;
+    PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+    PetscCall(surface_.find(phase, surface.fields()));
+    {
+      WorkSpace::Lease next;
+      PetscCall(work_->take("first stage of B_s", phase.tensor.count(), &next));
+      if (grid_->dimension() == 2)
+        PetscCall(heun<2>(dt, velocity, &phase, next.fields()));
+      else
+        PetscCall(heun<3>(dt, velocity, &phase, next.fields()));
+    }
+    if (keeps_force) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
+  }
+  if (keeps_force) PetscCall(end_force(&net));
   PetscFunctionReturn(0);
 }
 

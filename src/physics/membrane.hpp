@@ -6,6 +6,7 @@
 #include "field/work_space.hpp"
 #include "physics/bending.hpp"
 #include "physics/elastic_force.hpp"
+#include "physics/net_force.hpp"
 #include "physics/surface_cells.hpp"
 #include "physics/surface_tension.hpp"
 #include "physics/transport.hpp"
@@ -31,18 +32,22 @@ public:
         exchange_(&exchange),
         surface_(grid, exchange),
         bending_(grid, exchange),
-        drifts_(drifts) {}
+        drifts_(drifts),
+        force_(grid, grid.dimension()) {}
   static bool exists(const std::vector<Phase> &phases);
+  std::size_t bytes() const { return force_.bytes(); }
 
   /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch. Five
   /// ghosts of phi, here and below.
   PetscErrorCode start(Phase *phase);
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase);
-  /// B_s over dt with the flow; phi has moved. Leaves layers and ghosts filled.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, Phase *phase);
-  /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`.
-  /// `balanced`: as of SurfaceTension, for bending; the divergence of a stress adds up to nothing.
+  /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `keeps_force`:
+  /// it is this state whose force add_force() adds.
+  PetscErrorCode advance(double dt, const FieldBlock &velocity, bool keeps_force, std::vector<Phase> *phases);
+  /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
+  /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
+  /// divergence of a stress adds up to nothing.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
                            const ForceSlope &slope = {});
   /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
@@ -52,13 +57,20 @@ public:
 private:
   /// delta tau at centres, of the cells in surface_.
   PetscErrorCode find_stress(const Phase &phase, FieldBlock &stress);
-  /// Called with the part, whether it is of bending, component, j, k and the force on the owned faces of the row.
-  using ForceRow = std::function<void(int, bool, int, int, int, const double *)>;
-  PetscErrorCode for_force_rows(const Phase &phase, ConstView smooth, double scale, const ForceRow &use);
+  /// Called with the part, whether it is of bending, component, j, k and the force on the owned faces of the row, which
+  /// it may spoil.
+  using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
+  /// Of the cells in surface_. `bending_energy`: per area at each of them.
+  PetscErrorCode for_force_rows(const Phase &phase, ConstView smooth, const ForceRow &use,
+                                std::vector<double> *bending_energy = nullptr);
+  void begin_force();
+  PetscErrorCode gather_force(const Phase &phase, ConstView smooth, NetForce *net);
+  PetscErrorCode end_force(NetForce *net);
+  bool drives_all(const std::vector<Phase> &phases) const;
   PetscErrorCode measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
                                std::vector<SurfaceSample> *samples);
   template <int Dim>
-  void stage(double dt, const FieldBlock &velocity, bool second, FieldBlock &tensor, FieldBlock &next) const;
+  PetscErrorCode heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next);
 
   const Grid *grid_;
   WorkSpace *work_;
@@ -66,6 +78,9 @@ private:
   SurfaceCells surface_;     ///< of the phase that is worked on
   MembraneBending bending_;  ///< the same
   bool drifts_;
+  FieldBlock force_;   ///< at faces, if it is known
+  Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
+  bool force_known_ = false;
 };
 
 }  // namespace eulastic

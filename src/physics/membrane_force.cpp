@@ -20,16 +20,16 @@ EULASTIC_INLINE double between(const double *q, std::ptrdiff_t s) noexcept {
 // div T on faces of component a, of a row. Within the few cells of delta the terms have to cancel where the surface is
 // flat and its tension uniform, in whatever direction.
 template <int Dim>
-EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
+EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k,
                                     double *out) {
   const ConstView q = T[a];
   const double *aa = q.row(j, k);
   const std::ptrdiff_t sa = q.stride(a);
-  for (int i = 0; i < n; ++i) out[i] = scale * inverse[a] * (aa[i] - aa[i - sa]);
+  for (int i = 0; i < n; ++i) out[i] = inverse[a] * (aa[i] - aa[i - sa]);
   for (int e = 1; e < Dim; ++e) {
     const int b = (a + e) % Dim;
     const double *ab = T[Dim == 2 ? 2 : 6 - a - b].row(j, k);
-    const double ib = scale * inverse[b];
+    const double ib = inverse[b];
     const std::ptrdiff_t sb = q.stride(b);
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
@@ -40,13 +40,11 @@ EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inv
     }
   }
 }
-EULASTIC_CLONES void divergence_2d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
-                                   double *out) {
-  divergence_row<2>(T, a, inverse, n, j, k, scale, out);
+EULASTIC_CLONES void divergence_2d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+  divergence_row<2>(T, a, inverse, n, j, k, out);
 }
-EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double scale,
-                                   double *out) {
-  divergence_row<3>(T, a, inverse, n, j, k, scale, out);
+EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+  divergence_row<3>(T, a, inverse, n, j, k, out);
 }
 
 // Of these differences: the stress lives in three cells around a body, and rows that are not idle reach five.
@@ -83,13 +81,14 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &st
   PetscFunctionReturn(0);
 }
 
-// Of the cells in surface_: that of the stress, then that of bending.
-PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView smooth, double scale,
-                                                 const ForceRow &use) {
+// That of the stress, then that of bending.
+PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView smooth, const ForceRow &use,
+                                                 std::vector<double> *bending_energy) {
   PetscFunctionBeginUser;
   const int dim = grid_->dimension();
   const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
   const int n = grid_->owned()[0];
+  if (bending_energy) bending_energy->assign(surface_.all().size(), 0);
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
     WorkSpace::Lease lease;
@@ -109,39 +108,86 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
           if (phase.rows.idle(j, k)) continue;
           for (int a = 0; a < dim; ++a) {
             if (bending)
-              bending_.force_row(fields, a, j, k, scale, force);
+              bending_.force_row(fields, a, j, k, force);
             else
-              (dim == 2 ? divergence_2d : divergence_3d)(fields, a, inverse, n, j, k, scale, force);
+              (dim == 2 ? divergence_2d : divergence_3d)(fields, a, inverse, n, j, k, force);
             use(part.number, bending, a, j, k, force);
           }
         }
     });
+    for (std::size_t c = 0; bending && bending_energy && c < bending_energy->size(); ++c)
+      if (const SurfaceCells::Cell &cell = surface_.all()[c]; cell.owned)
+        (*bending_energy)[c] = MembraneBending::energy(phase.material, fields, cell.at);
     scope.flops(double(phase.rows.cells()) * dim * (bending ? 6 : 12 * dim));
   }
+  PetscFunctionReturn(0);
+}
+
+bool MembraneTransport::drives_all(const std::vector<Phase> &phases) const {
+  return drifts_ && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
+           return phase.material.is_membrane() && phase.material.membrane.bending_modulus > 0;
+         });
+}
+
+void MembraneTransport::begin_force() {
+  const int n = grid_->owned()[0];
+  in_row_parts(*grid_, [&](const RowPart &part) {
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j)
+        for (int a = 0; a < force_.count(); ++a) std::fill_n(force_[a].row(j, k), n, 0.0);
+  });
+}
+
+PetscErrorCode MembraneTransport::gather_force(const Phase &phase, ConstView smooth, NetForce *net) {
+  PetscFunctionBeginUser;
+  const int n = grid_->owned()[0];
+  PetscCall(for_force_rows(phase, smooth, [&](int part, bool bending, int a, int j, int k, const double *added) {
+    add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
+    if (bending) net->add_row(part, a, added);
+  }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::end_force(NetForce *net) {
+  PetscFunctionBeginUser;
+  PetscCall(net->find_mean(&net_force_));
+  force_known_ = true;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
                                             FieldBlock &force, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  const int n = grid_->owned()[0];
-  const bool bends = std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-    return phase.material.is_membrane() && phase.material.membrane.bending_modulus > 0;
-  });
-  NetForce net(*grid_, balanced && drifts_ && bends);
-  for (const Phase &phase : phases) {
-    if (!phase.material.is_membrane()) continue;
-    WorkSpace::Lease surface;
-    PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-    PetscCall(surface_.find(phase, surface.fields()));
-    PetscCall(for_force_rows(phase, surface.fields()[SurfaceCells::smoothed], scale,
-                             [&](int part, bool bending, int a, int j, int k, const double *added) {
-                               add_force_row(n, added, slope.factor, force[a].row(j, k),
-                                             slope.field ? (*slope.field)[a].row(j, k) : nullptr);
-                               if (bending) net.add_row(part, a, added);
-                             }));
+  if (!force_known_) {
+    NetForce net(*grid_, drives_all(phases));
+    begin_force();
+    for (const Phase &phase : phases) {
+      if (!phase.material.is_membrane()) continue;
+      WorkSpace::Lease surface;
+      PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+      PetscCall(surface_.find(phase, surface.fields()));
+      PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
+    }
+    PetscCall(end_force(&net));
   }
-  PetscCall(net.take_off(force));
+  const int n = grid_->owned()[0];
+  in_row_parts(*grid_, [&](const RowPart &part) {
+    RowScratch scratch(*grid_, 1);
+    double *added = scratch.row(0);
+    for (int k = part.k_begin; k < part.k_end; ++k)
+      for (int j = part.j_begin; j < part.j_end; ++j) {
+        const auto felt = [&](const Phase &phase) { return phase.material.is_membrane() && !phase.rows.idle(j, k); };
+        if (std::none_of(phases.begin(), phases.end(), felt)) continue;
+        for (int a = 0; a < force_.count(); ++a) {
+          const double *f = force_[a].row(j, k);
+          for (int i = 0; i < n; ++i) added[i] = scale * f[i];
+          add_force_row(n, added, slope.factor, force[a].row(j, k),
+                        slope.field ? (*slope.field)[a].row(j, k) : nullptr);
+        }
+      }
+  });
+  const Real3 &mean = net_force_;
+  if (balanced) take_off_mean(*grid_, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
   PetscFunctionReturn(0);
 }
 

@@ -53,26 +53,19 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
   PetscCall(surface_.find(phase, surface.fields()));
   std::vector<ExactSums> sum(row_parts(*grid_), ExactSums(sums));
   const double volume = grid_->cell_volume();
-  PetscCall(for_force_rows(phase, surface.fields()[SurfaceCells::smoothed], 1,
-                           [&](int part, bool, int a, int j, int k, const double *force) {
-                             std::vector<double> product(n);
-                             const double *v = velocity[a].row(j, k);
-                             for (int i = 0; i < n; ++i) product[i] = -force[i] * v[i];
-                             sum[part].add_row(power, product.data(), n, first);
-                           }));
+  const ConstView smooth = surface.fields()[SurfaceCells::smoothed];
+  std::vector<double> bending;
+  PetscCall(for_force_rows(
+      phase, smooth,
+      [&](int part, bool, int a, int j, int k, double *force) {
+        const double *v = velocity[a].row(j, k);
+        for (int i = 0; i < n; ++i) force[i] *= -v[i];
+        sum[part].add_row(power, force, n, first);
+      },
+      &bending));
   VerbScope scope(Verb::sums);
-  std::vector<double> bending(surface_.all().size(), 0.0);
-  if (phase.material.membrane.bending_modulus > 0) {
-    WorkSpace::Lease lease;
-    PetscCall(work_->take("bending", MembraneBending::work_fields, &lease));
-    PetscCall(bending_.find(phase, surface.fields()[SurfaceCells::smoothed], lease.fields()));
-    for (std::size_t c = 0; c < bending.size(); ++c) {
-      const SurfaceCells::Cell &cell = surface_.all()[c];
-      if (cell.owned)
-        bending[c] = smoothed_delta(*grid_, surface.fields()[SurfaceCells::smoothed], cell.at) *
-                     MembraneBending::energy(phase.material, lease.fields(), cell.at);
-    }
-  }
+  for (std::size_t c = 0; c < bending.size(); ++c)
+    if (bending[c] > 0) bending[c] *= smoothed_delta(*grid_, smooth, surface_.all()[c].at);
   std::vector<int> label;
   if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface.fields(), &label));
   for (std::size_t c = 0; c < bending.size(); ++c) {

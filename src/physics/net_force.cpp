@@ -17,22 +17,35 @@ EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, do
   for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
 }
 
-PetscErrorCode NetForce::take_off(FieldBlock &force) {
-  PetscFunctionBeginUser;
-  if (sums_.empty()) PetscFunctionReturn(0);
-  double sum[3];
-  PetscCall(reduce_parts(grid_->comm(), sums_, sum));
-  const int n = grid_->owned()[0];
-  for (int d = 0; d < grid_->dimension(); ++d) {
-    if (grid_->is_wall(d)) continue;
-    const double mean = sum[d] / grid_->cell_count();
-    in_row_parts(*grid_, [&](const RowPart &part) {
+void take_off_mean(const Grid &grid, const Real3 &mean, FieldBlock &force) {
+  const int n = grid.owned()[0];
+  for (int d = 0; d < grid.dimension(); ++d) {
+    if (mean[d] == 0) continue;
+    in_row_parts(grid, [&](const RowPart &part) {
       for_rows_in_blocks(part, [&](int j, int k) {
         double *row = force[d].row(j, k);
-        for (int i = 0; i < n; ++i) row[i] -= mean;
+        for (int i = 0; i < n; ++i) row[i] -= mean[d];
       });
     });
   }
+}
+
+PetscErrorCode NetForce::find_mean(Real3 *mean) {
+  PetscFunctionBeginUser;
+  *mean = {};
+  if (sums_.empty()) PetscFunctionReturn(0);
+  double sum[3];
+  PetscCall(reduce_parts(grid_->comm(), sums_, sum));
+  for (int d = 0; d < grid_->dimension(); ++d)
+    if (!grid_->is_wall(d)) (*mean)[d] = sum[d] / grid_->cell_count();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NetForce::take_off(FieldBlock &force) {
+  PetscFunctionBeginUser;
+  Real3 mean;
+  PetscCall(find_mean(&mean));
+  take_off_mean(*grid_, mean, force);
   PetscFunctionReturn(0);
 }
 

@@ -9,6 +9,9 @@ namespace eulastic {
 /// n values to a force, and `factor` times them to its change in time, where there is one.
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 
+/// force -= mean on all owned faces.
+void take_off_mean(const Grid &grid, const Real3 &mean, FieldBlock &force);
+
 /// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
 class NetForce {
 public:
@@ -18,7 +21,9 @@ public:
   void add_row(int part, int d, const double *added) {
     if (!sums_.empty()) sums_[part].add_row(d, added, grid_->owned()[0], grid_->layout().begin[0]);
   }
-  /// Takes the mean off in periodic directions. Collective.
+  /// Its mean in periodic directions, 0 in others. Collective.
+  PetscErrorCode find_mean(Real3 *mean);
+  /// Takes it off. Collective.
   PetscErrorCode take_off(FieldBlock &force);
 
 private:

@@ -181,8 +181,8 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
   PetscFunctionReturn(0);
 }
 
-// Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order of
-// memory.
+// Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order
+// of memory.
 void SurfaceCells::find_layers(const Phase &phase) {
   const Layout &layout = grid_->layout();
   const int deep = grid_->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];

@@ -22,12 +22,12 @@ int Solver::work_fields(const Method &method, int dimension, const Parts &parts)
   const bool formula = method.pressure == PressureKind::acm && !sweeps && !parts.open;
   const int pressure = 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
                        (parts.rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
-  int forces = parts.surface_tension ? SurfaceTension::work_fields : 0;
-  if (parts.membranes) forces = std::max(forces, MembraneTransport::work_fields);
+  const int forces = parts.surface_tension ? SurfaceTension::work_fields : 0;
+  const int membranes = parts.membranes ? MembraneTransport::work_fields : 0;
   const int momentum = (method.explicit_predictor() ? (parts.rigid ? dimension : 0) : 2 * dimension) + forces;
   const int tensor = parts.bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = parts.bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
-  return std::max({pressure, momentum, tensor, interface});
+  return std::max({pressure, momentum, membranes, tensor, interface});
 }
 
 PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
@@ -186,7 +186,7 @@ std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
                     next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
                     viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0) +
-                    (loads_ ? loads_->bytes() : 0);
+                    (loads_ ? loads_->bytes() : 0) + (membranes_ ? membranes_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();

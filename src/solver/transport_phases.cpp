@@ -55,14 +55,12 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     if (!phase.material.carries_tensor()) continue;
     const ActiveSegments before = std::move(phase.strained);
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
-    if (phase.material.is_membrane()) {
-      PetscCall(membranes_->advance(dt, now_.velocity, &phase));
-      continue;
-    }
+    if (phase.material.is_membrane()) continue;  // with the others of its kind
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
     tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});
   }
+  if (membranes_) PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases, &phases));
   PetscCall(exchange_->update(tensors));
   for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);
   PetscFunctionReturn(0);
