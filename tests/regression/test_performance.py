@@ -24,7 +24,7 @@ class Performance(WithFolder):
             performance_runs.write_tables({"z": ""})
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
-                                 "cost_of_bodies", "small_body", "memory"})
+                                 "cost_of_bodies", "small_body", "memory", "crowd"})
 
     def test_table_of_verbs(self):
         table1 = load("studies/paper/paper_table1")
@@ -75,7 +75,7 @@ class Performance(WithFolder):
         self.assertAlmostEqual(largest, 1, delta=1e-12)
 
     def test_cost_of_bodies(self):
-        done = start(SCRIPTS / "studies/performance/cost_of_bodies", "--quick", "--only", "share", "memory")
+        done = start(SCRIPTS / "studies/performance/cost_of_bodies", "--quick", "--only", "share", "memory", "crowd")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("|")]
         self.assertEqual([row[1] for row in rows[2:5]], ["0.000", "0.562", "1.000"])  # half, and the cells cut
