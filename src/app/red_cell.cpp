@@ -30,25 +30,33 @@ std::vector<std::string> red_cell_lines(const Config &config) {
   return lines;
 }
 
-std::vector<std::string> thin_membrane_warnings(const Config &config) {
-  constexpr double cells = 3;
+std::vector<std::string> coarse_surface_warnings(const Config &config) {
+  constexpr double apart = 3, radius_of_drop = 6, round_off = 1 - 1e-9;  // in cells
   std::vector<std::string> warnings;
   const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   double spacing = 0;
   for (int d = 0; d < dimension; ++d) spacing = std::max(spacing, config.grid.length[d] / config.grid.cells[d]);
   for (const SpeciesSpec &spec : config.species) {
-    if (!spec.is_membrane()) continue;
+    if (!spec.is_membrane() && !(spec.surface_tension > 0)) continue;
     const auto &axes = spec.semi_axes;
     double thickness = 2 * spec.radius;
     if (spec.shape == Shape::ellipsoid) thickness = 2 * *std::min_element(axes.begin(), axes.begin() + dimension);
     if (spec.shape == Shape::biconcave) thickness = spec.radius * red_cell_waist;
-    if (!(thickness > 0 && thickness < cells * spacing)) continue;
+    const double least = spec.is_membrane() ? apart : 2 * radius_of_drop;
+    if (!(thickness > 0 && thickness < round_off * least * spacing)) continue;
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not tell both sides "
-        "from each other; a spacing of at most %.3g would do",
-        spec.name.c_str(), thickness, thickness / spacing, thickness / cells);
+    if (spec.is_membrane())
+      std::snprintf(
+          text, sizeof text,
+          "membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not tell both sides "
+          "from each other; a spacing of at most %.3g would do",
+          spec.name.c_str(), thickness, thickness / spacing, thickness / least);
+    else
+      std::snprintf(
+          text, sizeof text,
+          "drops of %s are %.3g in radius where they are thinnest, %.2g cells: their surface is too coarse to "
+          "hold them together; a spacing of at most %.3g would do",
+          spec.name.c_str(), 0.5 * thickness, 0.5 * thickness / spacing, thickness / least);
     warnings.emplace_back(text);
   }
   return warnings;

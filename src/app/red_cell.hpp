@@ -13,7 +13,8 @@ namespace eulastic {
 const std::vector<std::pair<std::string, std::string>> &red_cell_preset();
 /// One line on the numbers of every species of red cells.
 std::vector<std::string> red_cell_lines(const Config &config);
-/// One line on every species of membranes that is somewhere thinner than three cells: the grid sees both sides as one.
-std::vector<std::string> thin_membrane_warnings(const Config &config);
+/// One line on every species whose surface the grid does not resolve: membranes somewhere less than three cells apart,
+/// drops of less than six cells in radius, which the flow draws out.
+std::vector<std::string> coarse_surface_warnings(const Config &config);
 
 }  // namespace eulastic

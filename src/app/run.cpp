@@ -72,7 +72,7 @@ PetscErrorCode print_warnings(const Config &config, const Run &run) {
   print_warning(comm, overlap);
   print_warning(comm, run.outputs.unresolved_bodies());
   for (const std::string &warning : attachment_warnings(config)) print_warning(comm, warning);
-  for (const std::string &warning : thin_membrane_warnings(config)) print_warning(comm, warning);
+  for (const std::string &warning : coarse_surface_warnings(config)) print_warning(comm, warning);
   PetscFunctionReturn(0);
 }
 

@@ -138,6 +138,18 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(done.returncode, 0)
             self.assertEqual(done.stderr[:len(warning)] if warning else done.stderr, warning)
 
+    def test_surfaces_that_the_grid_does_not_resolve_are_a_warning(self):
+        scene = ("-grid_cells 24,24,24 -grid_length 1,1,1 -boundary_y periodic -fluid_density 1 -fluid_viscosity 1 -time_end 1 "
+                 "-time_steps_max 1 -output_overwrite -time_integrator staggered -interface_scheme plic -species a "
+                 "-a_shape ellipsoid").split()
+        drop, membrane = ("-a_surface_tension 1 -a_shear_modulus 0".split(),
+                          "-a_law membrane -a_surface_shear_modulus 1".split())
+        for radius, kind, warning in ((".26", drop, ""), (".2", drop, "drops of a are 0.2 in radius where they are thinnest, 4.8"),
+                                      (".26", membrane, ""), (".05", membrane, "membranes of a are 0.1 apart where they are")):
+            done = self.run_program(*scene, "-a_semi_axes", f"{radius},.3,.3", *kind)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stderr.startswith(f"eulastic: warning: {warning}"), bool(warning), done.stderr)
+
     def test_attached_bodies_too_stiff_for_the_grid_are_a_warning(self):
         scene = ("-grid_cells 16,16,1 -grid_length 2,1,1 -fluid_density 4 -fluid_viscosity 2 -boundary_y wall -time_end 1 "
                  "-time_steps_max 1 -output_overwrite -species a -a_shape slab -a_interval 0,.3 -a_shear_modulus").split()
