@@ -216,10 +216,10 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_viscosity(rows, spec);
   add_surface_tension(rows, spec);
   add_body_force(rows, spec);
-  rows.real("initial_stretch", spec.initial_stretch, positive, "",
-            "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T; "
-            "the shape is "
-            "given in the stretched state");
+  rows.real(
+      "initial_stretch", spec.initial_stretch, positive, "",
+      "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T, of "
+      "a membrane what that makes of its surface; the shape is given in the stretched state");
   add_attached_row(rows, spec);
   add_contact(rows, spec);
   add_placement(rows, spec);
