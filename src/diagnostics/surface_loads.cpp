@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace eulastic {
 namespace {
@@ -30,40 +29,36 @@ public:
     }
   }
 
-  // The force along a that sigma_aa at a centre is, by the phi of the cells on both sides.
-  void add_centre(int a, const Int3 &cell, ExactSums *sums) const {
-    double stress = 0;
-    bool known = false;
-    for (std::size_t p = 0; p < phases_.size(); ++p) {
-      if (!labels_[p]) continue;
-      const ConstView phi = phases_[p].fraction[0];
-      const double *q = &phi(cell[0], cell[1], cell[2]);
-      const std::ptrdiff_t step = phi.stride(a);
-      if (q[step] == q[-step]) continue;
-      if (!std::exchange(known, true)) stress = stress_.normal(a, cell) - pressure_[0](cell[0], cell[1], cell[2]);
-      const double share = 0.5 * grid_.cell_volume() / grid_.spacing()[a] * stress;
-      for (const int side : {1, -1}) {
-        Int3 owner = cell;
-        owner[a] += side;
-        Real3 place{};
-        for (int d = 0; d < grid_.dimension(); ++d) place[d] = d == a ? -side : 0;
-        add(p, owner, place, a, -side * q[side * step] * share, sums);
-      }
-    }
+  // The forces along a that sigma_aa at the centres of a row are, by the phi of the cells on both sides.
+  void add_centres(std::size_t p, int a, const Segment &row, ExactSums *sums) {
+    const ConstView phi = phases_[p].fraction[0];
+    const std::ptrdiff_t step = phi.stride(a);
+    const double *q = phi.row(row.j, row.k);
+    for_cut(
+        row, [=](int i) { return q[i + step] != q[i - step]; },
+        [&](int i) {
+          const Int3 cell{i, row.j, row.k};
+          const double stress = stress_.normal(a, cell) - pressure_[0](i, row.j, row.k);
+          const double share = 0.5 * grid_.cell_volume() / grid_.spacing()[a] * stress;
+          for (const int side : {1, -1}) {
+            Int3 owner = cell;
+            owner[a] += side;
+            Real3 place{};
+            for (int d = 0; d < grid_.dimension(); ++d) place[d] = d == a ? -side : 0;
+            add(p, owner, place, a, -side * q[i + side * step] * share, sums);
+          }
+        });
   }
 
-  // The forces along a and b that sigma_ab on the low edge of a cell is, by the phi of the four cells around.
-  void add_edge(int a, int b, const Int3 &cell, ExactSums *sums) const {
-    double stress = 0;
-    bool known = false;
-    for (std::size_t p = 0; p < phases_.size(); ++p) {
-      if (!labels_[p]) continue;
-      const ConstView phi = phases_[p].fraction[0];
-      const double *q = &phi(cell[0], cell[1], cell[2]);
-      const std::ptrdiff_t sa = phi.stride(a), sb = phi.stride(b);
-      if (q[0] == q[-sa] && q[0] == q[-sb] && q[0] == q[-sa - sb]) continue;
-      if (!std::exchange(known, true)) stress = stress_.shear(a, b, cell);
-      const double whole = 0.5 * grid_.cell_volume() * stress;
+  // The forces along a and b that sigma_ab on the low edges of a row of cells are, by the phi of the four cells around.
+  void add_edges(std::size_t p, int a, int b, const Segment &row, ExactSums *sums) {
+    const ConstView phi = phases_[p].fraction[0];
+    const std::ptrdiff_t sa = phi.stride(a), sb = phi.stride(b);
+    const double *q = phi.row(row.j, row.k);
+    const auto differs = [=](int i) { return (q[i] != q[i - sa]) | (q[i] != q[i - sb]) | (q[i] != q[i - sa - sb]); };
+    for_cut(row, differs, [&](int i) {
+      const Int3 cell{i, row.j, row.k};
+      const double whole = 0.5 * grid_.cell_volume() * stress_.shear(a, b, cell);
       for (const int low_a : {0, 1})
         for (const int low_b : {0, 1}) {
           Int3 owner = cell;
@@ -72,14 +67,24 @@ public:
           Real3 place{};
           place[a] = low_a - 0.5;
           place[b] = low_b - 0.5;
-          const double part = whole * q[-low_a * sa - low_b * sb];
+          const double part = whole * q[i - low_a * sa - low_b * sb];
           add(p, owner, place, a, (low_b ? part : -part) * volume_of_face(a, cell) / grid_.spacing()[b], sums);
           add(p, owner, place, b, (low_a ? part : -part) * volume_of_face(b, cell) / grid_.spacing()[a], sums);
         }
-    }
+    });
   }
 
 private:
+  // visit(i) where cut(i); vectors find where.
+  template <class Cut, class Visit>
+  void for_cut(const Segment &row, const Cut &cut, const Visit &visit) {
+    flags_.resize(std::max<std::size_t>(flags_.size(), row.i_end));
+    unsigned char *flags = flags_.data();
+    for (int i = row.i_begin; i < row.i_end; ++i) flags[i] = cut(i);
+    for (int i = row.i_begin; i < row.i_end; ++i)
+      if (flags[i]) visit(i);
+  }
+
   // In cells: a face on a side of the box has half of one.
   double volume_of_face(int a, const Int3 &cell) const {
     const int at = grid_.layout().begin[a] + cell[a];
@@ -113,6 +118,7 @@ private:
   const std::vector<const FieldBlock *> &labels_;
   const std::vector<SurfaceLoad> &loads_;
   std::vector<int> index_;  ///< of every label
+  std::vector<unsigned char> flags_;
 };
 
 }  // namespace
@@ -124,16 +130,17 @@ PetscErrorCode measure_surface_loads(const EdgeViscosity &viscosity, const Field
   if (loads->empty()) PetscFunctionReturn(0);
   const VerbScope scope(Verb::sums);
   const Grid &grid = viscosity.grid;
-  const SurfaceLoads surface(viscosity, velocity, pressure, phases, labels, *loads);
+  SurfaceLoads surface(viscosity, velocity, pressure, phases, labels, *loads);
   ExactSums sums(per_body * static_cast<int>(loads->size()));
-  for (int a = 0; a < grid.dimension(); ++a) {
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) surface.add_centre(a, {i, row.j, row.k}, &sums);
-    for (int b = a + 1; b < grid.dimension(); ++b)
-      for (int k = 0; k < grid.points_end(2, b == 2); ++k)
-        for (int j = 0; j < grid.points_end(1, a == 1 || b == 1); ++j)
-          for (int i = 0; i < grid.points_end(0, a == 0); ++i) surface.add_edge(a, b, {i, j, k}, &sums);
-  }
+  const std::vector<Segment> rows = grid.rows();
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    for (int a = 0; labels[p] && a < grid.dimension(); ++a) {
+      for (const Segment &row : rows) surface.add_centres(p, a, row, &sums);
+      for (int b = a + 1; b < grid.dimension(); ++b)
+        for (int k = 0; k < grid.points_end(2, b == 2); ++k)
+          for (int j = 0; j < grid.points_end(1, a == 1 || b == 1); ++j)
+            surface.add_edges(p, a, b, {0, grid.points_end(0, a == 0), j, k}, &sums);
+    }
   std::vector<double> total(per_body * loads->size());
   PetscCall(sums.reduce(grid.comm(), total.data()));
   for (std::size_t b = 0; b < loads->size(); ++b)

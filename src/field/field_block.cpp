@@ -135,30 +135,36 @@ void FieldBlock::clear() noexcept {
             [this](std::size_t begin, std::size_t n) { std::fill_n(data_.get() + begin, n, 0.0); });
 }
 
-// What is equal is not written, so that rest stays rest.
 void FieldBlock::copy_from(const FieldBlock &other) {
-  if (count_ != other.count_ || layout_.size != other.layout_.size) {
+  const bool is_new = count_ != other.count_ || layout_.size != other.layout_.size;
+  if (is_new) {
     rests_ = other.rests_;
     ones_ = other.ones_;
     data_ = rests_ ? allocate_at_rest(other.size(), ones_ * other.layout_.size) : allocate(other.size());
   }
   layout_ = other.layout_;
   count_ = other.count_;
-  copy(other.data_.get());
+  copy(other.data_.get(), is_new);
 }
 
 void FieldBlock::leave_rest() {
   if (!std::exchange(rests_, false)) return;
   const Memory before = std::exchange(data_, allocate(size()));
-  copy(before.get());
+  copy(before.get(), true);
 }
 
-void FieldBlock::copy(const double *values) {
+// What is equal is not written, so that rest stays rest. Memory that is new is not read either: a page that has been
+// read costs twice when it is written.
+void FieldBlock::copy(const double *values, bool is_new) {
   constexpr std::size_t page = 512;
+  static const std::vector<double> zeros(page, 0.0), ones(page, 1.0);
   in_pieces(layout_.size, count_, [&](std::size_t begin, std::size_t n) {
+    const double *rest = begin < ones_ * static_cast<std::size_t>(layout_.size) ? ones.data() : zeros.data();
     for (std::size_t at = begin; at < begin + n; at += page) {
       const std::size_t bytes = std::min(page, begin + n - at) * sizeof(double);
-      if (std::memcmp(data_.get() + at, values + at, bytes) != 0) std::memcpy(data_.get() + at, values + at, bytes);
+      const bool known = !is_new || rests_;
+      if (known && std::memcmp(is_new ? rest : data_.get() + at, values + at, bytes) == 0) continue;
+      std::memcpy(data_.get() + at, values + at, bytes);
     }
   });
 }

@@ -56,7 +56,7 @@ private:
   using Memory = std::unique_ptr<double[], Free>;
   static Memory allocate(std::size_t values);
   static Memory allocate_at_rest(std::size_t values, std::size_t ones);
-  void copy(const double *values);
+  void copy(const double *values, bool is_new);
   std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;

@@ -12,8 +12,8 @@ from test_scripts import ROOT, SCRIPTS, WithFolder, start
 
 class Shell(WithFolder):
     def shell_scripts(self):
-        return [path for path in [*SCRIPTS.rglob("*"), ROOT / ".ci/run"]
-                if path.is_file() and (path.name == "environment" or path.read_text().startswith("#!/bin/bash"))]
+        files = [path for path in [*SCRIPTS.rglob("*"), ROOT / ".ci/run"] if path.is_file() and path.suffix != ".pyc"]
+        return [path for path in files if path.name == "environment" or path.read_text().startswith("#!/bin/bash")]
 
     def test_syntax(self):
         self.assertGreaterEqual(len(self.shell_scripts()), 6)
