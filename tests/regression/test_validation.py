@@ -32,7 +32,9 @@ class Validation(unittest.TestCase):
         print(out)
         self.assertEqual((status, errors), (0, ""), out)
         page = (self.room / "quick/validation.md").read_text()
-        for name in {case.name for case in CASES}:
+        names = {case.name for case in CASES if case.quick}
+        self.assertEqual({case.name for case in CASES} - names, {"S20"})  # takes minutes at its coarsest
+        for name in names:
             self.assertIn(f"\n| {name} |", page)
             self.assertLess((self.room / f"quick/images/validation_{name.lower()}.png").stat().st_size, 40000, name)
 
