@@ -20,14 +20,19 @@ def machine():
     return f"{os.cpu_count()} cores of {name[1] if name else 'an unknown processor'}{wide}"
 
 
-def stamp(path, program=None):
-    """Puts the line below the title of the page `path`, in place of the one that is there."""
+def made_with(program=None):
+    """"Made with ...": the program, when, where and by which script."""
     program = program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
     says = subprocess.run([program, "-version"], capture_output=True, text=True).stdout
     version = re.search(r"eulastic ([\d.]+)", says)
     commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     script = pathlib.Path(sys.argv[0]).resolve()
-    line = (f"> Made with eulastic {version[1] if version else '?'}{f' ({commit})' if commit else ''}, {datetime.date.today()}, on "
-            f"{machine()}, by `{script.relative_to(ROOT)}`.\n")
+    return (f"Made with eulastic {version[1] if version else '?'}{f' ({commit})' if commit else ''}, {datetime.date.today()}, on "
+            f"{machine()}, by `{script.relative_to(ROOT)}`.")
+
+
+def stamp(path, program=None):
+    """Puts the line below the title of the page `path`, in place of the one that is there."""
+    line = f"> {made_with(program)}\n"
     title, _, rest = LINE.sub("", path.read_text()).partition("\n")
     path.write_text(f"{title}\n\n{line}\n{rest.lstrip()}")
