@@ -21,7 +21,7 @@ def machine():
 
 
 def made_with(program=None):
-    """"Made with ...": the program, when, where and by which script."""
+    """The sentence: with which program, when, where and by which script."""
     program = program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
     says = subprocess.run([program, "-version"], capture_output=True, text=True).stdout
     version = re.search(r"eulastic ([\d.]+)", says)

@@ -52,7 +52,7 @@ PetscErrorCode measure_vessel_loads(const Config &config, const std::vector<Body
     const Phase &phase = (*phases)[p];
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
-    labels[p] = FieldBlock(grid, 1);  // not one at rest, which takes its pages one by one
+    labels[p] = FieldBlock(grid, 1);  // not one at rest: all of it is written
     const Int3 &n = grid.owned();
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));

@@ -75,7 +75,7 @@ public:
   }
 
 private:
-  // visit(i) where cut(i); vectors find where.
+  // visit(i) where cut(i).
   template <class Cut, class Visit>
   void for_cut(const Segment &row, const Cut &cut, const Visit &visit) {
     flags_.resize(std::max<std::size_t>(flags_.size(), row.i_end));

@@ -153,8 +153,7 @@ void FieldBlock::leave_rest() {
   copy(before.get(), true);
 }
 
-// What is equal is not written, so that rest stays rest. Memory that is new is not read either: a page that has been
-// read costs twice when it is written.
+// What is equal is not written, so that rest stays rest. What is new holds nothing else, and is not read.
 void FieldBlock::copy(const double *values, bool is_new) {
   constexpr std::size_t page = 512;
   static const std::vector<double> zeros(page, 0.0), ones(page, 1.0);

@@ -9,7 +9,7 @@
 namespace eulastic {
 namespace {
 
-// The cells around one, those with a number alone, in order.
+// The cells around one, in the order of memory.
 template <int Dim>
 struct Around {
   static constexpr int count = Dim == 3 ? 27 : 9;
@@ -30,7 +30,7 @@ struct Around {
   }
 };
 
-// Fields side by side, as many as vectors like.
+// Fields side by side: whole vectors.
 constexpr int width = 8;
 
 // Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
@@ -87,7 +87,7 @@ EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around,
     sum = nested_sum<Dim>(plain);
     w = plain;
   }
-  // Neighbours that count, side by side; as many as fill vectors. No branch: which they are cannot be foreseen.
+  // Neighbours that count, side by side, and zeros to fill the last vector.
   constexpr int most = (count + width - 1) / width * width;
   alignas(64) double share[most], normals[Dim][most], tensors[fields][most];
   int place[count + 1], neighbours = 0;
