@@ -26,11 +26,13 @@ template <class Visit>
 void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
   for (const Phase &phase : phases) {
     const ConstView fraction = phase.fraction[0], label = phase.label[0];
-    for (const Segment &row : part.rows(grid))
+    for (const Segment &whole : part.rows(grid)) {
+      const Segment row = phase.rows.within(whole, label);
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
         if (body >= 0 && body < bodies) visit(phase, body, fraction(i, row.j, row.k), i, row.j, row.k);
       }
+    }
   }
 }
 
@@ -42,7 +44,8 @@ void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Ph
   for (const Phase &phase : phases) {
     const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor[0], yy = phase.tensor[1],
                     zz = phase.tensor[grid.dimension() == 3 ? 2 : 0];
-    for (const Segment &row : part.rows(grid)) {
+    for (const Segment &whole : part.rows(grid)) {
+      const Segment row = phase.rows.within(whole, label);
       energy(grid, phase, row, density.data());
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int body = static_cast<int>(label(i, row.j, row.k)) - 1;

@@ -53,7 +53,7 @@ struct WholeStress {
     const double *v = &u(cell[0], cell[1], cell[2]);
     double sum = 2 * viscosity.at_centre(cell) * (v[u.stride(a)] - v[0]) / viscosity.grid.spacing()[a];
     for (const Phase &phase : phases)
-      if (phase.material.elastic())
+      if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
         sum += centre_stress(viscosity.grid.dimension(), phase, a, cell[0], cell[1], cell[2]);
     return sum;
   }
@@ -64,7 +64,7 @@ struct WholeStress {
     const Real3 &h = viscosity.grid.spacing();
     double sum = viscosity.at(a, b, cell) * ((ua[0] - ua[-u.stride(b)]) / h[b] + (ub[0] - ub[-w.stride(a)]) / h[a]);
     for (const Phase &phase : phases)
-      if (phase.material.elastic())
+      if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
         sum += edge_stress(viscosity.grid.dimension(), phase, a, b, cell[0], cell[1], cell[2]);
     return sum;
   }

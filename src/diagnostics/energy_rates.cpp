@@ -129,17 +129,20 @@ private:
 void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase, double evolved,
                  ExactSums *sums) {
   if (!phase.material.elastic()) return;
-  const int n = grid.owned()[0], first = grid.layout().begin[0];
-  std::vector<double> power(n), energy(n);
-  for (const Segment &row : part.rows(grid)) {
+  std::vector<double> power(grid.owned()[0]), energy(power.size());
+  for (const Segment &whole : part.rows(grid)) {
+    const Segment row = phase.rows.within(whole, phase.fraction[0]);
     const double *phi = phase.fraction[0].row(row.j, row.k);
+    const auto add = [&, first = grid.layout().begin[0] + row.i_begin](int s, const std::vector<double> &values) {
+      sums->add_row(s, values.data() + row.i_begin, row.size(), first);
+    };
     strain_energy(grid, phase, row, energy.data());
     stress_power(grid, phase, velocity, row, power.data());
-    sums->add_row(elastic_power, power.data(), n, first);
-    for (int i = 0; i < n; ++i)
+    add(elastic_power, power);
+    for (int i = row.i_begin; i < row.i_end; ++i)
       if (phi[i] >= evolved) power[i] = energy[i] = 0;
-    sums->add_row(extended_power, power.data(), n, first);
-    sums->add_row(extended_energy, energy.data(), n, first);
+    add(extended_power, power);
+    add(extended_energy, energy);
   }
 }
 

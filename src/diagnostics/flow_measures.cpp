@@ -171,10 +171,12 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
       sums.add_row(gradient_squared, numbers.local_viscosity ? dissipated.data() : measure.squared_gradient(row), n,
                    first);
       for (std::size_t p = 0; p < phases.size(); ++p) {
-        const double *phi = phases[p].fraction[0].row(row.j, row.k);
-        strain_energy(grid, phases[p], row, energy.data());
-        sums.add_row(first_of_phases + 2 * static_cast<int>(p), phi, n, first);
-        sums.add_row(first_of_phases + 2 * static_cast<int>(p) + 1, energy.data(), n, first);
+        const ConstView phi = phases[p].fraction[0];
+        const Segment part = phases[p].rows.within(row, phi);
+        const int sum_of_phase = first_of_phases + 2 * static_cast<int>(p), i = part.i_begin;
+        strain_energy(grid, phases[p], part, energy.data());
+        sums.add_row(sum_of_phase, phi.row(row.j, row.k) + i, part.size(), first + i);
+        sums.add_row(sum_of_phase + 1, energy.data() + i, part.size(), first + i);
       }
     }
   };
@@ -187,7 +189,9 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
           SideFaces(grid, velocity, &sums).add(d, high);
       }
   };
-  scope.flops(grid.owned_count() * (dimension * (10 + 4 * dimension) + phases.size() * (2 * dimension + 3)));
+  double flops = grid.owned_count() * dimension * (10 + 4 * dimension);
+  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * dimension + 3);
+  scope.flops(flops);
   std::vector<double> sum(first_of_phases + 2 * phases.size());
   PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add_all, sum.data()));
   std::vector<double> maximum;

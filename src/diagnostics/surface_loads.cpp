@@ -135,11 +135,11 @@ PetscErrorCode measure_surface_loads(const EdgeViscosity &viscosity, const Field
   const std::vector<Segment> rows = grid.rows();
   for (std::size_t p = 0; p < phases.size(); ++p)
     for (int a = 0; labels[p] && a < grid.dimension(); ++a) {
-      for (const Segment &row : rows) surface.add_centres(p, a, row, &sums);
+      for (const Segment &row : rows) surface.add_centres(p, a, phases[p].rows.within(row), &sums);
       for (int b = a + 1; b < grid.dimension(); ++b)
         for (int k = 0; k < grid.points_end(2, b == 2); ++k)
           for (int j = 0; j < grid.points_end(1, a == 1 || b == 1); ++j)
-            surface.add_edges(p, a, b, {0, grid.points_end(0, a == 0), j, k}, &sums);
+            surface.add_edges(p, a, b, phases[p].rows.within({0, grid.points_end(0, a == 0), j, k}), &sums);
     }
   std::vector<double> total(per_body * loads->size());
   PetscCall(sums.reduce(grid.comm(), total.data()));

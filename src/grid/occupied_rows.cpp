@@ -120,6 +120,13 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
   PetscFunctionReturn(0);
 }
 
+Segment OccupiedRows::within(const Segment &row, ConstView value) const noexcept {
+  const Segment all = within(row);
+  const Span found = occupied(value.row(row.j, row.k), {all.i_begin, all.i_end});
+  if (empty(found)) return {all.i_begin, all.i_begin, row.j, row.k};
+  return {found.begin, found.end, row.j, row.k};
+}
+
 void OccupiedRows::count() noexcept {
   const int nx = whole_.begin + whole_.end;
   cells_ = 0;

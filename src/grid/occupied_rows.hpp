@@ -3,6 +3,7 @@
 
 #include "grid/grid.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace eulastic {
@@ -34,6 +35,18 @@ public:
     const Span s = span(j, k);
     return s.begin >= s.end;
   }
+  /// Whether point (i, j, k) is in a span.
+  bool holds(int i, int j, int k) const noexcept {
+    const Span s = span(j, k);
+    return i >= s.begin && i < s.end;
+  }
+  /// What is in spans of a piece of a row.
+  Segment within(const Segment &row) const noexcept {
+    const Span s = span(row.j, row.k);
+    return {std::max(row.i_begin, s.begin), std::max({row.i_begin, s.begin, std::min(row.i_end, s.end)}), row.j, row.k};
+  }
+  /// The least of it, but for some cells, that has all that is not zero of `value`, which is zero outside the spans.
+  Segment within(const Segment &row, ConstView value) const noexcept;
   /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
   /// exchange.
   bool inside() const noexcept { return inside_; }
