@@ -1,20 +1,19 @@
 """Pictures of 3-D runs by VTK, for scripts/render and the studies: one window, one snapshot after the other."""
 import colorsys
 import dataclasses
-import itertools
 import os
 import sys
 
 import numpy
 
 from . import derived
+from .contours import VESSELS, Contours, species_of
 from .framing import Framed
-from .surfaces import at_points, body_pieces, enclosing, sample, spread
+from .surfaces import at_points, spread
 
 BLUES = (.97, .98, 1), (.80, .88, .95), (.58, .76, .88), (.30, .58, .79), (.10, .36, .62)  # of a size
 BOTH = (.13, .40, .67), (.57, .77, .87), (.97, .97, .97), (.96, .65, .51), (.70, .09, .17)  # of what has a sign
 GREENS = (.90, .91, .92), (.74, .86, .78), (.50, .75, .60), (.25, .58, .43), (.08, .38, .28)  # of wall shear stress
-VESSELS = "tube", "constricted_tube", "voxels"
 RED, HUES = 0.99, (0.13, 0.36, 0.78, 0.5)  # of red cells, and of other species, if there are several
 
 
@@ -47,7 +46,7 @@ def colour(body, hue=None):
 
 def species(run):
     """{name: hue} of each: None if it is the only one, "vessel" of vessels."""
-    shape = {name: run.options.get(name + "_shape") for name in run.options.get("species", "").split(",")}
+    shape = species_of(run)
     hues = iter(HUES * len(shape))
     return {name: "vessel" if kind in VESSELS else None if len(shape) == 1 else RED if kind == "biconcave" else next(hues)
             for name, kind in shape.items()}
@@ -96,10 +95,11 @@ def field_range(snapshots, name):
 
 class Scene(Framed):
     def __init__(self, run, size, units, speed, stress, look=Look(), body_range=(0, 1)):
-        import vtkmodules.all as vtk  # opens the display
-        self.vtk, self.run, self.units, self.speed, self.stress = vtk, run, units, speed, stress
+        self.contours = Contours(run)
+        self.vtk, self.run, self.units, self.speed, self.stress = self.contours.vtk, run, units, speed, stress
         self.look, self.body_range = look, body_range
-        self.window = vtk.vtkRenderWindow()
+        vtk = self.vtk
+        self.window = vtk.vtkRenderWindow()  # opens the display
         self.window.SetOffScreenRendering(1)
         self.window.SetMultiSamples(8)
         self.window.SetAlphaBitPlanes(int(look.transparent))
@@ -142,79 +142,31 @@ class Scene(Framed):
         renderer.AddActor(actor)
         return actor
 
-    def periodic(self):
-        return [not self.run.is_bounded(d) for d in (2, 1, 0)]
-
     def add_bodies(self, renderer, snapshot):
-        names = species(self.run)
-        field = derived.field(snapshot, self.look.field) if self.look.field else None
-        for name, hue in names.items():
-            tail = "_" + name if len(names) > 1 else ""
-            fraction = snapshot["solid_fraction" + tail]
+        clip, field = self.look.clip, derived.field(snapshot, self.look.field) if self.look.field else None
+        planes = [self.contours.plane(*clip, -numpy.sign(self.direction()[clip[0]]))] if clip else []
+        for name, hue in species(self.run).items():
             if hue == "vessel":
-                self.add_vessel(renderer, snapshot, fraction)
+                self.add_vessel(renderer, snapshot, name)
                 continue
-            for body, piece, begin in body_pieces(fraction, snapshot["body" + tail].astype(int), self.periodic()):
-                for part in self.parts(self.surface(piece, begin, enclosing(piece)), piece.shape, begin):
-                    actor = self.actor(renderer, self.with_normals(part), colour(body, hue), Specular=0.35, SpecularPower=25,
-                                       Ambient=0.12)
-                    if field is not None:
-                        self.colour_by(actor, field)
+            for body, part in self.contours.bodies(snapshot, name, self.look.whole, planes):
+                actor = self.actor(renderer, self.with_normals(part), colour(body, hue), Specular=0.35, SpecularPower=25,
+                                   Ambient=0.12)
+                if field is not None:
+                    self.colour_by(actor, field)
 
     def colour_by(self, actor, field):
-        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
         actor.GetMapper().Update()
         surface = actor.GetMapper().GetInput()
         if surface.GetNumberOfPoints() == 0:
             return
-        places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing - 0.5
-        surface.GetPointData().SetScalars(numpy_to_vtk(sample(field, places, self.periodic()), deep=1))
+        surface.GetPointData().SetScalars(self.contours.at_points(surface, field))
         actor.GetMapper().ScalarVisibilityOn()
         actor.GetMapper().SetLookupTable(self.table(*self.body_range))
 
-    def parts(self, surface, shape, begin):
-        """The surface as it is, or cut at the ends of the box that it crosses, once for each; and cut by the look's clip."""
-        planes = [self.plane(*self.look.clip, -numpy.sign(self.direction()[self.look.clip[0]]))] if self.look.clip else []
-        shifts = []
-        for d, (first, count, n, periodic) in enumerate(zip(begin[::-1], shape[::-1], self.run.cells, self.periodic()[::-1])):
-            low, high = first + 2 < 0, first + count - 2 > n  # two cells around a body are empty
-            beyond = periodic and not self.look.whole and (low or high)
-            shifts.append((0, 1 if low else -1) if beyond else (0,))
-            if beyond:
-                planes += [self.plane(d, 0, 1), self.plane(d, self.run.length[d], -1)]
-        for shift in itertools.product(*shifts):
-            part = surface
-            if any(shift):
-                move = self.vtk.vtkTransform()
-                move.Translate(*(shift * self.run.length))
-                part = self.vtk.vtkTransformPolyDataFilter()
-                part.SetTransform(move)
-                part.SetInputConnection(surface.GetOutputPort())
-            if planes:
-                cut, collection = self.vtk.vtkClipClosedSurface(), self.vtk.vtkPlaneCollection()
-                for plane in planes:
-                    collection.AddItem(plane)
-                cut.SetClippingPlanes(collection)
-                cut.SetInputConnection(part.GetOutputPort())
-                part = cut
-            yield part
-
-    def plane(self, d, place, towards):
-        """What lies towards +1 or -1 of `place` along d stays."""
-        plane = self.vtk.vtkPlane()
-        plane.SetOrigin(*(place if axis == d else 0 for axis in range(3)))
-        plane.SetNormal(*(towards if axis == d else 0 for axis in range(3)))
-        return plane
-
-    def add_vessel(self, renderer, snapshot, fraction):
+    def add_vessel(self, renderer, snapshot, name):
         """The far side of the lumen, coloured by the shear stress on it; ends of it that leave the box are open."""
-        def widened(values):
-            for axis in range(3):
-                beyond = [(1, 1) if d == axis else (0, 0) for d in range(3)]
-                values = numpy.pad(values, beyond, mode="wrap" if self.periodic()[axis] else "edge")
-            return values
-
-        surface = self.with_normals(self.surface(widened(fraction), numpy.full(3, -1)))
+        surface = self.with_normals(self.contours.vessel(snapshot, name))
         look = dict(BackfaceCulling=True)
         if "wall_shear_stress" not in snapshot:
             self.actor(renderer, surface, (0.80, 0.72, 0.70), Opacity=0.45, **look)
@@ -223,30 +175,11 @@ class Scene(Framed):
         surface.Update()
         lumen = surface.GetOutput()
         places = vtk_to_numpy(lumen.GetPoints().GetData()) / self.run.spacing + 0.5
-        stress = spread(widened(snapshot.surface_shear_stress()))
+        stress = spread(self.contours.widened(snapshot.surface_shear_stress()))
         lumen.GetPointData().SetScalars(numpy_to_vtk(at_points(stress, places), deep=1))
         mapper = self.actor(renderer, surface, (1, 1, 1), Ambient=0.25, **look).GetMapper()
         mapper.ScalarVisibilityOn()
         mapper.SetLookupTable(self.table(0, self.stress, GREENS))
-
-    def surface(self, fraction, begin, level=0.5):
-        """phi = level, smoothed; begin: index (k,j,i) of the first cell."""
-        from vtkmodules.util.numpy_support import numpy_to_vtk
-        h = self.run.spacing
-        image = self.vtk.vtkImageData()
-        image.SetDimensions(*fraction.shape[::-1])
-        image.SetSpacing(*h)
-        image.SetOrigin(*((begin[::-1] + 0.5) * h))
-        image.GetPointData().SetScalars(numpy_to_vtk(numpy.ascontiguousarray(fraction, dtype=float).ravel(), deep=1))
-        surface = self.vtk.vtkFlyingEdges3D()
-        surface.SetInputData(image)
-        surface.SetValue(0, level)
-        smooth = self.vtk.vtkWindowedSincPolyDataFilter()  # takes the steps of a sharp phi out of the picture
-        smooth.SetInputConnection(surface.GetOutputPort())
-        smooth.SetNumberOfIterations(20 if fraction.sum() > 50 else 4)  # it would shrink a body of few cells
-        smooth.SetPassBand(0.1)
-        smooth.NormalizeCoordinatesOn()
-        return smooth
 
     def with_normals(self, surface):
         normals = self.vtk.vtkPolyDataNormals()

@@ -10,7 +10,8 @@ namespace eulastic {
 
 class SnapshotOutput {
 public:
-  SnapshotOutput(const Grid &grid, const std::string &directory) : writer_(grid, directory), fields_(grid) {}
+  SnapshotOutput(const Grid &grid, const std::string &directory, bool vtkhdf)
+      : writer_(grid, directory, vtkhdf), fields_(grid) {}
 
   /// As SnapshotWriter's.
   PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }

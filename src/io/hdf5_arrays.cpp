@@ -86,6 +86,15 @@ PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::s
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name,
+                                         const std::vector<long> &value) {
+  PetscFunctionBeginUser;
+  const hsize_t count = value.size();
+  PetscCall(write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
+                                value.data()));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, double value) {
   PetscFunctionBeginUser;
   PetscCall(write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate(H5S_SCALAR)), &value));

@@ -108,6 +108,22 @@ Hdf5File::~Hdf5File() {
   if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
 }
 
+PetscErrorCode Hdf5File::create_group(const std::string &name) {
+  PetscFunctionBeginUser;
+  Hdf5Object group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  PetscCall(check(bool(group), "cannot create group " + name));
+  PetscCall(check(group.close(), "cannot close group " + name));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::link(const std::string &name, const std::string &file, const std::string &dataset) {
+  PetscFunctionBeginUser;
+  const bool linked =
+      H5Lcreate_external(file.c_str(), dataset.c_str(), file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0;
+  PetscCall(check(linked, "cannot link " + name + " to " + file));
+  PetscFunctionReturn(0);
+}
+
 bool Hdf5File::has(const std::string &dataset) const {
   return H5Lexists(file_.get(), dataset.c_str(), H5P_DEFAULT) > 0;
 }

@@ -55,9 +55,14 @@ public:
   template <class T>
   PetscErrorCode read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values);
 
-  /// Attributes of `object`: a dataset, or "/" for the file.
+  PetscErrorCode create_group(const std::string &name);
+  /// `name` stands for `dataset` of another file, whose path is `file` as seen from the directory of this one.
+  PetscErrorCode link(const std::string &name, const std::string &file, const std::string &dataset);
+
+  /// Attributes of `object`: a dataset, a group, or "/" for the file.
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<double> &value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<long> &value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);

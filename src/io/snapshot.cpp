@@ -2,11 +2,14 @@
 
 #include "base/events.hpp"
 #include "io/text_file.hpp"
+#include "io/vtkhdf.hpp"
 #include "io/wall_index.hpp"
 
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 namespace eulastic {
@@ -35,10 +38,15 @@ std::string number_type(Stored stored) {
                                      : "NumberType=\"Float\" Precision=\"8\"";
 }
 
+// Whether tools for pictures get this field, as one of cells: one that is staggered is drawn half a cell too high, and
+// the staggered velocity is left to `velocity`.
+bool is_drawn(const FieldFormat &format) {
+  const Staggering &s = format.staggering;
+  return s[0] + s[1] + s[2] != 1 && format.plane < 0;
+}
+
 }  // namespace
 
-// A grid of cells, every field at their centres: one that is staggered is drawn half a cell too high, and the
-// staggered velocity is left to `velocity`.
 std::string SnapshotWriter::index_entry(const std::string &name, double time,
                                         const std::vector<SnapshotField> &fields) const {
   const auto integer = [](int n) { return std::to_string(n); };
@@ -50,8 +58,7 @@ std::string SnapshotWriter::index_entry(const std::string &name, double time,
                      "\"/>\n<Geometry GeometryType=\"ORIGIN_DXDYDZ\">\n" + triple + "0 0 0</DataItem>\n" + triple +
                      zyx(grid_->spacing(), format_double) + "</DataItem>\n</Geometry>\n";
   for (const SnapshotField &field : fields) {
-    const Staggering &s = field.format.staggering;
-    if (s[0] + s[1] + s[2] == 1 || field.format.plane >= 0) continue;
+    if (!is_drawn(field.format)) continue;
     const bool vector = field.components.size() == 3;
     text += "<Attribute Name=\"" + field.format.name + "\" AttributeType=\"" + (vector ? "Vector" : "Scalar") +
             "\" Center=\"Cell\"><DataItem Dimensions=\"" + cells + (vector ? " 3" : "") + "\" " +
@@ -59,6 +66,17 @@ std::string SnapshotWriter::index_entry(const std::string &name, double time,
             "</DataItem></Attribute>\n";
   }
   return text + "</Grid>\n";
+}
+
+std::vector<SnapshotEntry> SnapshotWriter::entries() const {
+  static const std::regex entry("<Grid Name=\"([^\"]*)\"[^>]*>\\s*<Time Value=\"([^\"]*)\"");
+  std::vector<SnapshotEntry> entries;
+  for (std::sregex_iterator it(index_.begin(), index_.end(), entry), end; it != end; ++it) {
+    const std::string time = (*it)[2];
+    SnapshotEntry &one = entries.emplace_back(SnapshotEntry{(*it)[1], 0});
+    (void)std::from_chars(time.data(), time.data() + time.size(), one.time);
+  }
+  return entries;
 }
 
 PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
@@ -75,7 +93,8 @@ PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   }
   if (end != 0) index_ = text.str().substr(head.size(), end - head.size());
   std::error_code error;  // one that stays is written over
-  for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n) continue;
+  for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n)
+    std::filesystem::remove(directory_ + "/" + file_name(n) + ".vtkhdf", error);
   PetscFunctionReturn(0);
 }
 
@@ -93,11 +112,19 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   PetscCall(file.write_attribute("/", "length", std::vector<double>(length.begin(), length.end())));
   for (const SnapshotField &field : fields) PetscCall(file.write_field(*grid_, field.format, field.components));
   PetscCall(file.commit());
+  if (vtkhdf_) {
+    std::vector<std::string> drawn;
+    for (const SnapshotField &field : fields)
+      if (is_drawn(field.format)) drawn.push_back(field.format.name);
+    PetscCall(write_vtkhdf(*grid_, directory_, name, drawn));
+  }
   ++count_;
   index_ += index_entry(name, time, fields);
   PetscCall(write_text_file(grid_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
-  const std::string walls = wall_index(*grid_, index_, fields);
+  const std::vector<SnapshotEntry> all = entries();
+  const std::string walls = wall_index(*grid_, all, fields);
   if (!walls.empty()) PetscCall(write_text_file(grid_->comm(), directory_ + "/walls.xdmf", walls));
+  if (vtkhdf_) PetscCall(write_vtkhdf_series(grid_->comm(), directory_, all));
   PetscFunctionReturn(0);
 }
 

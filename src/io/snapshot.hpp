@@ -1,4 +1,5 @@
-// snapshot_NNNNNN.h5, a picture of the fields at one time, and snapshots.xdmf, which shows them all to ParaView.
+// snapshot_NNNNNN.h5, a picture of the fields at one time, and snapshots.xdmf, which shows them all to ParaView; on
+// request the same as VTKHDF.
 #pragma once
 
 #include "io/hdf5_file.hpp"
@@ -10,24 +11,33 @@ struct SnapshotField {
   std::vector<ConstView> components;  ///< one, or three for a vector
 };
 
+/// One snapshot of the index: name of its file without extension, and its time.
+struct SnapshotEntry {
+  std::string name;
+  double time;
+};
+
 /// Numbers snapshots from 0 and remembers them for the index.
 class SnapshotWriter {
 public:
-  SnapshotWriter(const Grid &grid, std::string directory) : grid_(&grid), directory_(std::move(directory)) {}
+  SnapshotWriter(const Grid &grid, std::string directory, bool vtkhdf)
+      : grid_(&grid), directory_(std::move(directory)), vtkhdf_(vtkhdf) {}
 
   /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
   /// index goes on too, and later ones are removed.
   PetscErrorCode resume(int count, bool same_directory);
   void moved_to(const std::string &directory) { directory_ = directory; }
   int count() const { return count_; }
-  /// Collective. Writes one file with its attributes, then the index anew.
+  /// Collective. Writes one file with its attributes, then the indices anew.
   PetscErrorCode write(double time, long step, const std::vector<SnapshotField> &fields);
 
 private:
   std::string index_entry(const std::string &name, double time, const std::vector<SnapshotField> &fields) const;
+  std::vector<SnapshotEntry> entries() const;
 
   const Grid *grid_;
   std::string directory_;
+  bool vtkhdf_;  ///< .vtkhdf files too
   int count_ = 0;
   std::string index_;  ///< one XDMF grid per snapshot
 };

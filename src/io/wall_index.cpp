@@ -2,8 +2,6 @@
 
 #include "io/text_file.hpp"
 
-#include <regex>
-
 namespace eulastic {
 namespace {
 
@@ -29,16 +27,16 @@ std::string one_wall(const Grid &grid, const std::string &file, const SnapshotFi
 
 }  // namespace
 
-std::string wall_index(const Grid &grid, const std::string &index, const std::vector<SnapshotField> &fields) {
-  static const std::regex entry("<Grid Name=\"([^\"]*)\"[^>]*>\\s*(<Time [^>]*>)");
+std::string wall_index(const Grid &grid, const std::vector<SnapshotEntry> &entries,
+                       const std::vector<SnapshotField> &fields) {
   std::string text;
-  for (std::sregex_iterator it(index.begin(), index.end(), entry), end; it != end; ++it) {
+  for (const SnapshotEntry &entry : entries) {
     std::string walls;
     for (const SnapshotField &field : fields)
-      if (field.format.plane >= 0) walls += one_wall(grid, (*it)[1], field);
+      if (field.format.plane >= 0) walls += one_wall(grid, entry.name, field);
     if (walls.empty()) return {};
-    text += "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Spatial\">" + (*it)[2].str() + "\n" + walls +
-            "</Grid>\n";
+    text += "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"" +
+            format_double(entry.time) + "\"/>\n" + walls + "</Grid>\n";
   }
   return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
          "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +

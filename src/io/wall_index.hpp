@@ -5,8 +5,8 @@
 
 namespace eulastic {
 
-/// The index of the fields on walls (SnapshotField with a plane) in all snapshots that `index`, the entries of
-/// snapshots.xdmf, names; empty if there are none.
-std::string wall_index(const Grid &grid, const std::string &index, const std::vector<SnapshotField> &fields);
+/// The index of the fields on walls (SnapshotField with a plane) in all snapshots `entries`; empty if there are none.
+std::string wall_index(const Grid &grid, const std::vector<SnapshotEntry> &entries,
+                       const std::vector<SnapshotField> &fields);
 
 }  // namespace eulastic

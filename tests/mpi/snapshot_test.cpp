@@ -1,6 +1,7 @@
 // Snapshots on 1-4 ranks: every dataset at its place, and an XDMF index that names what is there.
 #include "field/ghost_exchange.hpp"
 #include "io/snapshot_fields.hpp"
+#include "io/text_file.hpp"
 #include "support/files.hpp"
 #include "support/numbered_fields.hpp"
 
@@ -59,6 +60,33 @@ void check_index(const SharedDirectory &directory, int snapshots) {
   EXPECT_EQ(items, hdf);
 }
 
+// Every link leads to the dataset of its name, of a shape that cells have, and the list names each snapshot.
+void check_vtkhdf(const SharedDirectory &directory, const Grid &grid, int snapshots) {
+  const std::string series = text_of(directory / "snapshots.vtkhdf.series");
+  for (int n = 0; n < snapshots; ++n) {
+    const std::string name = "snapshot_00000" + std::to_string(n);
+    EXPECT_NE(series.find('"' + name + ".vtkhdf\", \"time\": " + format_double(0.5 * n) + "}"), std::string::npos);
+    Hdf5File file;
+    std::string type;
+    std::vector<double> extent, spacing;
+    ASSERT_EQ(file.open(PETSC_COMM_WORLD, directory / (name + ".vtkhdf")), 0);
+    ASSERT_EQ(file.read_attribute("VTKHDF", "Type", &type), 0);
+    ASSERT_EQ(file.read_attribute("VTKHDF", "WholeExtent", &extent), 0);
+    ASSERT_EQ(file.read_attribute("VTKHDF", "Spacing", &spacing), 0);
+    EXPECT_EQ(type, "ImageData");
+    const Int3 &cells = grid.cells();
+    EXPECT_EQ(extent, (std::vector<double>{0, double(cells[0]), 0, double(cells[1]), 0, double(cells[2])}));
+    EXPECT_EQ(spacing, std::vector<double>(grid.spacing().begin(), grid.spacing().end()));
+    for (const char *field : {"velocity", "pressure", "body", "left_cauchy_green_xy"}) {
+      std::vector<hsize_t> shape, own_shape;
+      const auto values = whole(directory / (name + ".vtkhdf"), std::string("VTKHDF/CellData/") + field, &shape);
+      EXPECT_EQ(values, whole(directory / (name + ".h5"), field, &own_shape)) << field;
+      EXPECT_EQ(shape, own_shape);
+    }
+    EXPECT_FALSE(file.has("VTKHDF/CellData/velocity_x"));
+  }
+}
+
 void check_snapshot(const Int3 &cells, int phase_count) {
   const SharedDirectory directory;
   const NumberedFields scene(cells);
@@ -75,10 +103,11 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
   SnapshotFields fields(scene.grid);
-  SnapshotWriter writer(scene.grid, directory / "");
+  SnapshotWriter writer(scene.grid, directory / "", true);
   for (int n = 0; n < 2; ++n)
     ASSERT_EQ(writer.write(0.5 * n, 10 * n, fields.collect(selection, velocity, pressure, phases)), 0);
   check_index(directory, 2);
+  check_vtkhdf(directory, scene.grid, 2);
 
   Hdf5File file;
   ASSERT_EQ(file.open(PETSC_COMM_WORLD, directory / "snapshot_000001.h5"), 0);
@@ -137,6 +166,25 @@ void check_snapshot(const Int3 &cells, int phase_count) {
             expected = 0.5 * (value_at(i, j, k, c) + value_at(i, j, 0, c));
           ASSERT_EQ(*value, expected) << i << " " << j << " " << k << " " << c;
         }
+}
+
+TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
+  const SharedDirectory directory;
+  const NumberedFields scene({5, 13, 7});
+  const FieldBlock pressure(scene.grid, 1);
+  SnapshotField field;
+  field.format.name = "pressure";
+  field.components = {pressure[0]};
+  SnapshotWriter first(scene.grid, directory / "", true), second(scene.grid, directory / "", true);
+  for (int n = 0; n < 4; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
+  ASSERT_EQ(second.resume(1, true), 0);
+  ASSERT_EQ(second.write(0.25, 9, {field}), 0);
+  EXPECT_TRUE(fs::exists(directory / "snapshot_000001.vtkhdf"));
+  EXPECT_FALSE(fs::exists(directory / "snapshot_000002.vtkhdf"));
+  const std::string series = text_of(directory / "snapshots.vtkhdf.series");
+  EXPECT_NE(series.find("000000.vtkhdf\", \"time\": 0}"), std::string::npos) << series;
+  EXPECT_NE(series.find("000001.vtkhdf\", \"time\": 0.25}"), std::string::npos) << series;
+  EXPECT_EQ(series.find("000002"), std::string::npos) << series;
 }
 
 TEST(Snapshot, AColourIsPartOfItsSpecies) {

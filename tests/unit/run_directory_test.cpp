@@ -43,9 +43,9 @@ TEST(RunDirectory, AnEarlierRunIsRefused) {
 TEST(RunDirectory, OverwriteTakesOnlyWhatIsOurs) {
   const TemporaryDirectory base;
   fs::create_directory(base / "run");
-  const char *const ours[] = {"options.txt",        "series.csv",           "summary.json",
-                              "bodies.h5",          "snapshots.xdmf",       "bodies.h5.tmp",
-                              "snapshot_000012.h5", "checkpoint_000001.h5", "summary.json.tmp"};
+  const char *const ours[] = {"options.txt",      "series.csv",    "summary.json",           "bodies.h5",
+                              "snapshots.xdmf",   "bodies.h5.tmp", "snapshot_000012.h5",     "checkpoint_000001.h5",
+                              "summary.json.tmp", "walls.xdmf",    "snapshot_000012.vtkhdf", "snapshots.vtkhdf.series"};
   const char *const theirs[] = {"notes.txt", "snapshot_000012.h5.old", "my_snapshot_000012.h5", "snapshot_.h5",
                                 "optionsXtxt"};
   for (const char *name : ours) put(base / ("run/" + std::string(name)), "x");

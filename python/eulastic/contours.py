@@ -1,0 +1,156 @@
+"""Surfaces of the bodies of a 3-D run, by VTK: contours of phi, cut where a body crosses an end of the box; and as files."""
+import itertools
+import json
+
+import numpy
+
+from . import derived
+from .surfaces import body_pieces, enclosing, sample
+
+VESSELS = "tube", "constricted_tube", "voxels"
+KINDS = "vtp", "stl"
+
+
+def species_of(run):
+    """{name: shape} in the order of -species."""
+    return {name: run.options.get(name + "_shape") for name in run.options.get("species", "").split(",")}
+
+
+class Contours:
+    def __init__(self, run):
+        import vtkmodules.all as vtk  # takes its time
+        self.vtk, self.run = vtk, run
+        self.periodic = [not run.is_bounded(d) for d in (2, 1, 0)]  # in z, y, x
+
+    def in_species(self, snapshot, field, name):
+        """solid_fraction or body of one species."""
+        return snapshot[field + ("_" + name if len(species_of(self.run)) > 1 else "")]
+
+    def bodies(self, snapshot, name, whole=False, planes=()):
+        """(label, surface) of the bodies of a species that is no vessel: a VTK filter that encloses the body's volume. One
+        that crosses a periodic end comes in its parts, or, whole, sticks out; planes cut, too."""
+        labels = self.in_species(snapshot, "body", name).astype(int)
+        for body, piece, begin in body_pieces(self.in_species(snapshot, "solid_fraction", name), labels, self.periodic):
+            for part in self.parts(self.contour(piece, begin, enclosing(piece)), piece.shape, begin, whole, planes):
+                yield body, part
+
+    def vessel(self, snapshot, name):
+        """The surface phi = 1/2, open where it leaves the box, half a cell beyond."""
+        return self.contour(self.widened(self.in_species(snapshot, "solid_fraction", name)), numpy.full(3, -1))
+
+    def widened(self, values):
+        """With one more cell on each side."""
+        for axis in range(3):
+            beyond = [(1, 1) if d == axis else (0, 0) for d in range(3)]
+            values = numpy.pad(values, beyond, mode="wrap" if self.periodic[axis] else "edge")
+        return values
+
+    def contour(self, fraction, begin, level=0.5):
+        """phi = level, smoothed; begin: index (k,j,i) of the first cell."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        h = self.run.spacing
+        image = self.vtk.vtkImageData()
+        image.SetDimensions(*fraction.shape[::-1])
+        image.SetSpacing(*h)
+        image.SetOrigin(*((begin[::-1] + 0.5) * h))
+        image.GetPointData().SetScalars(numpy_to_vtk(numpy.ascontiguousarray(fraction, dtype=float).ravel(), deep=1))
+        surface = self.vtk.vtkFlyingEdges3D()
+        surface.SetInputData(image)
+        surface.SetValue(0, level)
+        smooth = self.vtk.vtkWindowedSincPolyDataFilter()  # takes the steps of a sharp phi out of the picture
+        smooth.SetInputConnection(surface.GetOutputPort())
+        smooth.SetNumberOfIterations(20 if fraction.sum() > 50 else 4)  # it would shrink a body of few cells
+        smooth.SetPassBand(0.1)
+        smooth.NormalizeCoordinatesOn()
+        return smooth
+
+    def parts(self, surface, shape, begin, whole, planes):
+        """The surface as it is, or cut at the ends of the box that it crosses, once for each; and cut by the planes."""
+        planes, shifts = list(planes), []
+        for d, (first, count, n, periodic) in enumerate(zip(begin[::-1], shape[::-1], self.run.cells, self.periodic[::-1])):
+            low, high = first + 2 < 0, first + count - 2 > n  # two cells around a body are empty
+            beyond = periodic and not whole and (low or high)
+            shifts.append((0, 1 if low else -1) if beyond else (0,))
+            if beyond:
+                planes += [self.plane(d, 0, 1), self.plane(d, self.run.length[d], -1)]
+        for shift in itertools.product(*shifts):
+            part = surface
+            if any(shift):
+                move = self.vtk.vtkTransform()
+                move.Translate(*(shift * self.run.length))
+                part = self.vtk.vtkTransformPolyDataFilter()
+                part.SetTransform(move)
+                part.SetInputConnection(surface.GetOutputPort())
+            if planes:
+                cut, collection = self.vtk.vtkClipClosedSurface(), self.vtk.vtkPlaneCollection()
+                for plane in planes:
+                    collection.AddItem(plane)
+                cut.SetClippingPlanes(collection)
+                cut.SetInputConnection(part.GetOutputPort())
+                part = cut
+            yield part
+
+    def plane(self, d, place, towards):
+        """What lies towards +1 or -1 of `place` along d stays."""
+        plane = self.vtk.vtkPlane()
+        plane.SetOrigin(*(place if axis == d else 0 for axis in range(3)))
+        plane.SetNormal(*(towards if axis == d else 0 for axis in range(3)))
+        return plane
+
+    def at_points(self, surface, field):
+        """A field of cells (nz, ny, nx) at the points of a vtkPolyData, as a VTK array."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing - 0.5
+        return numpy_to_vtk(sample(field, places, self.periodic), deep=1)
+
+    def all_surfaces(self, snapshot, field="", whole=False):
+        """vtkPolyData of triangles: all bodies and vessels. Of cells `body`, the label (0 of vessels), and `species`, 1, 2,
+        ... in the order of `species_names`, the strings of the whole; of points `field`."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        vtk, names = self.vtk, species_of(self.run)
+        together, values = vtk.vtkAppendPolyData(), derived.field(snapshot, field) if field else None
+        together.AddInputData(vtk.vtkPolyData())  # without any body there is this one
+        for number, (name, shape) in enumerate(names.items(), 1):
+            vessel = shape in VESSELS
+            for body, part in [(0, self.vessel(snapshot, name))] if vessel else self.bodies(snapshot, name, whole):
+                triangles = vtk.vtkTriangleFilter()
+                triangles.SetInputConnection(part.GetOutputPort())
+                triangles.Update()
+                surface = vtk.vtkPolyData()
+                surface.CopyStructure(triangles.GetOutput())
+                for array, value in (("body", body), ("species", number)):
+                    cells = numpy_to_vtk(numpy.full(surface.GetNumberOfCells(), value, numpy.int32), deep=1)
+                    cells.SetName(array)
+                    surface.GetCellData().AddArray(cells)
+                if field and surface.GetNumberOfPoints() > 0:
+                    points = self.at_points(surface, values)
+                    points.SetName(field)
+                    surface.GetPointData().AddArray(points)
+                together.AddInputData(surface)
+        together.Update()
+        strings = vtk.vtkStringArray()
+        strings.SetName("species_names")
+        for name in names:
+            strings.InsertNextValue(name)
+        together.GetOutput().GetFieldData().AddArray(strings)
+        return together.GetOutput()
+
+    def write(self, snapshots, kind, folder, field="", whole=False):
+        """surfaces_NNNNNN.vtp or .stl in `folder` for each snapshot, under its number, and surfaces.vtp.series, the list of
+        them with times for ParaView; yields each (snapshot, path). OSError where a file cannot be written."""
+        folder.mkdir(parents=True, exist_ok=True)
+        listed = []
+        for snapshot in snapshots:
+            path = folder / f"surfaces_{snapshot.path.stem.split('_')[1]}.{kind}"
+            path.open("wb").close()  # VTK would not say why it cannot
+            writer = self.vtk.vtkXMLPolyDataWriter() if kind == "vtp" else self.vtk.vtkSTLWriter()
+            if kind == "stl":
+                writer.SetFileTypeToBinary()
+            writer.SetFileName(str(path))
+            writer.SetInputData(self.all_surfaces(snapshot, field, whole))
+            if not writer.Write():
+                raise OSError(f"cannot write {path}")
+            listed.append({"name": path.name, "time": snapshot.time})
+            yield snapshot, path
+        series = {"file-series-version": "1.0", "files": listed}
+        (folder / f"surfaces.{kind}.series").write_text(json.dumps(series, indent=2) + "\n")

@@ -1,0 +1,46 @@
+#include "io/vtkhdf.hpp"
+
+#include "io/json.hpp"
+#include "io/text_file.hpp"
+
+#include <filesystem>
+
+namespace eulastic {
+
+PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, const std::string &name,
+                            const std::vector<std::string> &datasets) {
+  PetscFunctionBeginUser;
+  const Int3 &n = grid.cells();
+  const Real3 &h = grid.spacing();
+  const std::string root = "VTKHDF", cells = root + "/CellData";
+  Hdf5File file;
+  PetscCall(file.create(grid.comm(), directory + "/" + name + ".vtkhdf"));
+  PetscCall(file.create_group(root));
+  PetscCall(file.write_attribute(root, "Version", std::vector<long>{1, 0}));
+  PetscCall(file.write_attribute(root, "Type", std::string("ImageData")));
+  PetscCall(file.write_attribute(root, "WholeExtent", std::vector<long>{0, n[0], 0, n[1], 0, n[2]}));  // of points
+  PetscCall(file.write_attribute(root, "Origin", std::vector<double>{0, 0, 0}));
+  PetscCall(file.write_attribute(root, "Spacing", std::vector<double>(h.begin(), h.end())));
+  PetscCall(file.write_attribute(root, "Direction", std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  PetscCall(file.create_group(cells));
+  for (const std::string &dataset : datasets) PetscCall(file.link(cells + "/" + dataset, name + ".h5", dataset));
+  PetscCall(file.commit());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode write_vtkhdf_series(MPI_Comm comm, const std::string &directory,
+                                   const std::vector<SnapshotEntry> &entries) {
+  PetscFunctionBeginUser;
+  std::vector<Json> files;
+  for (const SnapshotEntry &entry : entries) {
+    const std::string name = entry.name + ".vtkhdf";
+    std::error_code error;
+    if (!std::filesystem::exists(directory + "/" + name, error)) continue;
+    files.emplace_back().add("name", name).add("time", entry.time);
+  }
+  const std::string text = Json().add("file-series-version", std::string("1.0")).add("files", files).text();
+  PetscCall(write_text_file(comm, directory + "/snapshots.vtkhdf.series", text));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
