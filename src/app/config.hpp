@@ -59,6 +59,7 @@ struct TimeControl {
 struct OutputControl {
   std::string directory = "output";
   bool overwrite = false;
+  bool snapshot_exact = false;   ///< at the multiples of the interval, else at the steps that reach them
   double snapshot_interval = 0;  ///< simulated time; 0 = no snapshots, else the start and the end are written too
   std::vector<std::string> snapshot_fields{"velocity", "pressure", "solid_fraction", "body", "wall_shear_stress"};
   bool snapshot_single = true;   ///< single precision

@@ -200,6 +200,9 @@ void add_running(Rows &rows, Config &config) {
   rows.boolean("output_overwrite", output.overwrite, "replace the output of an earlier run");
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
             "time between snapshots, the start and the end included; 0 = none");
+  rows.choice(
+      "snapshot_times", output.snapshot_exact, {"steps", "exact"},
+      "steps: of the first step at or after each multiple of the interval; exact: interpolated to the multiple");
   rows.words("snapshot_fields", output.snapshot_fields,
              {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"},
              "fields in snapshots");

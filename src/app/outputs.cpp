@@ -168,6 +168,16 @@ std::vector<BodyRecord> Outputs::records() const {
   return records;
 }
 
+PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times) {
+  PetscFunctionBeginUser;
+  if (times.empty()) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  PetscCall(solver_->look_back(times, [this] { return snapshots_->write(config_, solver_); }));
+  snapshot_due_.last_time = times.back();
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Outputs::write_due(bool last) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
@@ -176,6 +186,8 @@ PetscErrorCode Outputs::write_due(bool last) {
     due->last_time = state.time;
     return true;
   };
+  if (snapshots_ && config_.output.snapshot_exact && !last)
+    PetscCall(write_passed_snapshots(snapshot_due_.between(state.time - state.dt, state.time)));
   const bool series = now(&series_due_), snapshot = now(&snapshot_due_);
   const bool samples = samples_.due(state.time, series, last);
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);

@@ -53,6 +53,8 @@ private:
   int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
   bool resolved(double volume) const { return volume >= few_cells() * grid_->cell_volume(); }
   std::vector<BodyRecord> records() const;
+  /// Of times within the last step.
+  PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
   PetscErrorCode measure_energy(EnergyState *energy);
 
   Config config_;

@@ -261,6 +261,11 @@ std::string check_time(const Config &config) {
          to_text(config.time.end) + "; accepted: 0 or a number > " + to_text(resolution);
 }
 
+std::string check_snapshots(const Config &config) {
+  if (!config.output.snapshot_exact || config.method.staggered()) return {};
+  return "-snapshot_times: exact needs -time_integrator staggered; accepted here: steps";
+}
+
 std::string check_restart(const Config &config) {
   const std::string &path = config.checkpoint.restart;
   std::error_code ignored;
@@ -275,8 +280,8 @@ std::string check_restart(const Config &config) {
 
 std::string validate(Config *whole) {
   const Config &config = *whole;
-  for (const auto check :
-       {check_grid, check_spacings, check_walls, check_flow, check_method, check_time, check_samples, check_restart})
+  for (const auto check : {check_grid, check_spacings, check_walls, check_flow, check_method, check_time, check_samples,
+                           check_snapshots, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
     for (const auto check : {check_species, check_contact})

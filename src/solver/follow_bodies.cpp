@@ -76,10 +76,40 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
       break;
     }
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
-  PetscCall(transport(phases_now_, 0.5 * now_.dt));
+  PetscCall(transport(phases_now_, 0.5 * now_.dt - looks_back_));
   for (Phase &copy : phases_now_)
     if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
   phases_now_step_ = now_.step;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look) {
+  PetscFunctionBeginUser;
+  if (times.empty()) PetscFunctionReturn(0);
+  FieldBlock begin, end;
+  begin.copy_from(velocity_star_);  // project() has swapped them
+  end.copy_from(now_.velocity);
+  struct Restore {
+    Solver *solver;
+    const FieldBlock &velocity;
+    double time;
+    ~Restore() {
+      solver->now_.velocity.copy_from(velocity);
+      solver->now_.time = time;
+      solver->looks_back_ = 0;
+      solver->phases_now_step_ = -1;
+    }
+  } const restore{this, end, now_.time};
+  const std::ptrdiff_t values = end.count() * end.layout().size;
+  for (const double time : times) {
+    looks_back_ = restore.time - time;
+    phases_now_step_ = -1;
+    now_.time = time;
+    const double share = looks_back_ / now_.dt, *from = begin.data(), *to = end.data();
+    double *velocity = now_.velocity.data();
+    for (std::ptrdiff_t i = 0; i < values; ++i) velocity[i] = to[i] + share * (from[i] - to[i]);
+    PetscCall(look());
+  }
   PetscFunctionReturn(0);
 }
 

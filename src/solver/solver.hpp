@@ -20,6 +20,7 @@
 #include "solver/outlet_loads.hpp"
 #include "solver/state.hpp"
 
+#include <functional>
 #include <memory>
 
 namespace eulastic {
@@ -79,6 +80,10 @@ public:
   /// The phases at the time of the velocity. With the staggered integrator they live half a step behind: a copy is
   /// brought up, the state is not touched. Valid until the next step.
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
+  /// Calls look() for each of `times` within the last step, with velocity and phases of that time, to second order;
+  /// pressure is that of the step. The state is then what it was. Only with the staggered integrator, after step() and
+  /// before phases_now().
+  PetscErrorCode look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
   /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp), or if a
@@ -166,6 +171,7 @@ private:
   std::unique_ptr<RigidFaces> rigid_;                ///< the same of rigid bodies
   std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
+  double looks_back_ = 0;                ///< before the end of the step
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };
 

@@ -84,8 +84,8 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     PetscCall(extend_exterior(phase, next, rows));
     PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
     PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
-    // Over two steps at once, in every second: their rates are slow against a step.
-    if (!identity && !phase.material.linear && now_.step % 2 == 1) {
+    // Over two steps at once, in every second: their rates are slow against a step. They forget: no way back.
+    if (!identity && !phase.material.linear && now_.step % 2 == 1 && dt > 0) {
       PetscCall(update_tensor_ghosts(phase.tensor, SurfaceCorrection::ghosts, rows));
       PetscCall(surface_.apply(*grid_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
     }
