@@ -49,7 +49,7 @@ std::vector<GridSpec> any_decomposition(GridSpec spec) {
     for (int py = 1; py <= ranks / px; ++py) {
       if (ranks % (px * py)) continue;
       spec.processors = {px, py, ranks / (px * py)};
-      if (Grid::why_not(spec, ranks).empty()) specs.push_back(spec);
+      add_splits(spec, &specs);
     }
   return specs;
 }
