@@ -160,9 +160,14 @@ PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *
   char text[120];
   Balance balance(solver);
   PetscCall(balance.find(spec, &before, &after));
-  std::snprintf(text, sizeof text, "balance: heaviest rank %.3g %s %.3g of the mean (estimate)%s", before,
-                spec->starts[0].empty() ? "at best" : "->", after,
-                spec->starts[0].empty() ? ", the even split stays" : "");
+  if (solver.grid().ranks() == 1)
+    std::snprintf(text, sizeof text, "balance: one rank has all cells");
+  else if (spec->starts[0].empty())
+    std::snprintf(text, sizeof text,
+                  "balance: the even split stays, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+                  after);
+  else
+    std::snprintf(text, sizeof text, "balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
   *line = text;
   PetscFunctionReturn(0);
 }

@@ -201,7 +201,7 @@ PetscErrorCode balance(const std::string &restarted_from, Grid *grid, Run *run, 
   if (config.grid.starts[0].empty()) PetscFunctionReturn(0);
   PetscCall(check_sizes(grid->comm(), config, &too_large));
   if (!too_large.empty()) {
-    *line += ", but the even split stays: " + too_large;
+    *line += "; the even split stays: " + too_large;
     PetscFunctionReturn(0);
   }
   run->solver = {};

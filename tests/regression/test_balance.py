@@ -16,7 +16,8 @@ FLOW = "-body_force .3,0,0 -initial_velocity_mean .2,0,.4 -time_end 100".split()
 CORNER = [*BOX, *("-grid_cells 12,24,20 "
                   "-species cell,bead -cell_shape sphere -cell_radius .6 -cell_centre 1.5,1,1 -cell_shear_modulus 1 "
                   "-bead_shape sphere -bead_radius .5 -bead_centre .5,2.1,1.2 -bead_shear_modulus .5").split()]
-LINE = re.compile(r"^balance: heaviest rank (\S+) (->|at best) (\S+) of the mean \(estimate\)(.*)$", re.M)
+LINE = re.compile(r"^balance: (the even split stays, )?heaviest rank (\S+) (->|of the mean, at best) (\S+) "
+                  r"(of the mean )?\(estimate\)(.*)$", re.M)
 
 
 class Balance(Restart):
@@ -24,9 +25,9 @@ class Balance(Restart):
         """(before, whether ranks are cut anew, after) of a run in the directory `run`."""
         result = self.call(*arguments, "-balance", "-output_dir", "run", "-output_overwrite", ranks=ranks)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        before, what, after, rest = LINE.search(result.stdout).groups()
-        self.assertEqual(rest, "" if what == "->" else ", the even split stays")
-        return float(before), what == "->", float(after)
+        self.assertEqual(result.stdout.count("balance: "), 1)
+        even, before, _, after, _, self.rest = LINE.search(result.stdout).groups()
+        return float(before), even is None, float(after)
 
     def hash(self):
         return self.summary("run")["state_hash"]
@@ -82,7 +83,18 @@ class Balance(Restart):
         for cells in "12,24,20", "12,25,19":
             for ranks in (2, 3, 4):
                 self.assertFalse(self.line(*BOX, *FLOW, "-grid_cells", cells, "-time_steps_max", 1, ranks=ranks)[1])
-        self.assertEqual(self.line(*CORNER, *FLOW, "-time_steps_max", 1), (1, False, 1))
+        result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-balance", "-output_dir", "one")
+        self.assertIn("\nbalance: one rank has all cells\n", result.stdout)
+
+    def test_too_large_a_box(self):
+        # Memory for even boxes alone.
+        case = [*CORNER, *FLOW, "-time_steps_max", 1]
+        result = self.call(*case, "-guard_memory", "1e-9", ranks=2)
+        needed, limit = map(float, re.search(r"need about (\S+) GB .* has (\S+) GB", result.stderr).groups())
+        self.assertTrue(self.line(*case, ranks=2)[1])
+        self.assertEqual(self.rest, "")
+        self.line(*case, "-guard_memory", 1.01 * needed / limit, ranks=2)
+        self.assertRegex(self.rest, "^; the even split stays: -grid_cells: the fields need about")
 
 
 if __name__ == "__main__":
