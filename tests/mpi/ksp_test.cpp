@@ -139,10 +139,11 @@ TEST(Ksp, HalvesUnevenRanks) {
       spec.starts = {std::vector<int>{0, 16}, {0, 32}, {0}};
       for (int p = 1; p < ranks; ++p) spec.starts[2].push_back(narrow_first ? 13 * p : 96 - 13 * (ranks - p));
       spec.starts[2].push_back(96);
-      KspScene s(spec);
+      KspScene s(spec), even(box({16, 32, 96}, walls));
       s.set(noise);
+      even.set(noise);
       EXPECT_EQ(s.preconditioner(), PCMG);
-      EXPECT_LE(s.iterations(), 15);
+      EXPECT_LE(s.iterations(), 1.3 * even.iterations());  // coarse cells lie across ends of ranks
       EXPECT_LE(s.rms_residual(), 1.01e-10 * s.rms_divergence());
     }
 }
