@@ -118,7 +118,8 @@ struct Config {
   SampleControl samples;
   CheckpointControl checkpoint;
   GuardControl guard;
-  int threads = 1;  ///< per rank
+  int threads = 1;       ///< per rank
+  bool balance = false;  ///< ranks have about as much to do, rather than as many cells
   bool check_only = false;
   int ranks = 0;  ///< that -check_only speaks of; 0: those that there are
   bool print_options = false;

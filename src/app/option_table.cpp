@@ -32,6 +32,8 @@ void add_grid(Rows &rows, Config &config) {
                   std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
   rows.integers("threads", &config.threads, 1, {1, false, 1024},
                 "threads per rank, which share its planes of cells, in 2-D rows");
+  rows.boolean("balance", config.balance,
+               "cut y and z so that ranks have about as much to do, by an estimate at the start and at restarts");
   rows.allow_change(processors);
 }
 

@@ -1,6 +1,7 @@
 #include "app/run.hpp"
 
 #include "app/attachment_warning.hpp"
+#include "app/balance.hpp"
 #include "app/checkpoints.hpp"
 #include "app/last_word.hpp"
 #include "app/memory.hpp"
@@ -189,26 +190,54 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   PetscFunctionReturn(0);
 }
 
+// -balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
+PetscErrorCode balance(const std::string &restarted_from, Grid *grid, Run *run, std::string *line,
+                       std::string *refusal) {
+  PetscFunctionBeginUser;
+  ParseResult parsed = run->parsed;
+  Config &config = parsed.config;
+  std::string too_large;
+  PetscCall(balance_ranks(run->solver, &config.grid, line));
+  if (config.grid.starts[0].empty()) PetscFunctionReturn(0);
+  PetscCall(check_sizes(grid->comm(), config, &too_large));
+  if (!too_large.empty()) {
+    *line += "; the even split stays: " + too_large;
+    PetscFunctionReturn(0);
+  }
+  run->solver = {};
+  run->position = {};
+  PetscCall(grid->create(grid->comm(), config.grid));
+  PetscCall(build_scene(config, *grid, &run->solver, refusal));
+  if (!refusal->empty() || restarted_from.empty()) PetscFunctionReturn(0);
+  std::string again;
+  config.checkpoint.restart = restarted_from;
+  PetscCall(restart(parsed, &run->solver, &run->position, &again, refusal));
+  PetscFunctionReturn(0);
+}
+
 // The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
-PetscErrorCode begin_run(const Grid &grid, Run *run, std::string *refusal) {
+PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   PetscFunctionBeginUser;
   const ParseResult &parsed = run->parsed;
   const Config &config = parsed.config;
+  const Grid &grid = *made;
   const std::string &path = config.output.directory, &source = config.checkpoint.restart;
   using Earlier = RunDirectory::Earlier;
-  std::string restarted_from;
+  std::string restarted_from, balanced;
   double thrown_away = 0;
   PetscCall(build_scene(config, grid, &run->solver, refusal));
   if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
   if (refusal->empty() && run->in_place) PetscCall(run->directory.open(grid.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
+  if (refusal->empty() && config.balance) PetscCall(balance(restarted_from, made, run, &balanced, refusal));
   if (refusal->empty() && !run->in_place)
     PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
                                   refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
   for (const std::string &line : red_cell_lines(config)) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
+  if (!balanced.empty()) PetscCall(PetscPrintf(grid.comm(), "%s\n", balanced.c_str()));
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);
@@ -258,7 +287,7 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
   Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
-  PetscCall(begin_run(grid, &run, refusal));
+  PetscCall(begin_run(&grid, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();
   run.total_before = run.position.wall_seconds_total;

@@ -1,5 +1,7 @@
 #include "grid/grid.hpp"
 
+#include "grid/cuts.hpp"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -13,8 +15,7 @@ std::ptrdiff_t round_up(std::ptrdiff_t n, std::ptrdiff_t m) { return (n + m - 1)
 // First cell of each of `parts` ranks: multiples of a power of two, so that coarse grids have whole cells on every
 // rank, as large as unevenness of an eighth allows; x in whole blocks where there are enough of them.
 std::vector<int> split(int cells, int parts, bool in_blocks) {
-  int unit = 1;
-  while (cells % (2 * unit) == 0 && cells / parts >= 8 * 2 * unit) unit *= 2;
+  int unit = cut_unit(cells, parts);
   while (cells % (2 * unit * parts) == 0 && cells / parts >= 4 * unit) unit *= 2;
   if (in_blocks && cells >= sum_block * parts) unit = sum_block;
   const std::int64_t units = (cells + unit - 1) / unit;
@@ -22,6 +23,10 @@ std::vector<int> split(int cells, int parts, bool in_blocks) {
   for (int p = 0; p <= parts; ++p)
     starts[p] = static_cast<int>(std::min<std::int64_t>(cells, units * p / parts * unit));
   return starts;
+}
+
+std::vector<int> starts_of(const GridSpec &spec, const Int3 &ranks, int d) {
+  return spec.starts[d].empty() ? split(spec.cells[d], ranks[d], d == 0) : spec.starts[d];
 }
 
 bool wide_enough(const std::vector<int> &starts, bool needs_ghosts) {
@@ -34,7 +39,7 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
   const bool flat = spec.cells[2] == 1;
   if (flat && ranks[2] != 1) return false;
   for (int d = 0; d < 3; ++d)
-    if (!wide_enough(split(spec.cells[d], ranks[d], d == 0), !(flat && d == 2))) return false;
+    if (!wide_enough(starts_of(spec, ranks, d), !(flat && d == 2))) return false;
   return true;
 }
 
@@ -44,6 +49,10 @@ Int3 Grid::decompose(const GridSpec &spec, int ranks) {
   constexpr double worth = 1.3;   // of the cost, before x is split more than it must be
   constexpr double share = .125;  // of a cell's time in that of a layer's ghost cell, in all exchanges of a step
   Int3 best{0, 0, 0}, shorter{0, 0, 0};
+  if (!spec.starts[0].empty()) {
+    for (int d = 0; d < 3; ++d) best[d] = static_cast<int>(spec.starts[d].size()) - 1;
+    return best[0] * best[1] * best[2] == ranks && fits(spec, best) ? best : shorter;
+  }
   double best_cost = 0, shorter_cost = 0;
   for (int px = 1; px <= ranks; ++px) {
     if (ranks % px) continue;
@@ -76,7 +85,7 @@ Int3 Grid::decompose(const GridSpec &spec, int ranks) {
 Int3 Grid::largest_box(const GridSpec &spec, const Int3 &ranks) {
   Int3 most{0, 0, 0};
   for (int d = 0; d < 3; ++d) {
-    const std::vector<int> starts = split(spec.cells[d], ranks[d], d == 0);
+    const std::vector<int> starts = starts_of(spec, ranks, d);
     for (int p = 0; p < ranks[d]; ++p) most[d] = std::max(most[d], starts[p + 1] - starts[p]);
   }
   return most;
@@ -189,7 +198,7 @@ void Grid::divide(const GridSpec &spec, int ranks) {
   const Int3 parts = decompose(spec, ranks);
   for (int d = 0; d < 3; ++d) {
     spacing_[d] = spec.length[d] / spec.cells[d];
-    starts_[d] = split(spec.cells[d], parts[d], d == 0);
+    starts_[d] = starts_of(spec, parts, d);
   }
 }
 
@@ -255,6 +264,7 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
   result.ranks_ = everywhere ? 1 : ranks_;
   result.spec_ = spec_;
   result.spec_.cells = cells;
+  result.spec_.starts = {};
   for (int d = 0; d < 3; ++d) {
     result.spacing_[d] = spec_.length[d] / cells[d];
     result.starts_[d] = {0};

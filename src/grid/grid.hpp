@@ -25,6 +25,8 @@ struct GridSpec {
   /// [direction][low, high]: volume crosses a side on which the pressure is given, and the faces on it move
   std::array<std::array<bool, 2>, 3> open{};
   Int3 processors{0, 0, 0};  ///< ranks per direction, 0 = chosen here
+  /// First cell of each rank along every direction, and N at the end, in place of the even split; empty: that
+  std::array<std::vector<int>, 3> starts;
   int ghosts = 5;            ///< layers in memory: WENO5 reads three, B outside bodies takes five
 };
 

@@ -77,13 +77,18 @@ bool about_equal_spacing(const Grid &grid) {
   return *std::max_element(h.begin(), h.begin() + grid.dimension()) <= about_equal * shortest(grid);
 }
 
-// Grids, while every direction can be halved and leaves every rank a cell; and the cells of the coarsest.
+// Grids, while every direction can be halved and leaves every rank a cell; and the cells of the coarsest. Where ranks
+// are not even, PETSc moves both ends of a coarse one by up to a cell.
 int geometric_levels(const Grid &grid, double *coarsest) {
-  Int3 cells = grid.cells();
-  const auto halves = [&](int d) { return cells[d] % 2 == 0 && cells[d] / 2 >= std::max(2, grid.processors(d)); };
+  const int least = grid.spec().starts[0].empty() ? 1 : 3;
+  Int3 cells = grid.cells(), narrowest = cells;
+  for (int d = 0; d < 3; ++d)
+    for (int p = 0; p < grid.processors(d); ++p)
+      narrowest[d] = std::min(narrowest[d], grid.first_cell(d, p + 1) - grid.first_cell(d, p));
+  const auto halves = [&](int d) { return cells[d] % 2 == 0 && cells[d] / 2 >= 2 && narrowest[d] / 2 >= least; };
   int levels = 1;
   for (; halves(0) && halves(1) && (grid.dimension() == 2 || halves(2)); ++levels)
-    for (int d = 0; d < grid.dimension(); ++d) cells[d] /= 2;
+    for (int d = 0; d < grid.dimension(); ++d) cells[d] /= 2, narrowest[d] /= 2;
   *coarsest = double(cells[0]) * cells[1] * cells[2];
   return levels;
 }

@@ -160,10 +160,11 @@ class RandomScenes(unittest.TestCase):
             ran += 1
             ways = {"{} x {} x {} ranks".format(*ranks): {"ranks": ranks} for ranks in {split(dice, cells), split(dice, cells)}}
             ways |= {"threads": {"words": [*whole, "-threads", str(dice.choice((2, 3)))]},
-                     **programs}
+                     "balanced": {"words": [*whole, "-balance"], "ranks": split(dice, cells)}, **programs}
             half = [*words, "-time_steps_max", str(max(1, steps // 2)), "-checkpoint_interval", "1e9"]
             if self.run_program(half, "half", split(dice, cells)) is not None:
-                ways["restarted"] = {"words": [*whole, "-restart", str(self.room / "half")], "ranks": split(dice, cells)}
+                ways["restarted"] = {"words": [*whole, "-restart", str(self.room / "half"),
+                                               *dice.choice(([], ["-balance"]))], "ranks": split(dice, cells)}
             for way, how in ways.items():
                 with self.subTest(f"seed {seed}, {way}: {' '.join(whole)}"):
                     other = self.run_program(**{"words": whole, "directory": "other", **how})

@@ -4,6 +4,7 @@
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "pressure/pressure_solver.hpp"
+#include "support/lopsided.hpp"
 
 #include <gtest/gtest.h>
 
@@ -101,7 +102,7 @@ inline std::vector<GridSpec> all_decompositions(GridSpec spec, bool sums = true)
     for (int py = 1; py <= ranks / px; ++py) {
       if (ranks % (px * py) || (sums && px > 1 && spec.cells[0] < 256 * px)) continue;
       spec.processors = {px, py, ranks / (px * py)};
-      if (Grid::why_not(spec, ranks).empty()) specs.push_back(spec);
+      add_splits(spec, &specs);
     }
   return specs;
 }

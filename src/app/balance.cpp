@@ -1,0 +1,175 @@
+#include "app/balance.hpp"
+
+#include "grid/cuts.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+// Time that a phase takes in a cell of the rows that it occupies, over that of the fluid, from docs/performance.md,
+// "What bodies cost", with the rows of these cases: solids 3.2 (vessel with platelets, (243 - 38)/38 in 1.67 rows of
+// phases a row), 3.3 (the same with red cells, 5.41), 2.1 (channel_rbc) and, with classic, 2.4 to 3.1; membranes 4.7.
+// Rigid bodies are not transported. Whole numbers: sums have no rounding.
+constexpr double phase_cost = 3, membrane_cost = 5;
+constexpr double worth = 0.97;    // of the heaviest rank's cost, before the even split is given up
+constexpr int rounds = 8;         // of cuts that are tried
+constexpr int most_units = 4096;  // along a direction: a sum over all ranks for each
+
+class Balance {
+public:
+  explicit Balance(const Solver &solver) : grid_(solver.grid()), cost_(grid_.rows().size(), 0) {
+    for (double &cost : cost_) cost = grid_.owned()[0];
+    for (const Phase &phase : solver.state().phases) add(phase);
+    for (const double cost : cost_) own_ += cost;
+    for (int d = 0; d < 3; ++d) {
+      const int cells = grid_.cells()[d], parts = grid_.processors(d);
+      for (int p = 0; p <= parts; ++p) starts_[d].push_back(grid_.first_cell(d, p));
+      unit_[d] = cut_unit(cells, parts);
+      while (cells > most_units * unit_[d]) unit_[d] *= 2;
+      least_[d] = (Grid::stencil_width + unit_[d] - 1) / unit_[d];
+      movable_[d] = d > 0 && parts > 1 && cells / unit_[d] >= parts * least_[d];
+    }
+  }
+
+  PetscErrorCode find(GridSpec *spec, double *before, double *after) {
+    PetscFunctionBeginUser;
+    double total = own_, heaviest = own_;
+    std::array<std::vector<double>, 3> sums, weights;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_DOUBLE, MPI_SUM, grid_.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &heaviest, 1, MPI_DOUBLE, MPI_MAX, grid_.comm()));
+    *before = heaviest * grid_.ranks() / total;
+    const double even = heaviest;
+    for (int d = 1; d < 3; ++d) PetscCall(sum_planes(d, &sums[d]));
+    weights = sums;
+    auto best = starts_;
+    for (int round = 0; round < rounds; ++round) {
+      for (int d = 1; d < 3; ++d)
+        if (movable_[d] && (round == 0 || round % 2 == d - 1)) cut(d, weights[d]);
+      std::array<std::vector<double>, 3> most;
+      PetscCall(heaviest_boxes(&most));
+      const double here = *std::max_element(most[1].begin(), most[1].end());
+      if (here < heaviest) heaviest = here, best = starts_;
+      for (int d = 1; d < 3; ++d)
+        if (movable_[d]) weigh(d, sums[d], most[d], &weights[d]);
+    }
+    *after = heaviest * grid_.ranks() / total;
+    if (heaviest < worth * even) spec->starts = best;
+    PetscFunctionReturn(0);
+  }
+
+private:
+  double &cost(int j, int k) { return cost_[j + std::size_t(grid_.owned()[1]) * k]; }
+
+  void add(const Phase &phase) {
+    if (phase.material.is_rigid()) return;
+    const Int3 &n = grid_.owned();
+    const double factor = phase.material.is_membrane() ? membrane_cost : phase_cost;
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        const OccupiedRows::Span span = phase.rows.span(j, k);
+        cost(j, k) += factor * std::max(0, std::min(span.end, n[0]) - std::max(span.begin, 0));
+      }
+  }
+
+  // Over the planes of each unit along d.
+  PetscErrorCode sum_planes(int d, std::vector<double> *sums) {
+    PetscFunctionBeginUser;
+    const Int3 &n = grid_.owned();
+    const int units = grid_.cells()[d] / unit_[d];  // the last one may have more cells
+    sums->assign(units, 0);
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        const int plane = grid_.layout().begin[d] + (d == 1 ? j : k);
+        (*sums)[std::min(plane / unit_[d], units - 1)] += cost(j, k);
+      }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, grid_.comm()));
+    PetscFunctionReturn(0);
+  }
+
+  void cut(int d, const std::vector<double> &weights) {
+    const int parts = grid_.processors(d);
+    const std::vector<int> first = equal_cuts(weights, parts, least_[d]);
+    for (int p = 1; p < parts; ++p) starts_[d][p] = first[p] * unit_[d];
+  }
+
+  // The planes of a rank weigh together what the heaviest of the boxes that they go through does.
+  void weigh(int d, const std::vector<double> &sums, const std::vector<double> &most, std::vector<double> *weights) {
+    const int units = static_cast<int>(sums.size());
+    for (int p = 0; p < grid_.processors(d); ++p) {
+      const int begin = starts_[d][p] / unit_[d],
+                end = p + 1 < grid_.processors(d) ? starts_[d][p + 1] / unit_[d] : units;
+      double sum = 0;
+      for (int u = begin; u < end; ++u) sum += sums[u];
+      for (int u = begin; u < end; ++u) (*weights)[u] = sums[u] * most[p] / sum;
+    }
+  }
+
+  // The heaviest box at every place along y and z, if ranks began at starts_.
+  PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
+    PetscFunctionBeginUser;
+    const Int3 &begin = grid_.layout().begin, &n = grid_.owned();
+    const auto place_along = [&](int d, int i) {
+      return static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), i) - starts_[d].begin()) - 1;
+    };
+    const Int3 me = grid_.place_of(grid_.rank());
+    std::vector<PetscSFNode> owners;
+    std::vector<double> parts;
+    const int y0 = place_along(1, begin[1]), y1 = place_along(1, begin[1] + n[1] - 1);
+    const int z0 = place_along(2, begin[2]), z1 = place_along(2, begin[2] + n[2] - 1);
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y) {
+        double sum = 0;
+        for (int k = std::max(starts_[2][z], begin[2]); k < std::min(starts_[2][z + 1], begin[2] + n[2]); ++k)
+          for (int j = std::max(starts_[1][y], begin[1]); j < std::min(starts_[1][y + 1], begin[1] + n[1]); ++j)
+            sum += cost(j - begin[1], k - begin[2]);
+        owners.push_back({grid_.rank_at({me[0], y, z}), 0});
+        parts.push_back(sum);
+      }
+    SfHandle boxes;
+    double box = 0;
+    PetscCall(PetscSFCreate(grid_.comm(), boxes.put()));
+    PetscCall(PetscSFSetGraph(boxes.get(), 1, static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,
+                              owners.data(), PETSC_COPY_VALUES));
+    PetscCall(PetscSFReduceBegin(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
+    PetscCall(PetscSFReduceEnd(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
+    for (int d = 1; d < 3; ++d) {
+      std::vector<double> &heaviest = (*most)[d];
+      heaviest.assign(grid_.processors(d), 0);
+      heaviest[me[d]] = box;
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, heaviest.data(), grid_.processors(d), MPI_DOUBLE, MPI_MAX, grid_.comm()));
+    }
+    PetscFunctionReturn(0);
+  }
+
+  const Grid &grid_;
+  std::vector<double> cost_;  ///< of owned rows
+  double own_ = 0;            ///< their sum
+  std::array<std::vector<int>, 3> starts_;
+  Int3 unit_{}, least_{};  ///< cells that cuts are multiples of; units of a rank
+  std::array<bool, 3> movable_{};
+};
+
+}  // namespace
+
+PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *line) {
+  PetscFunctionBeginUser;
+  double before = 1, after = 1;
+  char text[120];
+  Balance balance(solver);
+  PetscCall(balance.find(spec, &before, &after));
+  if (solver.grid().ranks() == 1)
+    std::snprintf(text, sizeof text, "balance: one rank has all cells");
+  else if (spec->starts[0].empty())
+    std::snprintf(text, sizeof text,
+                  "balance: the even split stays, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+                  after);
+  else
+    std::snprintf(text, sizeof text, "balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
+  *line = text;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
