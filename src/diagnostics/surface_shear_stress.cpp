@@ -153,6 +153,25 @@ private:
   ConstView solid_;
 };
 
+// The components of the stress at the places where somebody asks for them, found once.
+class KnownStress {
+public:
+  explicit KnownStress(const WholeStress &whole)
+      : whole_(whole), known_(whole.viscosity.grid, whole.viscosity.grid.dimension() == 3 ? 6 : 3) {
+    for (int c = 0; c < known_.count(); ++c) known_.fill(c, std::nan(""));
+  }
+
+  double at(int a, int b, const Int3 &place) {
+    double &value = known_[a == b ? a : known_.count() == 3 ? 2 : 2 + a + b](place[0], place[1], place[2]);
+    if (std::isnan(value)) value = a == b ? whole_.normal(a, place) : whole_.shear(a, b, place);
+    return value;
+  }
+
+private:
+  const WholeStress &whole_;
+  FieldBlock known_;
+};
+
 }  // namespace
 
 // From the fluid's side: quadratics through its velocity, the closer the further from the surface it is.
@@ -195,6 +214,7 @@ void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field
   const Grid &grid = whole.viscosity.grid;
   const SurfaceCells cells(grid, solid);
   const int dimension = grid.dimension();
+  KnownStress known(whole);
   cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
     Real3 traction{};
     for (int a = 0; a < dimension; ++a)
@@ -202,7 +222,7 @@ void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field
         Fit fit;
         cells.for_places(TensorComponent{a, b}.staggering(), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
           const double t[] = {1, r[0], r[1], r[2]};
-          fit.add(t, dimension + 1, 1, a == b ? whole.normal(a, place) : whole.shear(a, b, place));
+          fit.add(t, dimension + 1, 1, known.at(a, b, place));
         });
         double x[most_terms];
         fit.solve(dimension + 1, x);
