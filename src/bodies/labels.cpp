@@ -73,10 +73,9 @@ struct OpenCells {
   std::vector<Int3> emptied;  // tell their neighbours whose they were: a body may have left all of its cells
 };
 
-OpenCells open_cells(const Grid &grid, const RowPart &part, const OccupiedRows &rows, ConstView phi, View label) {
+OpenCells open_cells(const Grid &grid, const RowPart &part, ConstView phi, View label) {
   OpenCells cells;
-  for (const Segment &whole : part.rows(grid)) {
-    const Segment row = rows.within(whole);
+  for (const Segment &row : part.rows(grid)) {
     const double *fraction = phi.row(row.j, row.k);
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -102,8 +101,7 @@ PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *ph
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
   std::vector<OpenCells> cells(row_parts(grid));
-  in_row_parts(grid,
-               [&](const RowPart &part) { cells[part.number] = open_cells(grid, part, phase->rows, phi, label); });
+  in_row_parts(grid, [&](const RowPart &part) { cells[part.number] = open_cells(grid, part, phi, label); });
   const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1, &phase->rows));
