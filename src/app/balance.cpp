@@ -8,10 +8,9 @@
 namespace eulastic {
 namespace {
 
-// Time that a phase takes in a cell of the rows that it occupies, over that of the fluid, from docs/performance.md,
-// "What bodies cost", with the rows of these cases: solids 3.2 (vessel with platelets, (243 - 38)/38 in 1.67 rows of
-// phases a row), 3.3 (the same with red cells, 5.41), 2.1 (channel_rbc) and, with classic, 2.4 to 3.1; membranes 4.7.
-// Rigid bodies are not transported. Whole numbers: sums have no rounding.
+// Time that a phase takes in a cell of the rows that it occupies, over that of the fluid: the ratios of crowds in
+// docs/performance.md, "What bodies cost", over the rows that their phases occupy. Rigid bodies are not transported.
+// Whole numbers: sums have no rounding.
 constexpr double phase_cost = 3, membrane_cost = 5;
 constexpr double worth = 0.97;    // of the heaviest rank's cost, before the even split is given up
 constexpr int rounds = 8;         // of cuts that are tried
