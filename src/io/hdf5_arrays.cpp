@@ -77,23 +77,19 @@ PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::s
   PetscFunctionReturn(0);
 }
 
+template <class T>
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name,
-                                         const std::vector<double> &value) {
+                                         const std::vector<T> &value) {
   PetscFunctionBeginUser;
   const hsize_t count = value.size();
-  PetscCall(write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
-                                value.data()));
+  PetscCall(
+      write_raw_attribute(object, name, hdf5_type<T>(), Hdf5Space(H5Screate_simple(1, &count, nullptr)), value.data()));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name,
-                                         const std::vector<long> &value) {
-  PetscFunctionBeginUser;
-  const hsize_t count = value.size();
-  PetscCall(write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
-                                value.data()));
-  PetscFunctionReturn(0);
-}
+template PetscErrorCode Hdf5File::write_attribute(const std::string &, const std::string &,
+                                                  const std::vector<double> &);
+template PetscErrorCode Hdf5File::write_attribute(const std::string &, const std::string &, const std::vector<long> &);
 
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, double value) {
   PetscFunctionBeginUser;

@@ -61,8 +61,8 @@ public:
 
   /// Attributes of `object`: a dataset, a group, or "/" for the file.
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<double> &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<long> &value);
+  template <class T>  // double, long
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<T> &value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);
