@@ -33,18 +33,31 @@ bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->
 
 }  // namespace
 
-PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
+PetscErrorCode GhostExchange::Unit::make(std::ptrdiff_t values) {
+  PetscFunctionBeginUser;
+  if (type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(values), MPIU_REAL, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostExchange::make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf) {
   PetscFunctionBeginUser;
   const Layout &own = grid_->layout();
-  const std::ptrdiff_t unit = by_rows() ? own.sy : 1;
+  const std::ptrdiff_t unit = pieces ? GhostPieces::cells : by_rows() ? own.sy : 1;
   std::vector<Point> points[3];
   for (int d = 0; d < 3; ++d) points[d] = points_along(*grid_, d, std::min(width, own.ghosts[d]));
-  if (by_rows()) points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
+  if (pieces) {
+    points[0].clear();
+    for (int m = 0; m < pieces->count(); ++m) points[0].push_back({GhostPieces::cells * m, 0, GhostPieces::cells * m});
+  } else if (by_rows()) {
+    points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
+  }
   if (grid_->owned_count() == 0) points[2].clear();  // nothing is around no cells
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
   const auto place_in = [&](const Layout &layout, int f, const Int3 &point) {
-    const std::ptrdiff_t offset = layout.offset(point[0], point[1], point[2]) - first_offset(layout);
+    const std::ptrdiff_t offset = layout.offset(point[0], point[1], point[2]) - (pieces ? 0 : first_offset(layout));
     return static_cast<PetscInt>((f * static_cast<std::ptrdiff_t>(layout.size) + offset) / unit);
   };
   for (int f = 0; f < fields; ++f)
@@ -55,6 +68,7 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
           const PetscInt leaf = place_in(own, f, {x.here, y.here, z.here}),
                          root = place_in(grid_->layout_of(rank), f, {x.there, y.there, z.there});
           if (rank == grid_->rank() && root == leaf) continue;  // owned
+          if (pieces && !pieces->holds(y.here, z.here, x.here / GhostPieces::cells)) continue;
           leaves.push_back(leaf);
           roots.push_back({rank, root});
         }
@@ -65,9 +79,7 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, PetscSF *sf) {
   PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
                             roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
-  if (unit_.type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(unit), MPIU_REAL, &unit_.type));
-  PetscCallMPI(MPI_Type_commit(&unit_.type));
+  PetscCall((pieces ? piece_ : unit_).make(unit));
   PetscFunctionReturn(0);
 }
 
@@ -75,10 +87,11 @@ PetscErrorCode GhostExchange::bring(const WantedGhosts &wanted,
                                     PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
   FieldBlock &block = *wanted.block;
-  SfHandle &forest = forests_[{wanted.width, block.count()}];
-  if (!forest) PetscCall(make_forest(wanted.width, block.count(), forest.put()));
-  double *first = block.data() + first_offset(block.layout());
-  PetscCall(bcast(forest.get(), unit_.type, first, first, MPI_REPLACE));
+  const GhostPieces *pieces = wanted.pieces();
+  SfHandle &forest = (pieces ? pieces->forests : forests_)[{wanted.width, block.count()}];
+  if (!forest) PetscCall(make_forest(wanted.width, block.count(), pieces, forest.put()));
+  double *first = block.data() + (pieces ? 0 : first_offset(block.layout()));
+  PetscCall(bcast(forest.get(), (pieces ? piece_ : unit_).type, first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
@@ -130,6 +143,7 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   const Layout &own = block.layout();
   const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*grid_);
   const int layers = is_inside(wanted) ? 0 : width;
+  const GhostPieces *pieces = wanted.pieces();
   const Grid::Range y = grid_->points_near(1, true, layers), z = grid_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
@@ -139,6 +153,8 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
           if (wanted.rows) {
             const OccupiedRows::Span span = wanted.rows->span(j, k);
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
+            const bool owned = j >= 0 && j < own.cells[1] && k >= 0 && k < own.cells[2];
+            if (pieces && !owned && !pieces->holds_ends(j, k)) continue;
           }
           double *row = block[f].row(j, k);
           const double *later = row + ahead * own.sy;

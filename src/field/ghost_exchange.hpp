@@ -14,14 +14,17 @@
 
 namespace eulastic {
 
-/// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere: ends
-/// of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several stages
-/// that wrap x around by themselves (Sides::wrap) want no row ends.
+/// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere:
+/// ends of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several
+/// stages that wrap x around by themselves (Sides::wrap) want no row ends. `near`: only pieces that are near() to what
+/// the rows are of, if they are known; others may hold anything.
 struct WantedGhosts {
   FieldBlock *block;
   int width;
   const OccupiedRows *rows = nullptr;
   bool row_ends = true;
+  bool near = false;
+  const GhostPieces *pieces() const { return near && rows ? rows->near() : nullptr; }
 };
 
 class GhostExchange {
@@ -38,10 +41,11 @@ public:
   PetscErrorCode end(const WantedGhosts &wanted);
 
 private:
-  /// What roots and leaves are: a row, its ghosts and padding included, or a value.
+  /// What roots and leaves are: a row, its ghosts and padding included, a piece of it, or a value.
   struct Unit {
     MPI_Datatype type = MPI_DATATYPE_NULL;
     Unit() = default;
+    PetscErrorCode make(std::ptrdiff_t values);
     Unit(const Unit &) = delete;
     Unit &operator=(const Unit &) = delete;
     ~Unit() {
@@ -49,13 +53,13 @@ private:
     }
   };
   bool by_rows() const { return grid_->processors(0) == 1; }
-  PetscErrorCode make_forest(int width, int fields, PetscSF *sf);
+  PetscErrorCode make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf);
   PetscErrorCode bring(const WantedGhosts &wanted,
                        PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
   const Grid *grid_;
-  Unit unit_;
+  Unit unit_, piece_;
   std::map<std::pair<int, int>, SfHandle> forests_;  ///< by width and number of fields
 };
 

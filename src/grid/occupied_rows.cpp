@@ -7,12 +7,9 @@
 #include <cstring>
 
 namespace eulastic {
-namespace {
 
-using Span = OccupiedRows::Span;
-
-// Whether a value is not zero; by its bits, but for the sign, which vectors can do.
-bool any(const double *row, int begin, int end) {
+// By its bits, but for the sign, which vectors can do.
+bool OccupiedRows::any(const double *row, int begin, int end) noexcept {
   std::uint64_t found = 0;
   for (int i = begin; i < end; ++i) {
     std::uint64_t bits;
@@ -22,12 +19,19 @@ bool any(const double *row, int begin, int end) {
   return found != 0;
 }
 
+namespace {
+
+constexpr int reach_near = 5;      // cells from what is not zero: layers of B outside, and edges
+constexpr int travel_of_near = 2;  // cells that it may move until pieces are found anew
+
+using Span = OccupiedRows::Span;
+
 // From the first to the last piece of the row with a value that is not zero.
 Span occupied(const double *row, Span within) {
   constexpr int piece = 16;
-  while (within.begin < within.end && !any(row, within.begin, std::min(within.begin + piece, within.end)))
+  while (within.begin < within.end && !OccupiedRows::any(row, within.begin, std::min(within.begin + piece, within.end)))
     within.begin += piece;
-  while (within.begin < within.end && !any(row, std::max(within.end - piece, within.begin), within.end))
+  while (within.begin < within.end && !OccupiedRows::any(row, std::max(within.end - piece, within.begin), within.end))
     within.end -= piece;
   return within;
 }
@@ -52,19 +56,42 @@ void add(const Span &more, Span *sum) {
 
 PetscErrorCode OccupiedRows::find(const Grid &grid, ConstView value) {
   PetscFunctionBeginUser;
-  PetscCall(read(grid, value, {}));
+  *this = {};
+  PetscCall(follow(grid, value));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OccupiedRows::follow(const Grid &grid, ConstView value) {
   PetscFunctionBeginUser;
-  const OccupiedRows before = std::move(*this);
-  PetscCall(read(grid, value, before));
+  PetscCall(follow(grid, {{this, value}}));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &before) {
+PetscErrorCode OccupiedRows::follow(const Grid &grid, const std::vector<Moved> &moved) {
   PetscFunctionBeginUser;
+  if (moved.empty()) PetscFunctionReturn(0);
+  const bool pieces = GhostPieces::exist(grid);
+  std::vector<int> found;  // of each: whether something crosses, whether its pieces are too few
+  for (const Moved &one : moved) {
+    OccupiedRows before = std::move(*one.rows);
+    one.rows->read(grid, one.value, before);
+    one.rows->near_ = std::move(before.near_);
+    const GhostPieces *near = one.rows->near();
+    found.push_back(!one.rows->inside_);
+    found.push_back(pieces && one.near && (!near || !near->hold({grid, one.value, *one.rows, reach_near})));
+  }
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    const Moved &one = moved[n];
+    one.rows->inside_ = found[2 * n] == 0;
+    if (found[2 * n + 1] != 0)
+      one.rows->near_ = std::make_shared<const GhostPieces>(grid, one.value, *one.rows, reach_near + travel_of_near);
+  }
+  PetscFunctionReturn(0);
+}
+
+void OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &before) {
   const Int3 &n = grid.owned(), &ghosts = grid.layout().ghosts;
   const int reach = ghosts[0] + 2, reach_z = ghosts[2] > 0 ? reach : 0;
   constexpr int ahead = 8;  // rows
@@ -105,19 +132,16 @@ PetscErrorCode OccupiedRows::read(const Grid &grid, ConstView value, const Occup
 #ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
   spans_.assign(spans_.size(), whole_);
 #endif
-  int crossing = 0;
+  inside_ = true;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Span s = span(j, k);
       if (empty(s)) continue;
       const bool inner[3] = {!split_x || (s.begin >= ghosts[0] && s.end <= n[0] - ghosts[0]),
                              j >= ghosts[1] && j < n[1] - ghosts[1], k >= ghosts[2] && k < n[2] - ghosts[2]};
-      if (!(inner[0] && inner[1] && inner[2])) crossing = 1;
+      inside_ = inside_ && inner[0] && inner[1] && inner[2];
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &crossing, 1, MPI_INT, MPI_MAX, grid.comm()));
-  inside_ = crossing == 0;
   count();
-  PetscFunctionReturn(0);
 }
 
 Segment OccupiedRows::within(const Segment &row, ConstView value) const noexcept {
@@ -136,6 +160,7 @@ void OccupiedRows::count() noexcept {
 void OccupiedRows::join(const OccupiedRows &other) {
   for (std::size_t r = 0; r < spans_.size(); ++r) add(other.spans_[r], &spans_[r]);
   inside_ = inside_ && other.inside_;
+  near_.reset();
   count();
 }
 

@@ -1,9 +1,10 @@
 // Where rows of a field hold anything but zeros: what there is to do elsewhere is known without reading it.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/ghost_pieces.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace eulastic {
@@ -20,6 +21,14 @@ public:
   /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read, ghost
   /// rows neither if all was inside().
   PetscErrorCode follow(const Grid &grid, ConstView value);
+  /// Rows that follow the field that they are of; `near`: near() is wanted.
+  struct Moved {
+    OccupiedRows *rows;
+    ConstView value;
+    bool near = false;
+  };
+  /// Those of several fields, in one reduction.
+  static PetscErrorCode follow(const Grid &grid, const std::vector<Moved> &moved);
 
   /// Adds the spans of another field of the grid.
   void join(const OccupiedRows &other);
@@ -50,18 +59,25 @@ public:
   /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
   /// exchange.
   bool inside() const noexcept { return inside_; }
+  /// Pieces of ghost rows that hold all points within five of what is not zero, and some more so that they are the same
+  /// for many steps, on all ranks at the same time. Null where they are not known.
+  const GhostPieces *near() const noexcept { return near_.get(); }
+
+  /// Whether one of these values is not zero.
+  static bool any(const double *row, int begin, int end) noexcept;
   /// Owned cells in spans.
   std::ptrdiff_t cells() const noexcept { return cells_; }
 
 private:
   void count() noexcept;
-  PetscErrorCode read(const Grid &grid, ConstView value, const OccupiedRows &before);
+  void read(const Grid &grid, ConstView value, const OccupiedRows &before);
 
   static constexpr int far = 1 << 30;
   int rows_y_ = 0, rows_z_ = 0;
   Span whole_{-far, far};
   std::vector<Span> spans_;
   bool inside_ = false;
+  std::shared_ptr<const GhostPieces> near_;
   std::ptrdiff_t cells_ = 0;
 };
 

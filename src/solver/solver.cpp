@@ -280,7 +280,7 @@ PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
 
 PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, width, rows));
+  PetscCall(exchange_->update({{&tensor, width, rows, true, true}}));
   fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }

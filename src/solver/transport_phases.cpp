@@ -8,13 +8,14 @@
 namespace eulastic {
 namespace {
 
-// Rows of a phase, and of what its fields are swapped with, which may be those of another phase: ghosts need an
-// exchange, and those behind walls values, if they did in either.
+// Rows of a phase and, if its fields are swapped, of what they are swapped with, which may be those of another phase:
+// ghosts need an exchange, and those behind walls values, if they did in either.
 struct MovedRows {
+  bool swaps = false;
   OccupiedRows swapped_in, joined;
   void join(const OccupiedRows &rows) {
     joined = rows;
-    if (!swapped_in.inside()) joined.join(swapped_in);
+    if (swaps && !swapped_in.inside()) joined.join(swapped_in);
   }
 };
 
@@ -24,16 +25,19 @@ struct MovedRows {
 PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionBeginUser;
   const int ghosts = grid_->spec().ghosts;
+  const bool swaps = !spec_.staggered() || spec_.interface != InterfaceScheme::plic;
   std::vector<MovedRows> rows(phases.size());
   if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     if (phase.material.is_rigid()) continue;
-    rows[p].swapped_in = next_rows_;
-    if (phase.material.elastic())
-      next_rows_ = phase.rows;
-    else
-      next_rows_.join(phase.rows);  // its B is not swapped
+    if ((rows[p].swaps = swaps)) {
+      rows[p].swapped_in = next_rows_;
+      if (phase.material.elastic())
+        next_rows_ = phase.rows;
+      else
+        next_rows_.join(phase.rows);  // its B is not swapped
+    }
     if (spec_.interface == InterfaceScheme::plic) {
       PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
     } else {
@@ -42,14 +46,19 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     }
     rows[p].join(phase.rows);  // it has moved less than a cell
   }
+  std::vector<OccupiedRows::Moved> moved;
   std::vector<WantedGhosts> fractions, tensors;
   for (std::size_t p = 0; p < phases.size(); ++p)
-    if (!phases[p].material.is_rigid()) fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+    if (!phases[p].material.is_rigid()) {
+      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined, true, true});
+      const bool near = !swaps && spec_.exterior == SolidExterior::extrapolate && phases[p].material.elastic();
+      moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0], near});
+    }
   PetscCall(exchange_->update(fractions));
+  PetscCall(OccupiedRows::follow(*grid_, moved));  // sees what has come into ghosts, even of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
-    if (phase.material.is_rigid()) continue;                  // it stays where it is
-    PetscCall(phase.rows.follow(*grid_, phase.fraction[0]));  // sees what has come into ghosts, even of idle rows
+    if (phase.material.is_rigid()) continue;  // it stays where it is
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
     if (!phase.material.carries_tensor()) continue;
@@ -58,7 +67,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     if (phase.material.is_membrane()) continue;  // with the others of its kind
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
-    tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined});
+    tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined, true, true});
   }
   if (membranes_) PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases, &phases));
   PetscCall(exchange_->update(tensors));
@@ -102,7 +111,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
 PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
-  PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
+  PetscCall(exchange_->update({{&tensor, ExteriorLayers::layers, rows, true, true}}));
   PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
   fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
   PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
