@@ -21,8 +21,7 @@ bool OccupiedRows::any(const double *row, int begin, int end) noexcept {
 
 namespace {
 
-constexpr int reach_near = 5;      // cells from what is not zero: layers of B outside, and edges
-constexpr int travel_of_near = 2;  // cells that it may move until pieces are found anew
+constexpr int travel_of_near = 2;  // cells that a field may move until pieces are found anew
 
 using Span = OccupiedRows::Span;
 
@@ -78,7 +77,7 @@ PetscErrorCode OccupiedRows::follow(const Grid &grid, const std::vector<Moved> &
     one.rows->near_ = std::move(before.near_);
     const GhostPieces *near = one.rows->near();
     found.push_back(!one.rows->inside_);
-    found.push_back(pieces && one.near && (!near || !near->hold({grid, one.value, *one.rows, reach_near})));
+    found.push_back(pieces && one.near > 0 && (!near || !near->hold({grid, one.value, *one.rows, one.near})));
   }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
@@ -86,7 +85,7 @@ PetscErrorCode OccupiedRows::follow(const Grid &grid, const std::vector<Moved> &
     const Moved &one = moved[n];
     one.rows->inside_ = found[2 * n] == 0;
     if (found[2 * n + 1] != 0)
-      one.rows->near_ = std::make_shared<const GhostPieces>(grid, one.value, *one.rows, reach_near + travel_of_near);
+      one.rows->near_ = std::make_shared<const GhostPieces>(grid, one.value, *one.rows, one.near + travel_of_near);
   }
   PetscFunctionReturn(0);
 }

@@ -21,11 +21,11 @@ public:
   /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read, ghost
   /// rows neither if all was inside().
   PetscErrorCode follow(const Grid &grid, ConstView value);
-  /// Rows that follow the field that they are of; `near`: near() is wanted.
+  /// Rows that follow the field that they are of, and how far away near() is; 0: it is not wanted.
   struct Moved {
     OccupiedRows *rows;
     ConstView value;
-    bool near = false;
+    int near = 0;
   };
   /// Those of several fields, in one reduction.
   static PetscErrorCode follow(const Grid &grid, const std::vector<Moved> &moved);
@@ -59,8 +59,8 @@ public:
   /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
   /// exchange.
   bool inside() const noexcept { return inside_; }
-  /// Pieces of ghost rows that hold all points within five of what is not zero, and some more so that they are the same
-  /// for many steps, on all ranks at the same time. Null where they are not known.
+  /// Pieces of ghost rows that hold all points within Moved::near of what is not zero, and some more so that they are
+  /// the same for many steps, on all ranks at the same time. Null where they are not known.
   const GhostPieces *near() const noexcept { return near_.get(); }
 
   /// Whether one of these values is not zero.

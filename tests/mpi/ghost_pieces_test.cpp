@@ -36,7 +36,7 @@ struct Scene {
       if (here) value[0](local[0], local[1], local[2]) = 1;
     }
     ASSERT_EQ(exchange->update(value, grid.spec().ghosts), 0);
-    ASSERT_EQ(OccupiedRows::follow(grid, {{&rows, std::as_const(value)[0], true}}), 0);
+    ASSERT_EQ(OccupiedRows::follow(grid, {{&rows, std::as_const(value)[0], near}}), 0);
   }
   Grid grid;
   std::unique_ptr<GhostExchange> exchange;
