@@ -172,11 +172,11 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
                    first);
       for (std::size_t p = 0; p < phases.size(); ++p) {
         const ConstView phi = phases[p].fraction[0];
-        const Segment part = phases[p].rows.within(row, phi);
-        const int sum_of_phase = first_of_phases + 2 * static_cast<int>(p), i = part.i_begin;
-        strain_energy(grid, phases[p], part, energy.data());
-        sums.add_row(sum_of_phase, phi.row(row.j, row.k) + i, part.size(), first + i);
-        sums.add_row(sum_of_phase + 1, energy.data() + i, part.size(), first + i);
+        const Segment held = phases[p].rows.within(row, phi);
+        const int sum_of_phase = first_of_phases + 2 * static_cast<int>(p), i = held.i_begin;
+        strain_energy(grid, phases[p], held, energy.data());
+        sums.add_row(sum_of_phase, phi.row(row.j, row.k) + i, held.size(), first + i);
+        sums.add_row(sum_of_phase + 1, energy.data() + i, held.size(), first + i);
       }
     }
   };

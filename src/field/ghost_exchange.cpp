@@ -150,11 +150,11 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
     for (int f = 0; f < block.count(); ++f)
       for (int k = z.begin + int(planes.begin); k < z.begin + int(planes.end); ++k)
         for (int j = y.begin; j < y.end; ++j) {
-          if (wanted.rows) {
+          if (pieces) {
+            if (!pieces->holds_ends(j, k)) continue;
+          } else if (wanted.rows) {
             const OccupiedRows::Span span = wanted.rows->span(j, k);
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
-            const bool owned = j >= 0 && j < own.cells[1] && k >= 0 && k < own.cells[2];
-            if (pieces && !owned && !pieces->holds_ends(j, k)) continue;
           }
           double *row = block[f].row(j, k);
           const double *later = row + ahead * own.sy;

@@ -25,6 +25,7 @@ bool GhostPieces::exist(const Grid &grid) {
   return false;
 #endif
   if (grid.processors(0) > 1) return false;
+  if (grid.wraps_x()) return true;
   for (int d = 1; d < grid.dimension(); ++d)
     if (grid.processors(d) > 1 || !grid.is_wall(d)) return true;
   return false;
@@ -55,7 +56,13 @@ GhostPieces::GhostPieces(const Grid &grid, ConstView value, const OccupiedRows &
     for (int w = 0; w < per_row_; ++w) spread(&words_[k * plane + w], rows_y_, per_row_, reach, &line);
   if (grid.dimension() == 3)
     for (std::ptrdiff_t w = 0; w < plane; ++w) spread(&words_[w], rows_z_, plane, reach, &line);
-  for (int k = 0; k < n[2]; ++k) std::fill_n(&words_[word(0, k, 0)], n[1] * per_row_, 0);
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const bool first = holds(j, k, 0), last = holds(j, k, count_ - 1);
+      std::fill_n(&words_[word(j, k, 0)], per_row_, 0);
+      words_[word(j, k, 0)] |= std::uint64_t{first};
+      words_[word(j, k, count_ - 1)] |= std::uint64_t{last} << ((count_ - 1) % bits);
+    }
 }
 
 bool GhostPieces::hold(const GhostPieces &other) const noexcept {
