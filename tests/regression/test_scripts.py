@@ -198,6 +198,17 @@ class Pictures(WithFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual((film.n_frames, film.size), (3, (200, 160)))
+            colours = [numpy.asarray(picture.convert("RGB"), dtype=int) for picture in (film, Image.open(frames[0]))]
+        self.assertLess(abs(colours[0] - colours[1]).max(), 32)  # bodies keep their shades
+
+    @unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "scripts/install --movie")
+    def test_movie_by_ffmpeg(self):
+        film = self.folder / "film.mp4"
+        done = start(SCRIPTS / "render", self.directory, "--movie", film, "--size", 201, 160, "--rate", 5)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = start("ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                     "stream=codec_name,width,height,duration,nb_read_frames", "-of", "csv=p=0", film)
+        self.assertEqual(said.stdout.strip(), "h264,202,160,0.600000,3")  # even numbers, as players need them
 
     def test_a_run_that_is_not_there_is_one_line(self):
         for script, *words in (("plot", "nosuch"), ("render", "nosuch"), ("run", "nosuch.opts"),

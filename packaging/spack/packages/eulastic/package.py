@@ -1,4 +1,4 @@
-# spack repo add packaging/spack && spack dev-build eulastic@0.1.0, in a clone.
+# spack repo add packaging/spack && spack dev-build eulastic@0.2.0, in a clone.
 from spack.package import *
 
 
