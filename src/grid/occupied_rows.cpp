@@ -70,21 +70,22 @@ PetscErrorCode OccupiedRows::follow(const Grid &grid, const std::vector<Moved> &
   PetscFunctionBeginUser;
   if (moved.empty()) PetscFunctionReturn(0);
   const bool pieces = GhostPieces::exist(grid);
-  std::vector<int> found;  // of each: whether something crosses, whether its pieces are too few
+  constexpr int crosses = 1, outgrown = 2;
+  std::vector<int> found;  // of each
   for (const Moved &one : moved) {
     OccupiedRows before = std::move(*one.rows);
     one.rows->read(grid, one.value, before);
     one.rows->near_ = std::move(before.near_);
     const GhostPieces *near = one.rows->near();
-    found.push_back(!one.rows->inside_);
-    found.push_back(pieces && one.near > 0 && (!near || !near->hold({grid, one.value, *one.rows, one.near})));
+    const bool few = pieces && one.near > 0 && (!near || !near->hold({grid, one.value, *one.rows, one.near}));
+    found.push_back((one.rows->inside_ ? 0 : crosses) | (few ? outgrown : 0));
   }
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_BOR, grid.comm()));
   for (std::size_t n = 0; n < moved.size(); ++n) {
     const Moved &one = moved[n];
-    one.rows->inside_ = found[2 * n] == 0;
-    if (found[2 * n + 1] != 0)
+    one.rows->inside_ = (found[n] & crosses) == 0;
+    if (found[n] & outgrown)
       one.rows->near_ = std::make_shared<const GhostPieces>(grid, one.value, *one.rows, one.near + travel_of_near);
   }
   PetscFunctionReturn(0);
