@@ -1,6 +1,7 @@
 #include "app/validate.hpp"
 
 #include "app/option_values.hpp"
+#include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
@@ -121,7 +122,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
-// The shape must stay where it is.
+// The shape must turn into itself; where it goes: check_paths().
 std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
   const std::string name = "-" + spec.name + "_";
@@ -136,16 +137,19 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
     const bool axis = d == (flat(config) ? 2 : spec.axis);
     if (motion.angular_velocity[d] != 0 && (!round || ((flat(config) || spec.shape == Shape::cylinder) && !axis)))
       return no("angular_velocity",
-                "would carry the body through the grid; accepted: any axis of a sphere, the axis of a "
-                "cylinder, z in 2-D, else 0,0,0");
-    const bool slides = spec.shape == Shape::slab ? d != spec.axis
-                                                  : (spec.shape == Shape::tube || spec.shape == Shape::cylinder) &&
-                                                        d == spec.axis && !(flat(config) && d == 2);
-    if (motion.velocity[d] != 0 && !slides)
+                "would turn the shape into another; accepted: any axis of a sphere, the axis of a cylinder, z in "
+                "2-D, else 0,0,0");
+    if (motion.velocity[d] == 0) continue;
+    if (flat(config) && d == 2 && spec.shape != Shape::slab)
+      return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
+    const bool fluid_around = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid ||
+                              spec.shape == Shape::biconcave ||
+                              (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
+    if (!spec.slides(d) && !fluid_around)
       return no("velocity",
-                "would carry the body through the grid; accepted: along the axis of a tube or cylinder, in the "
-                "plane of a slab, else 0,0,0");
-    if (motion.velocity[d] != 0 && config.grid.boundary[d] == Boundary::wall)
+                "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
+                "a tube, in the plane of a slab, any of a sphere, ellipsoid, biconcave or cylinder, else 0,0,0");
+    if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
                 "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
                 "periodic");
@@ -298,7 +302,7 @@ std::string validate(Config *whole) {
   whole->places.clear();
   for (std::size_t s = 0; s < config.species.size(); ++s)
     if (const std::string wrong = place_species(s, solids, whole); !wrong.empty()) return wrong;
-  return {};
+  return check_paths(config);
 }
 
 }  // namespace eulastic

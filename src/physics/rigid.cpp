@@ -61,7 +61,7 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
 }  // namespace
 
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                        const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
+                        double middle, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
@@ -70,6 +70,8 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
       if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
+      if (const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion]; motion.travels())
+        out[cut->i] += (1 - cut->share) * motion.acceleration(middle)[a];
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -195,11 +197,13 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 // of the surface, less what they would feel of the neighbours inside, is the rest. On sides of the box a body has no
 // surface: their pressure is not that of the fluid on it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate,
-                                   const Real3 &force, std::vector<RigidLoad> *loads) {
+                                   double pressure_time, const FieldBlock &velocity, const FieldBlock &pressure,
+                                   const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const double mass = fluid.density * grid.cell_volume();
+  std::vector<Real3> acceleration;  // of every motion
+  for (const RigidMotion &motion : faces.motions) acceleration.push_back(motion.acceleration(pressure_time));
   ExactSums sums(6 * faces.count);
   const auto add = [&](int body, int a, const Real3 &place, double push) {
     const RigidBody &b = faces.bodies[body];
@@ -212,10 +216,10 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       if (e == a || g == a) sums.add(6 * b.index + 3 + d, r[e] * f[g] - r[g] * f[e]);
     }
   };
-  const auto push = [&](int a, int i, int j, int k) {
+  const auto push = [&](int a, int i, int j, int k, double given) {
     const int side = side_of_face(grid, a, i, j, k);
     const double volume = volume_of_face(grid, a, side);
-    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a]) : 0;
+    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a] - given) : 0;
     if (side == 0) return inside;
     const double *p = &pressure[0](i, j, k);
     return inside + side * grid.cell_volume() / grid.spacing()[a] * 0.5 * (p[0] + p[-pressure[0].stride(a)]);
@@ -232,9 +236,10 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        add(run->body, a, place_of_face(grid, a, i, j, k), push(a, i, j, k));
+        add(run->body, a, place_of_face(grid, a, i, j, k),
+            push(a, i, j, k, acceleration[faces.bodies[run->body].motion][a]));
   });
-  std::vector<double> total(6 * faces.count);
+  std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
   PetscCall(sums.reduce(grid.comm(), total.data()));
   loads->assign(faces.count, {});
   for (const RigidBody &body : faces.bodies) {
@@ -245,10 +250,11 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       load.power -= total[6 * body.index + d] * motion.velocity[d] * motion.of_velocity.at(time) +
                     total[6 * body.index + 3 + d] * motion.angular_velocity[d] * motion.of_rotation.at(time);
   }
-  for (int b = 0; b < faces.count; ++b)
+  for (const RigidBody &body : faces.bodies)
     for (int d = 0; d < 3; ++d) {
-      (*loads)[b].force[d] = total[6 * b + d];
-      (*loads)[b].torque[d] = total[6 * b + 3 + d];
+      const double carried = fluid.density * body.volume * acceleration[body.motion][d];
+      (*loads)[body.index].force[d] = total[6 * body.index + d] + carried;
+      (*loads)[body.index].torque[d] = total[6 * body.index + 3 + d];
     }
   PetscFunctionReturn(0);
 }

@@ -76,7 +76,7 @@ ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSp
       other_(std::move(other)),
       memory_(grid, memory),
       accuracy_(accuracy) {
-  find_cells(faces);
+  follow(faces);
 }
 
 std::size_t ObstacleSolver::bytes() const {
@@ -84,7 +84,9 @@ std::size_t ObstacleSolver::bytes() const {
          first_.capacity() * sizeof(std::size_t);
 }
 
-void ObstacleSolver::find_cells(const RigidFaces &faces) {
+void ObstacleSolver::follow(const RigidFaces &faces) {
+  cells_.clear();
+  first_.clear();
   const Int3 &n = grid_->owned();
   std::vector<std::array<double, 6>> open(n[0]);
   for (const Segment &row : grid_->rows()) {

@@ -20,11 +20,10 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   } else {
     EXPECT_EQ(fill_phase(scene->grid, spec, {{spec.centre, {}}}, 1, &phase), 0);
   }
-  RigidBuilder builder(scene->grid, scene->solver.exchange());
-  EXPECT_EQ(builder.add(spec, {{spec.centre, {}}}, &phase), 0);
-  std::unique_ptr<RigidFaces> faces;
-  EXPECT_EQ(builder.finish(&faces), 0);
-  return faces;
+  RigidBodies bodies(scene->grid, scene->solver.exchange());
+  EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase), 0);
+  EXPECT_EQ(bodies.place(0), 0);
+  return std::make_unique<RigidFaces>(bodies.faces());
 }
 
 // Every link that ends at the surface of a ball across two periodic sides ends on it; every face inside is in a run, no
