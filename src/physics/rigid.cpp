@@ -115,6 +115,27 @@ void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::v
   });
 }
 
+void follow_surfaces(const Grid &grid, const RigidFaces &faces, double time, double dt_over_density,
+                     const FieldBlock &pressure, FieldBlock &velocity) {
+  VerbScope scope(Verb::rigid);
+  std::vector<double> values;
+  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(grid, a, cut->i)) continue;
+      double stiffness = 0;
+      for (int link = 0; link < 2 * grid.dimension(); ++link) stiffness += cut->link[link];
+      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      const bool travels = faces.motions[faces.bodies[cut->body].motion].travels();
+      const double *p = pressure[0].row(j, k) + cut->i;
+      const double push = dt_over_density * (p[0] - p[-pressure[0].stride(a)]) / grid.spacing()[a];
+      const double change = rates.cut / stiffness - cut->open * push;
+      values.push_back(u[cut->i] + (travels ? (1 - cut->share) * change : 0));
+    }
+  });
+  set_cut_face_values(grid, faces, values, velocity);
+}
+
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
@@ -231,8 +252,15 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
       if (volume == 0) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
-      add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
-          volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
+      const double lacking = fluid.kinematic_viscosity() * (rates.regular - rates.cut);
+      double kept = 0;  // by the part of the face that goes with the body
+      if (const int motion = faces.bodies[cut->body].motion; faces.motions[motion].travels()) {
+        const double *p = pressure[0].row(j, k) + cut->i;
+        const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
+        kept = (1 - cut->share) * (rate[a](cut->i, j, k) - lacking - force[a] - acceleration[motion][a]) +
+               (cut->open - cut->share) * slope;
+      }
+      add(cut->body, a, place_of_face(grid, a, cut->i, j, k), volume * mass * (lacking + kept));
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)

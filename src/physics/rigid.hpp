@@ -21,6 +21,10 @@ void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, doubl
 std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field);
 void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
                          FieldBlock &field);
+/// Cut faces beside bodies that travel go as near to the velocity between the surface and their neighbours as their
+/// share is small: what a body covers or leaves has its velocity. One ghost; leaves ghosts to the caller.
+void follow_surfaces(const Grid &grid, const RigidFaces &faces, double time, double dt_over_density,
+                     const FieldBlock &pressure, FieldBlock &velocity);
 /// Owned faces inside bodies get the velocity of these at `time`.
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
 
