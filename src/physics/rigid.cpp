@@ -58,10 +58,29 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
   return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
 }
 
+// dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind and
+// implicit, as the surface may come nearer than it moves in a step.
+double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
+                          double dt, const double *u, const Strides &s) {
+  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
+  const double middle = time + 0.5 * dt, factor = motion.of_velocity.at(middle);
+  double wall[6], sum = 0, stiffness = 0;
+  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const double V = motion.travelling[d] ? motion.velocity[d] * factor : 0;
+    const int link = 2 * d + (V < 0);
+    const double rate = std::fabs(V) * cut.link[link] * grid.spacing()[d];
+    const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
+    sum += rate * (upwind - u[0]);
+    stiffness += rate;
+  }
+  return motion.acceleration(middle)[a] + sum / (1 + dt * stiffness);
+}
+
 }  // namespace
 
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                        double middle, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
+                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
@@ -70,8 +89,8 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
       if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
-      if (const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion]; motion.travels())
-        out[cut->i] += (1 - cut->share) * motion.acceleration(middle)[a];
+      if (faces.motions[faces.bodies[cut->body].motion].travels())
+        out[cut->i] += (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -113,27 +132,6 @@ void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::v
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (owned(grid, a, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
   });
-}
-
-void follow_surfaces(const Grid &grid, const RigidFaces &faces, double time, double dt_over_density,
-                     const FieldBlock &pressure, FieldBlock &velocity) {
-  VerbScope scope(Verb::rigid);
-  std::vector<double> values;
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *u = velocity[a].row(j, k);
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
-      double stiffness = 0;
-      for (int link = 0; link < 2 * grid.dimension(); ++link) stiffness += cut->link[link];
-      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
-      const bool travels = faces.motions[faces.bodies[cut->body].motion].travels();
-      const double *p = pressure[0].row(j, k) + cut->i;
-      const double push = dt_over_density * (p[0] - p[-pressure[0].stride(a)]) / grid.spacing()[a];
-      const double change = rates.cut / stiffness - cut->open * push;
-      values.push_back(u[cut->i] + (travels ? (1 - cut->share) * change : 0));
-    }
-  });
-  set_cut_face_values(grid, faces, values, velocity);
 }
 
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity) {

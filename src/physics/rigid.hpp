@@ -10,10 +10,10 @@
 namespace eulastic {
 
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
-/// the rate that sees the surface, scaled by their share, as is `slope` (may be null), and beside bodies that travel the
-/// rest of theirs, as of `middle`; faces inside 0.
+/// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in their
+/// frame, within a step of dt; faces inside 0.
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                        double middle, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
+                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
 /// The same of v* = v + dt rate, (7).
 void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
                                 double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
@@ -21,10 +21,6 @@ void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, doubl
 std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field);
 void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
                          FieldBlock &field);
-/// Cut faces beside bodies that travel go as near to the velocity between the surface and their neighbours as their
-/// share is small: what a body covers or leaves has its velocity. One ghost; leaves ghosts to the caller.
-void follow_surfaces(const Grid &grid, const RigidFaces &faces, double time, double dt_over_density,
-                     const FieldBlock &pressure, FieldBlock &velocity);
 /// Owned faces inside bodies get the velocity of these at `time`.
 void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
 

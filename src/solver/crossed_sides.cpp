@@ -181,7 +181,7 @@ PetscErrorCode Solver::start_flow() {
       set_inflow_faces(*grid_, rates_of(spec_.sides, now_.time), 0, rate[d], d);
     }
   const double nu = spec_.fluid.kinematic_viscosity();
-  if (rigid_) see_rigid_surfaces(*grid_, rigid_->faces(), nu, nu, now_.time, now_.time, now_.velocity, rate, nullptr);
+  if (rigid_) see_rigid_surfaces(*grid_, rigid_->faces(), nu, nu, now_.time, 0, now_.velocity, rate, nullptr);
   PetscCall(project_start(true, rate, now_.pressure));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   PetscFunctionReturn(0);

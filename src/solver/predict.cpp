@@ -55,7 +55,7 @@ PetscErrorCode Solver::predict(double dt) {
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
   std::vector<double> cut;
   if (rigid_) {
-    see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, now_.time + 0.5 * dt,
+    see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt,
                        now_.velocity, rate.fields(), slope_ ? &slope_ : nullptr);
     cut = cut_face_values(*grid_, rigid_->faces(), rate.fields());
   }

@@ -188,10 +188,6 @@ PetscErrorCode Solver::step(double dt) {
     PetscCall(feeders_->feed_velocity(now_.time + dt, velocity_star_, &spec_.sides));
   }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
-  if (rigid_ && rigid_->travel()) {
-    follow_surfaces(*grid_, rigid_->faces(), now_.time + dt, dt / spec_.fluid.density, now_.pressure, velocity_star_);
-    PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
-  }
   PetscCall(project(dt));  // (8)-(13)
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
   if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
