@@ -214,7 +214,9 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 
 // The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
 // of the surface, less what they would feel of the neighbours inside, is the rest. On sides of the box a body has no
-// surface: their pressure is not that of the fluid on it.
+// surface: their pressure is not that of the fluid on it. Beside a body that travels a cut face goes with the body but
+// for its share, and what is between the stair and the surface is accelerated: as if the stair had the body's volume.
+// Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
                                    double pressure_time, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
@@ -250,15 +252,14 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
       if (volume == 0) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
-      const double lacking = fluid.kinematic_viscosity() * (rates.regular - rates.cut);
-      double kept = 0;  // by the part of the face that goes with the body
+      double of_face = volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut);
       if (const int motion = faces.bodies[cut->body].motion; faces.motions[motion].travels()) {
         const double *p = pressure[0].row(j, k) + cut->i;
         const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
-        kept = (1 - cut->share) * (rate[a](cut->i, j, k) - lacking - force[a] - acceleration[motion][a]) +
-               (cut->open - cut->share) * slope;
+        const double push = rate[a](cut->i, j, k) - force[a] - acceleration[motion][a];
+        of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * push + (cut->open - cut->share) * slope);
       }
-      add(cut->body, a, place_of_face(grid, a, cut->i, j, k), volume * mass * (lacking + kept));
+      add(cut->body, a, place_of_face(grid, a, cut->i, j, k), of_face);
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
