@@ -53,7 +53,7 @@ double fields(const Config &config) {
   }
   if (std::any_of(config.species.begin(), config.species.end(),
                   [&](const SpeciesSpec &spec) { return spec.travels(dimension); }))
-    sum += dimension;  // which faces are inside; twice that beside bodies of a file
+    sum += dimension;                       // which faces are inside; twice that beside bodies of a file
   if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
     sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
   for (const auto &pair : config.sides)

@@ -10,7 +10,7 @@
 namespace eulastic {
 namespace {
 
-constexpr int free_cells = 2;     // between a body and a side
+constexpr int free_cells = 2;       // between a body and a side
 constexpr double most_looks = 1e7;  // at pairs of bodies
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
@@ -45,7 +45,8 @@ std::string check_path(const Config &config, const SpeciesSpec &spec, const Body
   if (low >= margin && high <= length - margin) return {};
   const bool below = low < margin;
   return "-" + spec.name + "_velocity: carries a body to " + "xyz"[d] + " = " + to_text(below ? low : high) +
-         "; accepted: a path between " + to_text(margin) + " and " + to_text(length - margin) + ", two cells from the sides";
+         "; accepted: a path between " + to_text(margin) + " and " + to_text(length - margin) +
+         ", two cells from the sides";
 }
 
 // What is between two bodies at a time; infinite of shapes of which it is not known here.
@@ -101,7 +102,8 @@ std::string check_paths(const Config &config) {
     const std::string option = "-" + spec.name + "_velocity: a body that travels through the grid ";
     if (!config.method.staggered())
       return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
-    if (Feeders::exist(config.sides)) return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
+    if (Feeders::exist(config.sides))
+      return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
     for (const BodyPlace &place : config.places[s])
       for (int d = 0; d < dimension; ++d)
         if (const std::string wrong = check_path(config, spec, place, d); !wrong.empty()) return wrong;

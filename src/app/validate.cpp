@@ -130,7 +130,8 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.viscosity) return no("viscosity", "nothing flows in a rigid body; accepted: without");
   if (spec.body_force.acts()) return no("body_force", "no force moves a rigid body; accepted: 0,0,0");
   if (spec.surface_tension > 0) return no("surface_tension", "a rigid body keeps its shape; accepted: 0");
-  if (spec.contact == Contact::separate) return no("contact", "rigid bodies go as they are told; accepted: merge, or without");
+  if (spec.contact == Contact::separate)
+    return no("contact", "rigid bodies go as they are told; accepted: merge, or without");
   const RigidMotion &motion = spec.motion;
   const bool round = spec.shape == Shape::sphere || spec.shape == Shape::cylinder;
   for (int d = 0; d < 3; ++d) {

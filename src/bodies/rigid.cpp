@@ -158,7 +158,7 @@ void RigidBodies::mark_file(int a, ConstView phi, int index) {
 
 // Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.
 double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
-                              double level_inside) const {
+                             double level_inside) const {
   const PlacedBody *body = sources_[image / images].body.get();
   if (!body) return std::max(shortest, level_outside / (level_outside - level_inside));
   const Real3 &centre = faces_.bodies[image].centre, &own = body->centre();

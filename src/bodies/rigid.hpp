@@ -1,5 +1,5 @@
-// The rigid bodies of a scene: finds the faces of the velocity that are inside them, and those beside their surfaces, at
-// the start and, where bodies travel, for every step.
+// The rigid bodies of a scene: finds the faces of the velocity that are inside them, and those beside their surfaces,
+// at the start and, where bodies travel, for every step.
 #pragma once
 
 #include "bodies/volume_fraction.hpp"
@@ -56,8 +56,8 @@ private:
   const Grid &grid_;
   GhostExchange &exchange_;
   RigidFaces faces_;
-  std::vector<Source> sources_;   ///< of every body
-  std::vector<Species> species_;  ///< by motion
+  std::vector<Source> sources_;       ///< of every body
+  std::vector<Species> species_;      ///< by motion
   std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in
   std::array<FieldBlock, 3> level_;   ///< of files, else empty
   std::array<int, 2> contact_{};      ///< indices of two bodies that touch, ascending; none: equal

@@ -22,9 +22,9 @@ struct Oscillation {
   double rate(double time) const { return -frequency * std::sin(frequency * time + phase); }
 };
 
-/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape turns into
-/// itself: spheres may turn, cylinders and tubes about their axis; along `travelling` directions the body goes with V,
-/// along others it slides along itself.
+/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape turns
+/// into itself: spheres may turn, cylinders and tubes about their axis; along `travelling` directions the body goes
+/// with V, along others it slides along itself.
 struct RigidMotion {
   Real3 velocity{};          ///< length / time
   Real3 angular_velocity{};  ///< rad / time

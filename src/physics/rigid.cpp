@@ -58,8 +58,8 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
   return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
 }
 
-// dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind and
-// implicit, as the surface may come nearer than it moves in a step.
+// dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind
+// and implicit, as the surface may come nearer than it moves in a step.
 double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
                           double dt, const double *u, const Strides &s) {
   const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
@@ -90,7 +90,8 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, time, dt, u + cut->i, strides(velocity[a]));
+        out[cut->i] +=
+            (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)

@@ -10,8 +10,8 @@
 namespace eulastic {
 
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
-/// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in their
-/// frame, within a step of dt; faces inside 0.
+/// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in
+/// their frame, within a step of dt; faces inside 0.
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
                         double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
 /// The same of v* = v + dt rate, (7).

@@ -38,6 +38,7 @@ private:
     double open[6];
   };
   void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
+  PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;
 
@@ -47,6 +48,7 @@ private:
   std::unique_ptr<PressureSolver> other_;
   std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
+  bool travels_ = false;
   IncrementMemory memory_;
   double accuracy_, target_ = 0;
   long iterations_ = 0;

@@ -55,8 +55,8 @@ PetscErrorCode Solver::predict(double dt) {
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
   std::vector<double> cut;
   if (rigid_) {
-    see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt,
-                       now_.velocity, rate.fields(), slope_ ? &slope_ : nullptr);
+    see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
+                       rate.fields(), slope_ ? &slope_ : nullptr);
     cut = cut_face_values(*grid_, rigid_->faces(), rate.fields());
   }
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));

@@ -50,7 +50,8 @@ PetscErrorCode Solver::fill_rigid(double time, std::vector<Phase> *phases) {
 
 void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const {
   if (!rigid_) return;
-  if (!spec_.acm_of_the_paper()) correct_cut_faces(*grid_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);
+  if (!spec_.acm_of_the_paper())
+    correct_cut_faces(*grid_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);
   impose_rigid_motion(*grid_, rigid_->faces(), time, velocity);
 }
 

@@ -88,8 +88,8 @@ public:
   PetscErrorCode look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
-  /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near each other (bodies/contact.hpp), or if a
-  /// body is at a side that volume crosses and cannot leave.
+  /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near
+  /// each other (bodies/contact.hpp), or if a body is at a side that volume crosses and cannot leave.
   const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
