@@ -162,11 +162,12 @@ double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &insid
   const PlacedBody *body = sources_[image / images].body.get();
   if (!body) return std::max(shortest, level_outside / (level_outside - level_inside));
   const Real3 &centre = faces_.bodies[image].centre, &own = body->centre();
-  double low = 0, high = 1;
+  const Real3 &ahead = ahead_[faces_.bodies[image].motion];
+  double low = 0, high = ahead == Real3{} ? 1 : 2;
   for (int step = 0; step < 48; ++step) {
     const double middle = 0.5 * (low + high);
     Real3 place{};
-    for (int d = 0; d < 3; ++d) place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d];
+    for (int d = 0; d < 3; ++d) place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d] + ahead[d];
     (body->level(place) < 0 ? high : low) = middle;
   }
   return std::max(shortest, 0.5 * (low + high));
@@ -206,6 +207,7 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
         cut.body = body;
         cut.link[link] /= part;
         here[d] += one * part;
+        for (int e = 0; e < grid_.dimension(); ++e) here[e] += ahead_[faces_.bodies[body].motion][e];
         cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, grid_.spacing(), 0, 1);
       }
       diagonal += cut.link[link];
@@ -269,9 +271,15 @@ RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
   return c;
 }
 
-PetscErrorCode RigidBodies::place(double time) {
+PetscErrorCode RigidBodies::place(double time, double surface_time) {
   PetscFunctionBeginUser;
   contact_ = {};
+  ahead_.assign(faces_.motions.size(), {});
+  for (std::size_t m = 0; m < ahead_.size(); ++m)
+    for (int d = 0; d < grid_.dimension(); ++d) {
+      const RigidMotion &motion = faces_.motions[m];
+      ahead_[m][d] = (motion.shift(time)[d] - motion.shift(surface_time)[d]) / grid_.spacing()[d];
+    }
   for (int index = 0; index < faces_.count; ++index) {
     const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
     if (!motion.travels()) continue;

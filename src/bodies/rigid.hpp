@@ -18,8 +18,9 @@ public:
   PetscErrorCode add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label, Phase *phase);
   bool exist() const { return faces_.count > 0; }
   bool travel() const { return faces_.travels; }
-  /// The faces at a time; nothing can be added afterwards. Collective.
-  PetscErrorCode place(double time);
+  /// The faces inside at a time, and links that end where surfaces are at another; nothing can be added afterwards.
+  /// Collective.
+  PetscErrorCode place(double time, double surface_time);
   const RigidFaces &faces() const { return faces_; }
   /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
   PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
@@ -56,6 +57,7 @@ private:
   const Grid &grid_;
   GhostExchange &exchange_;
   RigidFaces faces_;
+  std::vector<Real3> ahead_;  ///< of every motion: from the time of the surfaces to that of the faces, in cells
   std::vector<Source> sources_;       ///< of every body
   std::vector<Species> species_;      ///< by motion
   std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in

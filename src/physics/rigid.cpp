@@ -59,7 +59,7 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
 }
 
 // dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind
-// and implicit, as the surface may come nearer than it moves in a step.
+// and half implicit: where the surface comes, u - u_s falls in a step as the distance to it does.
 double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
                           double dt, const double *u, const Strides &s) {
   const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
@@ -74,7 +74,7 @@ double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const Rigid
     sum += rate * (upwind - u[0]);
     stiffness += rate;
   }
-  return motion.acceleration(middle)[a] + sum / (1 + dt * stiffness);
+  return motion.acceleration(middle)[a] + sum / (1 + 0.5 * dt * stiffness);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   PetscFunctionBeginUser;
   rigid_ = std::move(bodies);
   if (rigid_ && !rigid_->exist()) rigid_.reset();
-  if (rigid_) PetscCall(rigid_->place(now_.time));
+  if (rigid_) PetscCall(rigid_->place(now_.time, now_.time));
   if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
   PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), {grid_->any_open(), false, false, false, true})));
   if (spec_.pressure == PressureKind::acm) {
@@ -30,11 +30,11 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::move_rigid(double time) {
+PetscErrorCode Solver::move_rigid(double time, double dt) {
   PetscFunctionBeginUser;
   if (!rigid_ || !rigid_->travel()) PetscFunctionReturn(0);
   VerbScope scope(Verb::rigid);
-  PetscCall(rigid_->place(time));
+  PetscCall(rigid_->place(time, time - 0.5 * dt));
   if (obstacles_) obstacles_->follow(rigid_->faces());
   PetscFunctionReturn(0);
 }
@@ -75,8 +75,10 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
                           now_.velocity, now_.pressure, *phases, none, rate.fields()));
   add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
   if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
+  if (rigid_->travel()) PetscCall(rigid_->place(now_.time, now_.time));
   PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, pressure_time, now_.velocity,
                                 now_.pressure, rate.fields(), force, loads));
+  PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
   PetscFunctionReturn(0);
 }
 

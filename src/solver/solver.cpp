@@ -115,7 +115,7 @@ PetscErrorCode Solver::prepare() {
 
 PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscFunctionBeginUser;
-  PetscCall(move_rigid(now_.time));
+  PetscCall(move_rigid(now_.time, now_.dt));
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
@@ -180,7 +180,7 @@ std::size_t Solver::bytes() const {
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
-  PetscCall(move_rigid(now_.time + dt));
+  PetscCall(move_rigid(now_.time + dt, dt));
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   PetscCall(predict(dt));                                                       // (7)
   if (feeders_) {

@@ -22,7 +22,7 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   }
   RigidBodies bodies(scene->grid, scene->solver.exchange());
   EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase), 0);
-  EXPECT_EQ(bodies.place(0), 0);
+  EXPECT_EQ(bodies.place(0, 0), 0);
   return std::make_unique<RigidFaces>(bodies.faces());
 }
 
@@ -157,8 +157,8 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
     bodies[n] = std::make_unique<RigidBodies>(scene.grid, scene.solver.exchange());
     ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
   }
-  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before), 0);
-  ASSERT_EQ(bodies[1]->place(time), 0);
+  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before, before - 0.1), 0);
+  ASSERT_EQ(bodies[1]->place(time, time - 0.1), 0);
   EXPECT_NEAR(bodies[0]->faces().bodies[13].centre[0], (0.3 + 0.8 * way - 0.8) / 0.1, 1e-9);
   int cuts = 0, runs = 0;
   for (int a = 0; a < 2; ++a)
@@ -209,14 +209,14 @@ TEST(TravellingBodies, TouchingIsFound) {
     ASSERT_EQ(fill_phase(scene.grid, *species, {{species->centre, {}}}, 1, &phase), 0);
     ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase), 0);
   }
-  ASSERT_EQ(bodies.place(0.1), 0);  // .3 apart
+  ASSERT_EQ(bodies.place(0.1, 0.1), 0);  // .3 apart
   EXPECT_EQ(bodies.touching(), "");
   for (const double time : {0.39, 0.5}) {
-    ASSERT_EQ(bodies.place(time), 0);
+    ASSERT_EQ(bodies.place(time, time - 0.02), 0);
     for (const char *piece : {"-ball_velocity", "post and ball", "accepted: paths with fluid between"})
       EXPECT_NE(bodies.touching().find(piece), std::string::npos) << bodies.touching();
   }
-  ASSERT_EQ(bodies.place(0.1), 0);
+  ASSERT_EQ(bodies.place(0.1, 0.1), 0);
   EXPECT_EQ(bodies.touching(), "");
 }
 
