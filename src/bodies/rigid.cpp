@@ -167,7 +167,8 @@ double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &insid
   for (int step = 0; step < 48; ++step) {
     const double middle = 0.5 * (low + high);
     Real3 place{};
-    for (int d = 0; d < 3; ++d) place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d] + ahead[d];
+    for (int d = 0; d < 3; ++d)
+      place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d] + ahead[d];
     (body->level(place) < 0 ? high : low) = middle;
   }
   return std::max(shortest, 0.5 * (low + high));

@@ -57,7 +57,7 @@ private:
   const Grid &grid_;
   GhostExchange &exchange_;
   RigidFaces faces_;
-  std::vector<Real3> ahead_;  ///< of every motion: from the time of the surfaces to that of the faces, in cells
+  std::vector<Real3> ahead_;          ///< of every motion: from the time of the surfaces to that of the faces, in cells
   std::vector<Source> sources_;       ///< of every body
   std::vector<Species> species_;      ///< by motion
   std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in

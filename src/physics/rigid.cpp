@@ -219,13 +219,13 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 // for its share, and what is between the stair and the surface is accelerated: as if the stair had the body's volume.
 // Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   double pressure_time, const FieldBlock &velocity, const FieldBlock &pressure,
+                                   bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const double mass = fluid.density * grid.cell_volume();
   std::vector<Real3> acceleration;  // of every motion
-  for (const RigidMotion &motion : faces.motions) acceleration.push_back(motion.acceleration(pressure_time));
+  for (const RigidMotion &motion : faces.motions) acceleration.push_back(carried ? motion.acceleration(time) : Real3{});
   ExactSums sums(6 * faces.count);
   const auto add = [&](int body, int a, const Real3 &place, double push) {
     const RigidBody &b = faces.bodies[body];

@@ -57,10 +57,10 @@ struct RigidLoad {
 };
 
 /// Of all rigid bodies. `rate`: dv/dt of the fluid's equation at all owned faces, those inside too, with all of
-/// `viscosity` in it, less the body force `force`; one ghost of velocity and of pressure, which is that of
-/// `pressure_time`. If bodies travel without advection: about a body the fluid goes with it. Collective.
+/// `viscosity` in it, less the body force `force`; one ghost of velocity and pressure. Where bodies travel without
+/// advection, as about a body the fluid goes with it; `carried`: with what accelerates that fluid. Collective.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   double pressure_time, const FieldBlock &velocity, const FieldBlock &pressure,
+                                   bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
 
 }  // namespace eulastic

@@ -66,18 +66,42 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   const FieldBlock *viscosity = nullptr;
   PetscCall(viscosity_now(&viscosity));
   if (viscosity) fluid.viscosity = 0;
-  if (rigid_->travel()) fluid.inertia = false;
-  const double pressure_time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
+  const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
+  const bool travel = rigid_->travel();
+  FieldBlock none, no_pressure;
+  if (travel) {
+    fluid.inertia = false;
+    no_pressure = FieldBlock(*grid_, 1);
+    PetscCall(rigid_->place(now_.time, now_.time));
+  }
+  const FieldBlock &pressure = travel ? no_pressure : now_.pressure;
   WorkSpace::Lease rate;
   PetscCall(work_->take("loads on rigid bodies", grid_->dimension(), &rate));
-  FieldBlock none;
-  PetscCall(momentum_rate(*grid_, fluid, {now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}},
-                          now_.velocity, now_.pressure, *phases, none, rate.fields()));
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, pressure, *phases, none, rate.fields()));
   add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
   if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
-  if (rigid_->travel()) PetscCall(rigid_->place(now_.time, now_.time));
-  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, pressure_time, now_.velocity,
-                                now_.pressure, rate.fields(), force, loads));
+  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, pressure,
+                                rate.fields(), force, loads));
+  if (!travel) PetscFunctionReturn(0);
+  // Pressure is that of another time, when the bodies were elsewhere.
+  const double time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
+  Fluid alone = spec_.fluid;
+  alone.viscosity = 0;
+  alone.inertia = false;
+  alone.body_force = {};
+  std::vector<RigidLoad> of_pressure;
+  PetscCall(rigid_->place(time, time));
+  PetscCall(momentum_rate(*grid_, alone, step, now_.velocity, now_.pressure, {}, none, rate.fields()));
+  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), alone, time, true, now_.velocity, now_.pressure, rate.fields(),
+                                {}, &of_pressure));
+  for (std::size_t b = 0; b < loads->size(); ++b) {
+    RigidLoad &load = (*loads)[b];
+    for (int d = 0; d < 3; ++d) {
+      load.force[d] += of_pressure[b].force[d];
+      load.torque[d] += of_pressure[b].torque[d];
+    }
+    load.power += of_pressure[b].power;
+  }
   PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
   PetscFunctionReturn(0);
 }

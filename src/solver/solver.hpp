@@ -127,7 +127,8 @@ private:
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
-  /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its middle.
+  /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
+  /// middle.
   PetscErrorCode move_rigid(double time, double dt);
   /// phi and labels of phases of rigid bodies that travel.
   PetscErrorCode fill_rigid(double time, std::vector<Phase> *phases);

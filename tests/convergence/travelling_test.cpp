@@ -70,8 +70,9 @@ Swing swing(int cells, int steps) {
 
 TEST(TravellingCylinder, SwingsInAnother) {
   const Swing coarse = swing(64, 60), fine = swing(128, 120);
-  std::printf("  cylinder swinging in another, 8 and 16 cells in the radius: force %.2e %.2e off; largest step %.2e %.2e\n",
-              std::abs(coarse.first - 1.), std::abs(fine.first - 1.), coarse.largest, fine.largest);
+  std::printf(
+      "  cylinder swinging in another, 8 and 16 cells in the radius: force %.2e %.2e off; largest step %.2e %.2e\n",
+      std::abs(coarse.first - 1.), std::abs(fine.first - 1.), coarse.largest, fine.largest);
   EXPECT_LT(std::abs(coarse.first - 1.), 0.02);
   EXPECT_LT(std::abs(fine.first - 1.), 0.01);
   EXPECT_LT(coarse.largest, 0.04);
@@ -109,8 +110,9 @@ TEST(TravellingCylinder, IsOneAtRestInAStream) {
     mean[n] = sum / drag;
     scatter[n] = std::sqrt(squares / count - std::pow(sum / count, 2)) / std::fabs(drag / count);
   }
-  std::printf("  cylinder through fluid at rest, 6.4 and 12.8 cells in the radius: drag %+.2e %+.2e off, scatter %.2e %.2e\n",
-              mean[0], mean[1], scatter[0], scatter[1]);
+  std::printf(
+      "  cylinder through fluid at rest, 6.4 and 12.8 cells in the radius: drag %+.2e %+.2e off, scatter %.2e %.2e\n",
+      mean[0], mean[1], scatter[0], scatter[1]);
   EXPECT_LT(std::fabs(mean[0]), 0.03);
   EXPECT_LT(std::fabs(mean[1]), 0.015);
   EXPECT_LT(scatter[0], 0.05);
