@@ -30,6 +30,8 @@ public:
   std::size_t bytes() const;
 
 private:
+  static constexpr int images = 27;  ///< of a body: itself and its neighbours across periodic sides
+  static int image_of(int body, const Int3 &shift);
   /// A body, or all bodies of a file.
   struct Source {
     std::shared_ptr<const Surface> surface;  ///< null: of a file
