@@ -102,6 +102,8 @@ std::string check_paths(const Config &config) {
     const std::string option = "-" + spec.name + "_velocity: a body that travels through the grid ";
     if (!config.method.staggered())
       return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
+    if (config.method.acm_of_the_paper())
+      return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
     if (Feeders::exist(config.sides))
       return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
     for (const BodyPlace &place : config.places[s])

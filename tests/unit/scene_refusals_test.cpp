@@ -69,6 +69,7 @@ TEST(SceneRefusals, PathsOfRigidBodies) {
        {"-a_velocity .6,.35,0",
         {"-a_velocity", "carries a body to one of b at t = 0.", "accepted: a path with a cell"}},
        {"-a_velocity .5,.35,0 -b_velocity -.1,0,0", {"-a_velocity", "carries a body to one of b at t = 0."}},
-       {"-a_velocity .1,0,0 -time_integrator euler", {"-a_velocity", "-time_integrator staggered"}}},
+       {"-a_velocity .1,0,0 -time_integrator euler", {"-a_velocity", "-time_integrator staggered"}},
+       {"-a_velocity .1,0,0 -method classic -time_integrator staggered", {"-a_velocity", "-acm_sweeps_max > 1"}}},
       ball);
 }
