@@ -257,8 +257,8 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       if (const int motion = faces.bodies[cut->body].motion; faces.motions[motion].travels()) {
         const double *p = pressure[0].row(j, k) + cut->i;
         const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
-        const double push = rate[a](cut->i, j, k) - force[a] - acceleration[motion][a];
-        of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * push + (cut->open - cut->share) * slope);
+        const double lacks = rate[a](cut->i, j, k) - force[a] - acceleration[motion][a];
+        of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * lacks + (cut->open - cut->share) * slope);
       }
       add(cut->body, a, place_of_face(grid, a, cut->i, j, k), of_face);
     }
@@ -280,8 +280,8 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
   }
   for (const RigidBody &body : faces.bodies)
     for (int d = 0; d < 3; ++d) {
-      const double carried = fluid.density * body.volume * acceleration[body.motion][d];
-      (*loads)[body.index].force[d] = total[6 * body.index + d] + carried;
+      const double own = fluid.density * body.volume * acceleration[body.motion][d];
+      (*loads)[body.index].force[d] = total[6 * body.index + d] + own;
       (*loads)[body.index].torque[d] = total[6 * body.index + 3 + d];
     }
   PetscFunctionReturn(0);
