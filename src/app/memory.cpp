@@ -51,6 +51,9 @@ double fields(const Config &config) {
     sum += method.acm_memory;
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
+  if (std::any_of(config.species.begin(), config.species.end(),
+                  [&](const SpeciesSpec &spec) { return spec.travels(dimension); }))
+    sum += dimension;                       // which faces are inside; twice that beside bodies of a file
   if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
     sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
   for (const auto &pair : config.sides)

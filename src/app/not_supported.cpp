@@ -21,8 +21,9 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "a side of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both sides of a "
        "direction, -boundary_xmin and -boundary_xmax for each"},
       {{"prescribed", "torque"},
-       "bodies go with the flow, or are rigid and stay where they are (-NAME_law rigid): a force or a path of a rigid "
-       "one cannot be given"},
+       "bodies go with the flow, or are rigid (-NAME_law rigid) and go as -NAME_velocity and -NAME_angular_velocity "
+       "say: "
+       "a force on a rigid one cannot be given"},
       {{"shell", "plate"}, "membranes (-NAME_law membrane) are thin: they resist shear, change of area and bending"},
       {{"marangoni", "surfactant", "wetting"},
        "-NAME_surface_tension is one number for a species, and surfaces meet walls at 90 degrees"},

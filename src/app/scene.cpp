@@ -52,7 +52,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
   PetscCall(file.open());
   PetscCall(file.read_flow(&state));
   int next_label = 1;
-  RigidBuilder rigid(grid, solver->exchange());
+  auto rigid = std::make_unique<RigidBodies>(grid, solver->exchange());
   std::vector<Phase> more;  // colours come after the first phases of all species
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
@@ -64,16 +64,14 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     PetscCall(file.read_phase(species, next_label, &phase, &places));
     phase.separate = config.separates(species) && (places.size() > 1 || Feeders::exist(config.sides));
     PetscCall(separate_places(grid, solver->exchange(), species, places, next_label, !file.holds(species), &colours));
-    if (species.law == Law::rigid) PetscCall(rigid.add(species, places, &phase));
+    if (species.law == Law::rigid) PetscCall(rigid->add(species, places, next_label, &phase));
     next_label += static_cast<int>(places.size());
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
     solver->bodies().add_phase(grid, config.body_series ? places : std::vector<BodyPlace>());
     if (!config.body_series) state.phases.back().label = FieldBlock();
   }
-  std::unique_ptr<RigidFaces> faces;
-  PetscCall(rigid.finish(&faces));
-  PetscCall(solver->set_rigid(std::move(faces)));
+  PetscCall(solver->set_rigid(std::move(rigid)));
   for (Phase &phase : more) state.phases.push_back(std::move(phase));
   if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
   PetscFunctionReturn(0);

@@ -1,6 +1,7 @@
 #include "app/validate.hpp"
 
 #include "app/option_values.hpp"
+#include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
@@ -121,31 +122,35 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
-// The shape must stay where it is.
+// The shape must turn into itself; where it goes: check_paths().
 std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
   const std::string name = "-" + spec.name + "_";
   const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
   if (spec.viscosity) return no("viscosity", "nothing flows in a rigid body; accepted: without");
-  if (spec.body_force.acts()) return no("body_force", "a rigid body does not move; accepted: 0,0,0");
+  if (spec.body_force.acts()) return no("body_force", "no force moves a rigid body; accepted: 0,0,0");
   if (spec.surface_tension > 0) return no("surface_tension", "a rigid body keeps its shape; accepted: 0");
-  if (spec.contact == Contact::separate) return no("contact", "rigid bodies do not move; accepted: merge, or without");
+  if (spec.contact == Contact::separate)
+    return no("contact", "rigid bodies go as they are told; accepted: merge, or without");
   const RigidMotion &motion = spec.motion;
   const bool round = spec.shape == Shape::sphere || spec.shape == Shape::cylinder;
   for (int d = 0; d < 3; ++d) {
     const bool axis = d == (flat(config) ? 2 : spec.axis);
     if (motion.angular_velocity[d] != 0 && (!round || ((flat(config) || spec.shape == Shape::cylinder) && !axis)))
       return no("angular_velocity",
-                "would carry the body through the grid; accepted: any axis of a sphere, the axis of a "
-                "cylinder, z in 2-D, else 0,0,0");
-    const bool slides = spec.shape == Shape::slab ? d != spec.axis
-                                                  : (spec.shape == Shape::tube || spec.shape == Shape::cylinder) &&
-                                                        d == spec.axis && !(flat(config) && d == 2);
-    if (motion.velocity[d] != 0 && !slides)
+                "would turn the shape into another; accepted: any axis of a sphere, the axis of a cylinder, z in "
+                "2-D, else 0,0,0");
+    if (motion.velocity[d] == 0) continue;
+    if (flat(config) && d == 2 && spec.shape != Shape::slab)
+      return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
+    const bool fluid_around = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid ||
+                              spec.shape == Shape::biconcave ||
+                              (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
+    if (!spec.slides(d) && !fluid_around)
       return no("velocity",
-                "would carry the body through the grid; accepted: along the axis of a tube or cylinder, in the "
-                "plane of a slab, else 0,0,0");
-    if (motion.velocity[d] != 0 && config.grid.boundary[d] == Boundary::wall)
+                "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
+                "a tube, in the plane of a slab, any of a sphere, ellipsoid, biconcave or cylinder, else 0,0,0");
+    if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
                 "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
                 "periodic");
@@ -298,7 +303,7 @@ std::string validate(Config *whole) {
   whole->places.clear();
   for (std::size_t s = 0; s < config.species.size(); ++s)
     if (const std::string wrong = place_species(s, solids, whole); !wrong.empty()) return wrong;
-  return {};
+  return check_paths(config);
 }
 
 }  // namespace eulastic

@@ -8,64 +8,73 @@
 namespace eulastic {
 namespace {
 
-constexpr int images = 27;           // of a body: itself and its neighbours across periodic sides
 constexpr double inward = 1e-6;      // in cells
 constexpr double shortest = 1e-3;    // of a link, in spacings
 constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
 
+}  // namespace
+
 // Image of a body that lies `shift` boxes on.
-int image_of(int body, const Int3 &shift) {
+int RigidBodies::image_of(int body, const Int3 &shift) {
   return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1);
 }
 
-}  // namespace
+RigidBodies::RigidBodies(const Grid &grid, GhostExchange &exchange) : grid_(grid), exchange_(exchange) {}
 
-RigidBuilder::RigidBuilder(const Grid &grid, GhostExchange &exchange) : grid_(grid), exchange_(exchange) {}
-
-PetscErrorCode RigidBuilder::add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, Phase *phase) {
+PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
+                                Phase *phase) {
   PetscFunctionBeginUser;
-  const int dimension = grid_.dimension();
-  if (!faces_) {
-    faces_ = std::make_unique<RigidFaces>();
-    for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(grid_, 2);
-  }
-  const int motion = static_cast<int>(faces_->motions.size());
-  faces_->motions.push_back(spec.motion);
-  faces_->moves = faces_->moves || spec.motion.moves();
+  const int dimension = grid_.dimension(), motion = static_cast<int>(faces_.motions.size());
+  if (!exist())
+    for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(grid_, 1);
+  faces_.motions.push_back(spec.motion);
+  faces_.motions.back().travelling = spec.travelling(dimension);
+  faces_.moves = faces_.moves || spec.motion.moves();
+  faces_.travels = faces_.travels || faces_.motions.back().travels();
+  species_.push_back({spec, places, first_label});
   const bool file = spec.shape == Shape::voxels || spec.shape == Shape::state;
   const auto surface = file ? nullptr : std::make_shared<const Surface>(spec, dimension);
   if (file) {
     PetscCall(exchange_.update(phase->fraction, 1));
     fill_wall_ghosts_even(grid_, at_centre, phase->fraction[0], 1);
   }
+  const double volume = faces_.motions.back().travels() ? volume_in_box(spec, grid_.spec()) : 0;
   const std::size_t count = file ? 1 : places.size();
   for (std::size_t b = 0; b < count; ++b) {
-    Source source{surface, nullptr};
-    Real3 centre{};
-    if (!file) {
-      source.body = std::make_unique<PlacedBody>(*surface, grid_.spec(), places[b]);
-      centre = source.body->centre();
-    }
-    for (int image = 0; image < images; ++image) {
-      const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-      Real3 there = centre;
-      for (int d = 0; d < dimension; ++d) there[d] -= shift[d] * grid_.cells()[d];
-      faces_->bodies.push_back({faces_->count, motion, there});
-    }
+    const int index = faces_.count++;
+    for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}, volume});
+    sources_.push_back({surface, nullptr, file ? BodyPlace{} : places[b]});
+    put(index, sources_.back().start);
     for (int a = 0; a < dimension; ++a) {
       if (file)
-        mark_file(a, phase->fraction[0], faces_->count);
-      else
-        mark_body(a, *source.body, faces_->count);
+        mark_file(a, phase->fraction[0], index);
+      else if (!faces_.motions.back().travels())
+        mark(a, index);
     }
-    sources_.push_back(std::move(source));
-    ++faces_->count;
   }
   PetscFunctionReturn(0);
 }
 
-void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
+void RigidBodies::put(int index, const BodyPlace &place) {
+  Source &source = sources_[index];
+  Real3 centre{};
+  if (source.surface) {
+    source.body = std::make_unique<PlacedBody>(*source.surface, grid_.spec(), place);
+    centre = source.body->centre();
+  }
+  for (int image = 0; image < images; ++image) {
+    const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+    Real3 &there = faces_.bodies[images * index + image].centre;
+    there = centre;
+    for (int d = 0; d < grid_.dimension(); ++d) there[d] -= shift[d] * grid_.cells()[d];
+  }
+}
+
+// visit(mark, image, place) for the owned faces that a body may touch.
+template <class Visit>
+void RigidBodies::for_faces(int a, int index, const Visit &visit) {
   const Layout &own = grid_.layout();
+  const PlacedBody &body = *sources_[index].body;
   std::array<std::vector<PlacedBody::Range>, 3> pieces;
   for (int d = 0; d < 3; ++d) {
     const int first = own.begin[d], last = first + grid_.faces_end(a, d);
@@ -77,7 +86,7 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
     for (const auto &y : pieces[1])
       for (const auto &x : pieces[0]) {
         const Int3 shift{x.shift / grid_.cells()[0], y.shift / grid_.cells()[1], z.shift / grid_.cells()[2]};
-        const double image = 1 + image_of(index, shift);
+        const int image = image_of(index, shift);
         for (int k = z.begin; k < z.end; ++k)
           for (int j = y.begin; j < y.end; ++j)
             for (int i = x.begin; i < x.end; ++i) {
@@ -90,15 +99,38 @@ void RigidBuilder::mark_body(int a, const PlacedBody &body, int index) {
               const int at = own.begin[a] + local[a];
               if (grid_.is_wall(a) && at == 0) place[a] += inward;
               if (grid_.is_wall(a) && at == grid_.cells()[a]) place[a] -= inward;
-              double &mark = inside(local[0], local[1], local[2]);
-              if (mark == 0 && body.level(place) < 0) mark = image;
+              visit(inside(local[0], local[1], local[2]), image, place);
             }
       }
 }
 
+void RigidBodies::mark(int a, int index) {
+  const PlacedBody &body = *sources_[index].body;
+  for_faces(a, index, [&](double &mark, int image, const Real3 &place) {
+    if (!(body.level(place) < 0)) return;
+    if (mark == 0)
+      mark = 1 + image;
+    else
+      note_contact(static_cast<int>(mark) - 1, image);
+  });
+}
+
+void RigidBodies::clear(int a, int index) {
+  for_faces(a, index, [&](double &mark, int, const Real3 &) {
+    if (mark != 0 && (static_cast<int>(mark) - 1) / images == index) mark = 0;
+  });
+}
+
+void RigidBodies::note_contact(int image, int other) {
+  const RigidBody &one = faces_.bodies[image], &two = faces_.bodies[other];
+  if (one.index == two.index || !(faces_.motions[one.motion].travels() || faces_.motions[two.motion].travels())) return;
+  contact_ = std::max(contact_, {std::min(one.index, two.index), std::max(one.index, two.index)});
+}
+
 // Of a file a face is inside where phi, averaged to it, is above 1/2.
-void RigidBuilder::mark_file(int a, ConstView phi, int index) {
-  const View inside = inside_[a][0], level = inside_[a][1];
+void RigidBodies::mark_file(int a, ConstView phi, int index) {
+  if (!level_[a]) level_[a] = FieldBlock(grid_, 1);
+  const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
   for (int k = 0; k < grid_.faces_end(a, 2); ++k)
     for (int j = 0; j < grid_.faces_end(a, 1); ++j)
@@ -112,25 +144,28 @@ void RigidBuilder::mark_file(int a, ConstView phi, int index) {
 }
 
 // Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.
-double RigidBuilder::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
-                              double level_inside) const {
+double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
+                             double level_inside) const {
   const PlacedBody *body = sources_[image / images].body.get();
   if (!body) return std::max(shortest, level_outside / (level_outside - level_inside));
-  const Real3 &centre = faces_->bodies[image].centre, &own = body->centre();
-  double low = 0, high = 1;
+  const Real3 &centre = faces_.bodies[image].centre, &own = body->centre();
+  const Real3 &ahead = ahead_[faces_.bodies[image].motion];
+  double low = 0, high = ahead == Real3{} ? 1 : 2;
   for (int step = 0; step < 48; ++step) {
     const double middle = 0.5 * (low + high);
     Real3 place{};
-    for (int d = 0; d < 3; ++d) place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d];
+    for (int d = 0; d < 3; ++d)
+      place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d] + ahead[d];
     (body->level(place) < 0 ? high : low) = middle;
   }
   return std::max(shortest, 0.5 * (low + high));
 }
 
 // What a fluid face sees of the bodies around it; not cut where it sees none.
-RigidFaces::Cut RigidBuilder::cut_at(int a, int i, int j, int k) const {
+RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   const Int3 &N = grid_.cells(), &begin = grid_.layout().begin, local{i, j, k};
-  const double *inside = inside_[a][0].row(j, k) + i, *level = inside_[a][1].row(j, k) + i;
+  const double *inside = inside_[a][0].row(j, k) + i;
+  const double *level = level_[a] ? level_[a][0].row(j, k) + i : nullptr;
   RigidFaces::Cut cut;
   cut.i = i;
   double diagonal = 0, regular = 0;
@@ -154,12 +189,14 @@ RigidFaces::Cut RigidBuilder::cut_at(int a, int i, int j, int k) const {
         if (!grid_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
         if (!grid_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
         here[d] = neighbour[d] - one;
-        const double part = crossing(body, here, neighbour, level[0], level[step]);
+        const double part = crossing(body, here, neighbour, level ? level[0] : 0, level ? level[step] : 0);
+        if (cut.walls != 0) note_contact(cut.body, body);
         cut.walls |= 1U << link;
         cut.body = body;
         cut.link[link] /= part;
         here[d] += one * part;
-        cut.turn[link] = faces_->velocity(a, faces_->bodies[body], here, grid_.spacing(), 0, 1);
+        for (int e = 0; e < grid_.dimension(); ++e) here[e] += ahead_[faces_.bodies[body].motion][e];
+        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, grid_.spacing(), 0, 1);
       }
       diagonal += cut.link[link];
     }
@@ -168,19 +205,47 @@ RigidFaces::Cut RigidBuilder::cut_at(int a, int i, int j, int k) const {
   return cut;
 }
 
-RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers) const {
-  const Int3 &n = grid_.owned();
+// Faces that see a body lie in or beside the marked part of their row or of those around it.
+RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
+  struct Span {
+    int begin, end;
+  };
+  const Int3 &n = grid_.owned(), &ghosts = grid_.layout().ghosts;
+  const View inside = inside_[a][0];
+  const int first = -ghosts[0], last = n[0] + ghosts[0], rows = n[1] + 2 * ghosts[1];
+  std::vector<Span> marked;
+  for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
+    for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
+      const double *row = inside.row(j, k);
+      Span span{first, last};
+      while (span.begin < span.end && row[span.begin] == 0) ++span.begin;
+      while (span.begin < span.end && row[span.end - 1] == 0) --span.end;
+      marked.push_back(span);
+    }
   RigidFaces::Component c;
   for (int k = -layers[2]; k < n[2] + layers[2]; ++k)
     for (int j = -layers[1]; j < n[1] + layers[1]; ++j) {
       c.first_cut.push_back(c.cuts.size());
       c.first_run.push_back(c.runs.size());
-      const double *inside = inside_[a][0].row(j, k);
-      bool all = true;
-      for (int i = -layers[0]; i < n[0] + layers[0]; ++i) {
-        const int body = static_cast<int>(inside[i]) - 1;
+      const std::size_t at = (j + ghosts[1]) + std::size_t(rows) * (k + ghosts[2]);
+      Span span = marked[at];
+      const auto join = [&](const Span &other) {
+        if (other.begin == other.end) return;
+        span = span.begin == span.end ? other : Span{std::min(span.begin, other.begin), std::max(span.end, other.end)};
+      };
+      join(marked[at - 1]);
+      join(marked[at + 1]);
+      if (ghosts[2] > 0) {
+        join(marked[at - rows]);
+        join(marked[at + rows]);
+      }
+      c.all.push_back(span.begin < span.end && span.begin <= -layers[0] && span.end >= n[0] + layers[0]);
+      if (span.begin == span.end) continue;
+      const double *row = inside.row(j, k);
+      for (int i = std::max(span.begin - 1, -layers[0]); i < std::min(span.end + 1, n[0] + layers[0]); ++i) {
+        const int body = static_cast<int>(row[i]) - 1;
         if (body < 0) {
-          all = false;
+          c.all.back() = false;
           if (const RigidFaces::Cut cut = cut_at(a, i, j, k); cut.walls != 0) c.cuts.push_back(cut);
         } else if (c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body) {
           ++c.runs.back().end;
@@ -188,33 +253,16 @@ RigidFaces::Component RigidBuilder::component(int a, const Int3 &layers) const {
           c.runs.push_back({i, i + 1, body});
         }
       }
-      c.all.push_back(all);
     }
   c.first_cut.push_back(c.cuts.size());
   c.first_run.push_back(c.runs.size());
   return c;
 }
 
-PetscErrorCode RigidBuilder::finish(std::unique_ptr<RigidFaces> *faces) {
-  PetscFunctionBeginUser;
-  faces->reset();
-  if (!faces_) PetscFunctionReturn(0);
-  Int3 layers{};
-  for (int d = 0; d < grid_.dimension(); ++d) layers[d] = grid_.layout().ghosts[d] - 1;
-  std::array<RigidFaces::Component, 3> components;
-  for (int a = 0; a < grid_.dimension(); ++a) {
-    PetscCall(exchange_.update(inside_[a], grid_.layout().ghosts[a]));
-    components[a] = component(a, layers);
-    for (const RigidFaces::Cut &cut : components[a].cuts) {
-      const double along = std::fabs(faces_->motions[faces_->bodies[cut.body].motion].velocity[a]);
-      for (const double turn : cut.turn) faces_->speed[a] = std::max(faces_->speed[a], along + std::fabs(turn));
-    }
-    inside_[a] = {};
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, faces_->speed.data(), 3, MPI_DOUBLE, MPI_MAX, grid_.comm()));
-  faces_->set(layers, grid_.owned()[1] + 2 * layers[1], std::move(components));
-  *faces = std::move(faces_);
-  PetscFunctionReturn(0);
+std::size_t RigidBodies::bytes() const {
+  std::size_t sum = faces_.bytes();
+  for (int a = 0; a < 3; ++a) sum += inside_[a].bytes() + level_[a].bytes();
+  return sum;
 }
 
 }  // namespace eulastic

@@ -1,4 +1,5 @@
-// Finds the faces of the velocity that are inside rigid bodies, and those beside their surfaces.
+// The rigid bodies of a scene: finds the faces of the velocity that are inside them, and those beside their surfaces,
+// at the start and, where bodies travel, for every step.
 #pragma once
 
 #include "bodies/volume_fraction.hpp"
@@ -8,34 +9,63 @@
 
 namespace eulastic {
 
-/// Collects the bodies of all rigid species, then makes the faces. Where the surface crosses a link is found from the
-/// shape itself; of bodies from files from phi, interpolated, = 1/2.
-class RigidBuilder {
+/// Where the surface crosses a link is found from the shape itself; of bodies from files from phi, interpolated, = 1/2.
+/// The place of what travels is a function of time alone: nothing of it needs to be saved.
+class RigidBodies {
 public:
-  RigidBuilder(const Grid &grid, GhostExchange &exchange);
-  /// Owned cells of `phase` are set. Collective. Bodies get their indices as they come.
-  PetscErrorCode add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, Phase *phase);
-  /// Collective; null where no species is rigid.
-  PetscErrorCode finish(std::unique_ptr<RigidFaces> *faces);
+  RigidBodies(const Grid &grid, GhostExchange &exchange);
+  /// Owned cells of `phase` are set. Collective. Bodies get their indices as they come; `first_label`: of the first.
+  PetscErrorCode add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label, Phase *phase);
+  bool exist() const { return faces_.count > 0; }
+  bool travel() const { return faces_.travels; }
+  /// The faces inside at a time, and links that end where surfaces are at another; nothing can be added afterwards.
+  /// Collective.
+  PetscErrorCode place(double time, double surface_time);
+  const RigidFaces &faces() const { return faces_; }
+  /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
+  PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
+  bool travels(const Phase &phase) const;
+  /// One line if, where they were placed last, bodies of which one travels touch.
+  const std::string &touching() const { return touching_; }
+  std::size_t bytes() const;
 
 private:
+  static constexpr int images = 27;  ///< of a body: itself and its neighbours across periodic sides
+  static int image_of(int body, const Int3 &shift);
   /// A body, or all bodies of a file.
   struct Source {
     std::shared_ptr<const Surface> surface;  ///< null: of a file
     std::unique_ptr<PlacedBody> body;
+    BodyPlace start;
   };
-  void mark_body(int a, const PlacedBody &body, int index);
+  struct Species {
+    SpeciesSpec spec;
+    std::vector<BodyPlace> places;
+    int first_label;
+  };
+  BodyPlace place_of(const BodyPlace &start, const Real3 &shift) const;
+  void put(int index, const BodyPlace &place);
+  template <class Visit>
+  void for_faces(int a, int index, const Visit &visit);
+  void mark(int a, int index);
+  void clear(int a, int index);
   void mark_file(int a, ConstView phi, int index);
   double crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
                   double level_inside) const;
-  RigidFaces::Cut cut_at(int a, int i, int j, int k) const;
-  RigidFaces::Component component(int a, const Int3 &layers) const;
+  RigidFaces::Cut cut_at(int a, int i, int j, int k);
+  RigidFaces::Component component(int a, const Int3 &layers);
+  void note_contact(int image, int other);
 
   const Grid &grid_;
   GhostExchange &exchange_;
-  std::unique_ptr<RigidFaces> faces_;
+  RigidFaces faces_;
+  std::vector<Real3> ahead_;          ///< of every motion: from the time of the surfaces to that of the faces, in cells
   std::vector<Source> sources_;       ///< of every body
-  std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in, level of files
+  std::vector<Species> species_;      ///< by motion
+  std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in
+  std::array<FieldBlock, 3> level_;   ///< of files, else empty
+  std::array<int, 2> contact_{};      ///< indices of two bodies that touch, ascending; none: equal
+  std::string touching_;
 };
 
 }  // namespace eulastic

@@ -71,6 +71,18 @@ struct SpeciesSpec {
   bool bears_load() const {
     return law == Law::rigid || (!is_membrane() && (attached.value_or(is_attached(shape)) || shape == Shape::voxels));
   }
+  /// Along which directions a rigid body goes through the grid; along others it slides along itself, or rests.
+  std::array<bool, 3> travelling(int dimension) const {
+    std::array<bool, 3> found{};
+    for (int d = 0; law == Law::rigid && d < dimension; ++d) found[d] = motion.velocity[d] != 0 && !slides(d);
+    return found;
+  }
+  bool travels(int dimension) const { return travelling(dimension) != std::array<bool, 3>{}; }
+  /// Whether a shift along d leaves the shape what it is.
+  bool slides(int d) const {
+    if (shape == Shape::slab) return d != axis;
+    return (shape == Shape::tube || shape == Shape::cylinder) && d == axis;
+  }
   bool is_membrane() const { return law == Law::membrane || law == Law::red_cell; }
   Material material() const {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });

@@ -15,15 +15,34 @@ struct Oscillation {
   double frequency = 0;  ///< angular, 1 / time
   double phase = 0;      ///< rad
   double at(double time) const { return frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase); }
+  double integral(double time) const {  ///< from 0
+    if (frequency == 0) return std::cos(phase) * time;
+    return (std::sin(frequency * time + phase) - std::sin(phase)) / frequency;
+  }
+  double rate(double time) const { return -frequency * std::sin(frequency * time + phase); }
 };
 
-/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape stays
-/// where it is: spheres and tubes may turn, plates slide.
+/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape turns
+/// into itself: spheres may turn, cylinders and tubes about their axis; along `travelling` directions the body goes
+/// with V, along others it slides along itself.
 struct RigidMotion {
   Real3 velocity{};          ///< length / time
   Real3 angular_velocity{};  ///< rad / time
   Oscillation of_velocity, of_rotation;
+  std::array<bool, 3> travelling{};
   bool moves() const { return velocity != Real3{} || angular_velocity != Real3{}; }
+  bool travels() const { return travelling != std::array<bool, 3>{}; }
+  /// How far the body is from where it was at time 0.
+  Real3 shift(double time) const {
+    Real3 way{};
+    for (int d = 0; d < 3; ++d) way[d] = travelling[d] ? velocity[d] * of_velocity.integral(time) : 0;
+    return way;
+  }
+  Real3 acceleration(double time) const {  ///< of the places that travel
+    Real3 a{};
+    for (int d = 0; d < 3; ++d) a[d] = travelling[d] ? velocity[d] * of_velocity.rate(time) : 0;
+    return a;
+  }
 };
 
 /// A body, or one of its images across periodic sides.
@@ -31,6 +50,7 @@ struct RigidBody {
   int index = 0;   ///< among all rigid bodies
   int motion = 0;  ///< index in RigidFaces::motions
   Real3 centre{};  ///< from the middle of the box, in cells
+  double volume = 0;  ///< of what travels, else 0; area in 2-D
 };
 
 class RigidFaces {
@@ -61,7 +81,7 @@ public:
   std::vector<RigidMotion> motions;
   std::vector<RigidBody> bodies;
   int count = 0;  ///< of bodies, images not counted
-  bool moves = false;
+  bool moves = false, travels = false;
   Real3 speed{};  ///< largest of any surface, along every direction
 
   /// Rows of component a; j and k within `layers` of ghosts.

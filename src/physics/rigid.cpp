@@ -58,10 +58,29 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
   return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
 }
 
+// dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind
+// and half implicit: where the surface comes, u - u_s falls in a step as the distance to it does.
+double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
+                          double dt, const double *u, const Strides &s) {
+  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
+  const double middle = time + 0.5 * dt, factor = motion.of_velocity.at(middle);
+  double wall[6], sum = 0, stiffness = 0;
+  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const double V = motion.travelling[d] ? motion.velocity[d] * factor : 0;
+    const int link = 2 * d + (V < 0);
+    const double rate = std::fabs(V) * cut.link[link] * grid.spacing()[d];
+    const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
+    sum += rate * (upwind - u[0]);
+    stiffness += rate;
+  }
+  return motion.acceleration(middle)[a] + sum / (1 + 0.5 * dt * stiffness);
+}
+
 }  // namespace
 
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                        const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
+                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
@@ -70,6 +89,9 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
       if (!owned(grid, a, cut->i)) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
+      if (faces.motions[faces.bodies[cut->body].motion].travels())
+        out[cut->i] +=
+            (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -193,13 +215,17 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 
 // The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
 // of the surface, less what they would feel of the neighbours inside, is the rest. On sides of the box a body has no
-// surface: their pressure is not that of the fluid on it.
+// surface: their pressure is not that of the fluid on it. Beside a body that travels a cut face goes with the body but
+// for its share, and what is between the stair and the surface is accelerated: as if the stair had the body's volume.
+// Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate,
-                                   const Real3 &force, std::vector<RigidLoad> *loads) {
+                                   bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
+                                   const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const double mass = fluid.density * grid.cell_volume();
+  std::vector<Real3> acceleration;  // of every motion
+  for (const RigidMotion &motion : faces.motions) acceleration.push_back(carried ? motion.acceleration(time) : Real3{});
   ExactSums sums(6 * faces.count);
   const auto add = [&](int body, int a, const Real3 &place, double push) {
     const RigidBody &b = faces.bodies[body];
@@ -212,10 +238,10 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       if (e == a || g == a) sums.add(6 * b.index + 3 + d, r[e] * f[g] - r[g] * f[e]);
     }
   };
-  const auto push = [&](int a, int i, int j, int k) {
+  const auto push = [&](int a, int i, int j, int k, double given) {
     const int side = side_of_face(grid, a, i, j, k);
     const double volume = volume_of_face(grid, a, side);
-    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a]) : 0;
+    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a] - given) : 0;
     if (side == 0) return inside;
     const double *p = &pressure[0](i, j, k);
     return inside + side * grid.cell_volume() / grid.spacing()[a] * 0.5 * (p[0] + p[-pressure[0].stride(a)]);
@@ -227,14 +253,21 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
       if (volume == 0) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
-      add(cut->body, a, place_of_face(grid, a, cut->i, j, k),
-          volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut));
+      double of_face = volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut);
+      if (const int motion = faces.bodies[cut->body].motion; faces.motions[motion].travels()) {
+        const double *p = pressure[0].row(j, k) + cut->i;
+        const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
+        const double lacks = rate[a](cut->i, j, k) - force[a] - acceleration[motion][a];
+        of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * lacks + (cut->open - cut->share) * slope);
+      }
+      add(cut->body, a, place_of_face(grid, a, cut->i, j, k), of_face);
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        add(run->body, a, place_of_face(grid, a, i, j, k), push(a, i, j, k));
+        add(run->body, a, place_of_face(grid, a, i, j, k),
+            push(a, i, j, k, acceleration[faces.bodies[run->body].motion][a]));
   });
-  std::vector<double> total(6 * faces.count);
+  std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
   PetscCall(sums.reduce(grid.comm(), total.data()));
   loads->assign(faces.count, {});
   for (const RigidBody &body : faces.bodies) {
@@ -245,10 +278,11 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       load.power -= total[6 * body.index + d] * motion.velocity[d] * motion.of_velocity.at(time) +
                     total[6 * body.index + 3 + d] * motion.angular_velocity[d] * motion.of_rotation.at(time);
   }
-  for (int b = 0; b < faces.count; ++b)
+  for (const RigidBody &body : faces.bodies)
     for (int d = 0; d < 3; ++d) {
-      (*loads)[b].force[d] = total[6 * b + d];
-      (*loads)[b].torque[d] = total[6 * b + 3 + d];
+      const double own = fluid.density * body.volume * acceleration[body.motion][d];
+      (*loads)[body.index].force[d] = total[6 * body.index + d] + own;
+      (*loads)[body.index].torque[d] = total[6 * body.index + 3 + d];
     }
   PetscFunctionReturn(0);
 }

@@ -10,9 +10,10 @@
 namespace eulastic {
 
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
-/// the rate that sees the surface, scaled by their share, as is `slope` (may be null); faces inside 0.
+/// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in
+/// their frame, within a step of dt; faces inside 0.
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
-                        const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
+                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
 /// The same of v* = v + dt rate, (7).
 void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
                                 double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
@@ -56,9 +57,10 @@ struct RigidLoad {
 };
 
 /// Of all rigid bodies. `rate`: dv/dt of the fluid's equation at all owned faces, those inside too, with all of
-/// `viscosity` in it, less the body force `force`; one ghost of velocity and pressure. Collective.
+/// `viscosity` in it, less the body force `force`; one ghost of velocity and pressure. Where bodies travel without
+/// advection, as about a body the fluid goes with it; `carried`: with what accelerates that fluid. Collective.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate,
-                                   const Real3 &force, std::vector<RigidLoad> *loads);
+                                   bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
+                                   const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
 
 }  // namespace eulastic

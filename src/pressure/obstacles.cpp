@@ -76,7 +76,7 @@ ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSp
       other_(std::move(other)),
       memory_(grid, memory),
       accuracy_(accuracy) {
-  find_cells(faces);
+  follow(faces);
 }
 
 std::size_t ObstacleSolver::bytes() const {
@@ -84,7 +84,10 @@ std::size_t ObstacleSolver::bytes() const {
          first_.capacity() * sizeof(std::size_t);
 }
 
-void ObstacleSolver::find_cells(const RigidFaces &faces) {
+void ObstacleSolver::follow(const RigidFaces &faces) {
+  cells_.clear();
+  first_.clear();
+  travels_ = faces.travels;
   const Int3 &n = grid_->owned();
   std::vector<std::array<double, 6>> open(n[0]);
   for (const Segment &row : grid_->rows()) {
@@ -135,6 +138,30 @@ void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) cons
   }
 }
 
+// What the other solver, to which all faces are open, lacks in cells that are nearly closed. Where bodies rest they are
+// served by what earlier increments were.
+PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const {
+  PetscFunctionBeginUser;
+  const Real3 &h = grid_->spacing();
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    const double *r = residual[0].row(row.j, row.k);
+    double *q = correction[0].row(row.j, row.k);
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
+      double open = 0, all = 0;
+      for (int d = 0; d < grid_->dimension(); ++d) {
+        open += (cells_[c].open[2 * d] + cells_[c].open[2 * d + 1]) / (h[d] * h[d]);
+        all += 2 / (h[d] * h[d]);
+      }
+      if (open > 0) q[cells_[c].i] -= (1 / open - 1 / all) / dt * r[cells_[c].i];
+    }
+    ++at;
+  }
+  PetscCall(exchange_->update(correction, 1));
+  fill_ghosts_of_increment(*grid_, correction[0], 1);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c,
                                         const FieldBlock &d, double *ab, double *cd) const {
   PetscFunctionBeginUser;
@@ -171,6 +198,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
       constexpr double inner = 0.1;  // of the residual, in a direction
       other_->set_target(inner * rms);
       PetscCall(other_->solve(dt, residual, pressure, correction));
+      if (travels_) PetscCall(add_local(dt, residual, correction));
       ++iterations_;
     }
     if (n == 0 || last == 0) {

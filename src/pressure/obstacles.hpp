@@ -21,6 +21,8 @@ public:
   /// to begin with. All must outlive the solver.
   ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces, double accuracy,
                  int memory, std::unique_ptr<PressureSolver> other);
+  /// The faces have changed: bodies travel.
+  void follow(const RigidFaces &faces);
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }
@@ -35,8 +37,8 @@ private:
     int i;
     double open[6];
   };
-  void find_cells(const RigidFaces &faces);
   void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
+  PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;
 
@@ -46,6 +48,7 @@ private:
   std::unique_ptr<PressureSolver> other_;
   std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
+  bool travels_ = false;
   IncrementMemory memory_;
   double accuracy_, target_ = 0;
   long iterations_ = 0;

@@ -149,7 +149,7 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
     else
       PetscCall(correct_velocity(*grid_, density, dt, 0, increment.fields(), divergence, velocity, none));
     respect_rigid(now_.time, dt, increment.fields(), velocity);
-    if (rigid_ && is_rate) clear_rigid_faces(*grid_, *rigid_, velocity);
+    if (rigid_ && is_rate) clear_rigid_faces(*grid_, rigid_->faces(), velocity);
     for (const Segment &row : grid_->rows()) {
       const double *q = none[0].row(row.j, row.k);
       double *p = pressure[0].row(row.j, row.k);
@@ -181,7 +181,7 @@ PetscErrorCode Solver::start_flow() {
       set_inflow_faces(*grid_, rates_of(spec_.sides, now_.time), 0, rate[d], d);
     }
   const double nu = spec_.fluid.kinematic_viscosity();
-  if (rigid_) see_rigid_surfaces(*grid_, *rigid_, nu, nu, now_.time, now_.velocity, rate, nullptr);
+  if (rigid_) see_rigid_surfaces(*grid_, rigid_->faces(), nu, nu, now_.time, 0, now_.velocity, rate, nullptr);
   PetscCall(project_start(true, rate, now_.pressure));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   PetscFunctionReturn(0);

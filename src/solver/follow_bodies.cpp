@@ -77,6 +77,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     }
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
   PetscCall(transport(phases_now_, 0.5 * now_.dt - looks_back_));
+  PetscCall(fill_rigid(now_.time, &phases_now_));
   for (Phase &copy : phases_now_)
     if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
   phases_now_step_ = now_.step;
@@ -123,6 +124,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   PetscFunctionBeginUser;
   now_.travel += now_.crossing_rate * dt;
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
+  PetscCall(fill_rigid(now_.time + dt, &now_.phases));
   for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
   PetscCall(bodies_.follow(*grid_, now_.phases));
   if (feeders_) PetscCall(feed_bodies());

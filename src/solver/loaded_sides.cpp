@@ -54,7 +54,7 @@ PetscErrorCode Solver::find_responses() {
     const double push = (high ? -2 : 2) / (spec_.fluid.density * grid_->spacing()[d]);
     View v = velocity[d];
     for_faces(*grid_, d, high, [&](int i, int j, int k) { v(i, j, k) = push; });
-    if (rigid_) open_faces(*grid_, *rigid_, velocity);
+    if (rigid_) open_faces(*grid_, rigid_->faces(), velocity);
     PetscCall(project_start(true, velocity, pressure));
     PetscCall(exchange_->update(pressure, 1));
     fill_ghosts_of_increment(*grid_, pressure[0], 1);

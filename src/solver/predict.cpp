@@ -29,14 +29,14 @@ PetscErrorCode Solver::predict(double dt) {
     add_species_forces(*grid_, now_.phases, step.force_time, dt, velocity_star_);
     std::vector<double> cut;
     if (rigid_) {
-      see_rigid_surfaces_at_once(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
+      see_rigid_surfaces_at_once(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
                                  velocity_star_);
-      cut = cut_face_values(*grid_, *rigid_, velocity_star_);
+      cut = cut_face_values(*grid_, rigid_->faces(), velocity_star_);
     }
     if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, dt, now_.velocity, velocity_star_));
     if (rigid_) {
-      set_cut_face_values(*grid_, *rigid_, cut, velocity_star_);
-      impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
+      set_cut_face_values(*grid_, rigid_->faces(), cut, velocity_star_);
+      impose_rigid_motion(*grid_, rigid_->faces(), now_.time + dt, velocity_star_);
     }
     ++stages_;
     PetscFunctionReturn(0);
@@ -55,23 +55,23 @@ PetscErrorCode Solver::predict(double dt) {
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
   std::vector<double> cut;
   if (rigid_) {
-    see_rigid_surfaces(*grid_, *rigid_, nu, fluid.kinematic_viscosity(), now_.time, now_.velocity, rate.fields(),
-                       slope_ ? &slope_ : nullptr);
-    cut = cut_face_values(*grid_, *rigid_, rate.fields());
+    see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
+                       rate.fields(), slope_ ? &slope_ : nullptr);
+    cut = cut_face_values(*grid_, rigid_->faces(), rate.fields());
   }
   if (viscosity_) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
-  if (rigid_) set_cut_face_values(*grid_, *rigid_, cut, rate.fields());
+  if (rigid_) set_cut_face_values(*grid_, rigid_->faces(), cut, rate.fields());
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   if (viscosity_)
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, viscosity_, now_.time, dt, stages, now_.velocity,
-                              viscous, velocity_star_, rigid_.get(), nu));
+                              viscous, velocity_star_, rigid(), nu));
   else
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                              now_.phases, now_.velocity, viscous, velocity_star_, rigid_.get()));
-  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time + dt, velocity_star_);
+                              now_.phases, now_.velocity, viscous, velocity_star_, rigid()));
+  if (rigid_) impose_rigid_motion(*grid_, rigid_->faces(), now_.time + dt, velocity_star_);
   stages_ += stages;
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,6 @@
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
-#include "pressure/obstacles.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -63,32 +62,15 @@ PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
   PetscFunctionReturn(0);
 }
 
-// Artificial compressibility needs no more than the velocity of the bodies; what solves for the increment has to know
-// which faces are closed. Increments of steps before are of no use to it.
-PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidFaces> faces) {
-  PetscFunctionBeginUser;
-  rigid_ = std::move(faces);
-  if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), {grid_->any_open(), false, false, false, true})));
-  if (spec_.pressure == PressureKind::acm) {
-    auto sweeps = std::make_unique<AcmSweepSolver>();
-    PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
-    pressure_solver_ = std::move(sweeps);
-  }
-  const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
-  pressure_solver_ = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, *rigid_, accuracy, spec_.acm_memory,
-                                                      std::move(pressure_solver_));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
-  if (rigid_) impose_rigid_motion(*grid_, *rigid_, now_.time, now_.velocity);
+  if (rigid_) impose_rigid_motion(*grid_, rigid_->faces(), now_.time, now_.velocity);
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (volume_crosses(spec_.sides)) PetscCall(start_flow());
   if (loads_) PetscCall(find_responses());
+  if (rigid_ && !rigid_->touching().empty()) crowded_ = rigid_->touching();
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const int dim = grid_->dimension();
@@ -133,6 +115,7 @@ PetscErrorCode Solver::prepare() {
 
 PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscFunctionBeginUser;
+  PetscCall(move_rigid(now_.time, now_.dt));
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
   PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
@@ -171,7 +154,7 @@ std::vector<double> Solver::evolved_fraction() const {
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
-  for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->speed[d]);
+  for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->faces().speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
   for (const double speed : inflow_speed(spec_.sides)) scale = std::max(scale, speed);
@@ -197,6 +180,7 @@ std::size_t Solver::bytes() const {
 
 PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
+  PetscCall(move_rigid(now_.time + dt, dt));
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   PetscCall(predict(dt));                                                       // (7)
   if (feeders_) {
@@ -209,6 +193,7 @@ PetscErrorCode Solver::step(double dt) {
   if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
   PetscCall(follow_bodies(dt));
   if (!now_.phases.empty() && volume_crosses(spec_.sides)) PetscCall(check_sides(false));
+  if (rigid_ && !rigid_->touching().empty()) crowded_ = rigid_->touching();
   now_.time += dt;
   now_.dt = dt;
   ++now_.step;

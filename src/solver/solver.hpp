@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/measures.hpp"
+#include "bodies/rigid.hpp"
 #include "bodies/surface_measures.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
@@ -14,7 +15,7 @@
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
-#include "pressure/pressure_solver.hpp"
+#include "pressure/obstacles.hpp"
 #include "solver/feeders.hpp"
 #include "solver/method.hpp"
 #include "solver/outlet_loads.hpp"
@@ -48,8 +49,8 @@ public:
   BodyTracker &bodies() { return bodies_; }
   const State &state() const { return now_; }
 
-  /// Before prepare(); null where nothing is rigid.
-  PetscErrorCode set_rigid(std::unique_ptr<RigidFaces> faces);
+  /// Before prepare(); null or without bodies where nothing is rigid. Collective.
+  PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
   PetscErrorCode prepare();
   /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
@@ -64,7 +65,8 @@ public:
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and
   /// membranes. `bodies`: what is known of the surface of every body, if there are labels and membranes.
   PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
-  const RigidFaces *rigid() const { return rigid_.get(); }
+  /// Null where nothing is rigid.
+  const RigidFaces *rigid() const { return rigid_ ? &rigid_->faces() : nullptr; }
   /// Sides with profiles that know the bodies; before prepare().
   void set_profiles(const BoxSides &sides) { spec_.sides = sides; }
   /// What the fluid exerts on every rigid body, in the order of the bodies; costs as much as the rate of momentum.
@@ -86,8 +88,8 @@ public:
   PetscErrorCode look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
-  /// One line if there are not colours enough for bodies that have come near each other (bodies/contact.hpp), or if a
-  /// body is at a side that volume crosses and cannot leave.
+  /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near
+  /// each other (bodies/contact.hpp), or if a body is at a side that volume crosses and cannot leave.
   const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
@@ -125,6 +127,11 @@ private:
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode project(double dt);
+  /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
+  /// middle.
+  PetscErrorCode move_rigid(double time, double dt);
+  /// phi and labels of phases of rigid bodies that travel.
+  PetscErrorCode fill_rigid(double time, std::vector<Phase> *phases);
   /// After correct_velocity(): cut faces have their part of the increment, those inside rigid bodies their velocity.
   void respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const;
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
@@ -168,7 +175,8 @@ private:
   std::unique_ptr<InterfaceTransport> interface_;
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
-  std::unique_ptr<RigidFaces> rigid_;                ///< the same of rigid bodies
+  std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies
+  ObstacleSolver *obstacles_ = nullptr;              ///< pressure_solver_, if it sees them
   std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   double looks_back_ = 0;                ///< before the end of the step

@@ -17,7 +17,7 @@ ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
   TimeStepLimits limits = time_step_limits(*grid_, driven_fluid(), contrast(extremes.trace), spec_.sides, extremes,
                                            {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
-  if (rigid_) limits.forcing = std::min(limits.forcing, rigid_->shortest_period());
+  if (rigid_) limits.forcing = std::min(limits.forcing, rigid_->faces().shortest_period());
   return limits;
 }
 

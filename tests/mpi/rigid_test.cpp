@@ -17,7 +17,7 @@ struct Case {
   PressureKind pressure;
   Int3 cells;
   bool bounded;  // along y
-  bool split_x = false;
+  bool split_x = false, travels = false;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
@@ -47,6 +47,10 @@ End run(MPI_Comm comm, const Case &c) {
   SpeciesSpec rotor = rigid_body(Shape::sphere, 0.45, {0.07, c.bounded ? 0.55 : 0.02, 0.5 * l[2]});
   rotor.motion.angular_velocity = flat ? Real3{0, 0, 2} : Real3{1, -0.5, 2};
   rotor.motion.of_rotation = {3, 0.4};
+  if (c.travels) {
+    rotor.motion.velocity = {0.9, c.bounded ? 0 : -0.5, flat ? 0 : 0.6};
+    rotor.motion.of_velocity = {4, -0.3};
+  }
   SpeciesSpec plate;
   plate.shape = Shape::slab;
   plate.axis = 1;
@@ -58,7 +62,7 @@ End run(MPI_Comm comm, const Case &c) {
     return std::min(1.0, std::max(0.0, 0.5 + (0.35 - r) / 0.1));
   });
   EXPECT_EQ(scene.solver.prepare(), 0);
-  EXPECT_EQ(scene.advance(6, 0.5), 0);
+  EXPECT_EQ(scene.advance(c.travels ? 14 : 6, 0.5), 0);
   End end;
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
   EXPECT_EQ(scene.solver.rigid_loads(&end.loads), 0);
@@ -84,7 +88,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RigidBodies,
                                          Case{"fast_periodic", fast, smac, {18, 20, 14}, false},
                                          Case{"classic_bounded", classic, acm, {18, 20, 14}, true},
                                          Case{"flat_periodic", fast, acm, {23, 21, 1}, false},
-                                         Case{"split_x", fast, acm, {1030, 21, 1}, true, true}),
+                                         Case{"split_x", fast, acm, {1030, 21, 1}, true, true},
+                                         Case{"travelling", fast, acm, {18, 20, 14}, true, false, true},
+                                         Case{"travelling_flat", fast, smac, {23, 21, 1}, false, false, true}),
                          [](const auto &test) { return test.param.name; });
 
 }  // namespace

@@ -48,6 +48,11 @@ class SameBits(Restart):
     def test_attached_fast_acm(self):
         self.check(ATTACHED, "-acm_coarse false -acm_sweeps_max 4".split(), before=0, after=0)
 
+    def test_travelling_body(self):
+        case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law rigid -bead_velocity .6,.2,0 -bead_velocity_frequency "
+                                                          ".7 -bead_velocity_phase .4 -bead_angular_velocity 0,0,1")
+        self.check(case.split() + FLAT[-4:], [], before=2, after=3)
+
     def test_flat_viscosities(self):
         self.check(FLAT, "-cell_viscosity 1.5 -bead_viscosity .03".split(), before=2, after=3)
 

@@ -20,11 +20,10 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   } else {
     EXPECT_EQ(fill_phase(scene->grid, spec, {{spec.centre, {}}}, 1, &phase), 0);
   }
-  RigidBuilder builder(scene->grid, scene->solver.exchange());
-  EXPECT_EQ(builder.add(spec, {{spec.centre, {}}}, &phase), 0);
-  std::unique_ptr<RigidFaces> faces;
-  EXPECT_EQ(builder.finish(&faces), 0);
-  return faces;
+  RigidBodies bodies(scene->grid, scene->solver.exchange());
+  EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase), 0);
+  EXPECT_EQ(bodies.place(0, 0), 0);
+  return std::make_unique<RigidFaces>(bodies.faces());
 }
 
 // Every link that ends at the surface of a ball across two periodic sides ends on it; every face inside is in a run, no
@@ -104,6 +103,121 @@ TEST(RigidFaces, SurfaceOfAFile) {
       found = true;
     }
   EXPECT_TRUE(found);
+}
+
+// In a box of fluid that goes with it, across all sides: nothing happens.
+TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
+  Scene scene;
+  GridSpec spec;
+  spec.cells = {18, 16, 14};
+  spec.length = {1.8, 1.6, 1.4};
+  SolverSpec solver;
+  static_cast<Method &>(solver) = method_preset(MethodKind::fast);
+  solver.fluid.viscosity = 0.1;
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec, solver), 0);
+  const Real3 V{1, -0.7, 0.4};
+  for (int d = 0; d < 3; ++d)
+    set(scene.grid, scene.solver.state().velocity[d], at_face[d], [&](double, double, double) { return V[d]; });
+  SpeciesSpec ball = rigid_body(Shape::sphere, 0.42, {0.1, 0.2, 1.3});
+  ball.motion.velocity = V;
+  add_rigid(&scene, {ball});
+  ASSERT_EQ(scene.solver.prepare(), 0);
+  ASSERT_EQ(scene.run(0.4, 12), 0);
+  for (int d = 0; d < 3; ++d)
+    EXPECT_LT(rms_error(scene.grid, scene.solver.state().velocity[d], at_face[d],
+                        [&](double, double, double) { return V[d]; }),
+              1e-13);
+  std::vector<RigidLoad> loads;
+  ASSERT_EQ(scene.solver.rigid_loads(&loads), 0);
+  for (int d = 0; d < 3; ++d) {
+    EXPECT_NEAR(loads[0].force[d], 0, 1e-12);
+    EXPECT_NEAR(loads[0].torque[d], 0, 1e-12);
+  }
+}
+
+// Where a body is follows from the time alone, whatever was before; phi, too.
+TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
+  Scene scene;
+  GridSpec spec;
+  spec.cells = {16, 14, 1};
+  spec.length = {1.6, 1.4, 1};
+  SolverSpec solver;
+  static_cast<Method &>(solver) = method_preset(MethodKind::fast);
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec, solver), 0);
+  SpeciesSpec ball = rigid_body(Shape::sphere, 0.31, {0.3, 0.7, 0.5});
+  ball.name = "ball";
+  ball.law = Law::rigid;
+  ball.motion.velocity = {0.8, -0.3, 0};
+  ball.motion.of_velocity = {2, 0.5};
+  const double time = 0.37, way = (std::sin(2 * time + 0.5) - std::sin(0.5)) / 2;
+  std::vector<Phase> phases(2);
+  std::array<std::unique_ptr<RigidBodies>, 2> bodies;
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_EQ(fill_phase(scene.grid, ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
+    bodies[n] = std::make_unique<RigidBodies>(scene.grid, scene.solver.exchange());
+    ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
+  }
+  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before, before - 0.1), 0);
+  ASSERT_EQ(bodies[1]->place(time, time - 0.1), 0);
+  EXPECT_NEAR(bodies[0]->faces().bodies[13].centre[0], (0.3 + 0.8 * way - 0.8) / 0.1, 1e-9);
+  int cuts = 0, runs = 0;
+  for (int a = 0; a < 2; ++a)
+    for (int j = -2; j < 16; ++j) {
+      const RigidFaces::Row one = bodies[0]->faces().row(a, j, 0), two = bodies[1]->faces().row(a, j, 0);
+      ASSERT_EQ(one.cuts_end - one.cuts, two.cuts_end - two.cuts);
+      ASSERT_EQ(one.runs_end - one.runs, two.runs_end - two.runs);
+      for (std::ptrdiff_t c = 0; c < one.cuts_end - one.cuts; ++c, ++cuts)
+        for (int link = 0; link < 4; ++link) EXPECT_EQ(one.cuts[c].link[link], two.cuts[c].link[link]);
+      for (std::ptrdiff_t r = 0; r < one.runs_end - one.runs; ++r, ++runs) {
+        EXPECT_EQ(one.runs[r].begin, two.runs[r].begin);
+        EXPECT_EQ(one.runs[r].end, two.runs[r].end);
+      }
+    }
+  EXPECT_GT(cuts, 20);
+  EXPECT_GT(runs, 8);
+  std::vector<Phase> moved(1);
+  moved[0].copy_from(phases[0]);
+  ASSERT_EQ(bodies[0]->fill(time, &moved), 0);
+  double sum = 0, moment = 0;
+  for_points(scene.grid, moved[0].fraction[0], at_centre, [&](double &phi, double x, double, double) {
+    sum += phi;
+    moment += phi * x;
+  });
+  EXPECT_NEAR(sum * 0.01, M_PI * 0.31 * 0.31, 1e-5);
+  EXPECT_NEAR(moment / sum, 0.3 + 0.8 * way, 1e-4);
+}
+
+// Two bodies of which one comes to the other.
+TEST(TravellingBodies, TouchingIsFound) {
+  Scene scene;
+  GridSpec spec;
+  spec.cells = {20, 12, 1};
+  spec.length = {2, 1.2, 1};
+  SolverSpec solver;
+  static_cast<Method &>(solver) = method_preset(MethodKind::fast);
+  ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec, solver), 0);
+  SpeciesSpec ball = rigid_body(Shape::ellipsoid, 0, {0.5, 0.6, 0.5}),
+              post = rigid_body(Shape::sphere, 0.2, {1.4, 0.6, 0.5});
+  ball.semi_axes = {0.3, 0.2, 0.2};
+  ball.motion.velocity = {1, 0, 0};
+  ball.name = "ball";
+  post.name = "post";
+  RigidBodies bodies(scene.grid, scene.solver.exchange());
+  for (SpeciesSpec *species : {&post, &ball}) {
+    species->law = Law::rigid;
+    Phase phase;
+    ASSERT_EQ(fill_phase(scene.grid, *species, {{species->centre, {}}}, 1, &phase), 0);
+    ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase), 0);
+  }
+  ASSERT_EQ(bodies.place(0.1, 0.1), 0);  // .3 apart
+  EXPECT_EQ(bodies.touching(), "");
+  for (const double time : {0.39, 0.5}) {
+    ASSERT_EQ(bodies.place(time, time - 0.02), 0);
+    for (const char *piece : {"-ball_velocity", "post and ball", "accepted: paths with fluid between"})
+      EXPECT_NE(bodies.touching().find(piece), std::string::npos) << bodies.touching();
+  }
+  ASSERT_EQ(bodies.place(0.1, 0.1), 0);
+  EXPECT_EQ(bodies.touching(), "");
 }
 
 }  // namespace

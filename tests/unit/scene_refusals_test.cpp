@@ -42,7 +42,7 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
   EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
 }
 
-// What would not stay where it is.
+// What would turn into another shape, or cannot go where it is told.
 TEST(SceneRefusals, RigidBodiesThatMove) {
   expect_refusals(
       {{"-a_shape tube -a_radius .2 -a_axis x -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
@@ -53,4 +53,23 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
         {"-a_velocity", "sides of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
+}
+
+TEST(SceneRefusals, PathsOfRigidBodies) {
+  const std::string ball =
+      "-time_end 1 -grid_cells 20,20,20 -boundary_y wall -species a,b -a_law rigid -a_shape sphere "
+      "-a_radius .1 -a_centre .3,.4,.5 -b_law rigid -b_shape cylinder -b_axis z -b_radius .1 "
+      "-b_centre .7,.7,.5 ";
+  EXPECT_EQ(parse_line(ball + "-a_velocity 1,.1,.3").error, "");  // past it, and across the sides
+  EXPECT_EQ(parse_line(ball + "-a_velocity 0,1,0 -a_velocity_frequency 10").error, "");
+  expect_refusals(
+      {{"-a_velocity 0,.5,0", {"-a_velocity", "carries a body to y = 1", "accepted: a path between 0.1 and 0.9"}},
+       {"-a_velocity 0,-.25,0", {"-a_velocity", "carries a body to y = 0.05"}},
+       {"-a_velocity 0,2,0 -a_velocity_frequency 9", {"-a_velocity", "carries a body to y = 0.0777"}},
+       {"-a_velocity .6,.35,0",
+        {"-a_velocity", "carries a body to one of b at t = 0.", "accepted: a path with a cell"}},
+       {"-a_velocity .5,.35,0 -b_velocity -.1,0,0", {"-a_velocity", "carries a body to one of b at t = 0."}},
+       {"-a_velocity .1,0,0 -time_integrator euler", {"-a_velocity", "-time_integrator staggered"}},
+       {"-a_velocity .1,0,0 -method classic -time_integrator staggered", {"-a_velocity", "-acm_sweeps_max > 1"}}},
+      ball);
 }

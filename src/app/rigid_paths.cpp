@@ -1,0 +1,117 @@
+#include "app/rigid_paths.hpp"
+
+#include "app/option_values.hpp"
+#include "bodies/shapes.hpp"
+#include "solver/feeders.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr int free_cells = 2;       // between a body and a side
+constexpr double most_looks = 1e7;  // at pairs of bodies
+
+int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
+
+// How far a body has gone along d.
+double shift(const SpeciesSpec &spec, int d, double time) {
+  return spec.slides(d) ? 0 : spec.motion.velocity[d] * spec.motion.of_velocity.integral(time);
+}
+
+struct Interval {
+  double low = 0, high = 0;
+};
+
+// Of the integral of the factor of the velocity, from time 0.
+Interval reach(const Oscillation &factor, double end) {
+  if (factor.frequency == 0) {
+    const double last = factor.integral(end);
+    return {std::min(0.0, last), std::max(0.0, last)};
+  }
+  const double middle = -std::sin(factor.phase) / factor.frequency, amplitude = 1 / factor.frequency;
+  return {middle - amplitude, middle + amplitude};
+}
+
+std::string check_path(const Config &config, const SpeciesSpec &spec, const BodyPlace &place, int d) {
+  const double extent = Surface(spec, dimension_of(config)).support(rotation(place.orientation)[d]);
+  if (config.grid.boundary[d] != Boundary::wall || !std::isfinite(extent) || spec.motion.velocity[d] == 0) return {};
+  const double V = spec.motion.velocity[d], length = config.grid.length[d];
+  const double margin = free_cells * length / config.grid.cells[d];
+  const Interval way = reach(spec.motion.of_velocity, config.time.end);
+  const double low = place.centre[d] + std::min(V * way.low, V * way.high) - extent;
+  const double high = place.centre[d] + std::max(V * way.low, V * way.high) + extent;
+  if (low >= margin && high <= length - margin) return {};
+  const bool below = low < margin;
+  return "-" + spec.name + "_velocity: carries a body to " + "xyz"[d] + " = " + to_text(below ? low : high) +
+         "; accepted: a path between " + to_text(margin) + " and " + to_text(length - margin) +
+         ", two cells from the sides";
+}
+
+// What is between two bodies at a time; infinite of shapes of which it is not known here.
+double gap_between(const Config &config, const SpeciesSpec &one, const BodyPlace &at, const SpeciesSpec &two,
+                   const BodyPlace &place, double time) {
+  const int dimension = dimension_of(config);
+  const auto round = [](Shape shape) { return shape == Shape::sphere || shape == Shape::cylinder; };
+  if (!round(one.shape) || !(round(two.shape) || two.shape == Shape::tube)) return HUGE_VAL;
+  double square = 0;
+  for (int d = 0; d < dimension; ++d) {
+    if ((one.shape == Shape::cylinder && one.axis == d) || (two.shape != Shape::sphere && two.axis == d)) continue;
+    double way = at.centre[d] + shift(one, d, time) - place.centre[d] - shift(two, d, time);
+    if (config.grid.boundary[d] == Boundary::periodic) way = std::remainder(way, config.grid.length[d]);
+    square += way * way;
+  }
+  const double distance = std::sqrt(square);
+  return two.shape == Shape::tube ? two.radius - one.radius - distance : distance - one.radius - two.radius;
+}
+
+// Of a species that travels, with all others. What is not found here is found when it happens (bodies/rigid.hpp).
+std::string check_meetings(const Config &config, std::size_t which) {
+  const SpeciesSpec &one = config.species[which];
+  double spacing = HUGE_VAL;
+  for (int d = 0; d < dimension_of(config); ++d)
+    spacing = std::min(spacing, config.grid.length[d] / config.grid.cells[d]);
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &two = config.species[s];
+    if (s == which || two.law != Law::rigid) continue;
+    double speed = 0;
+    for (const SpeciesSpec *spec : {&one, &two})
+      for (const double V : spec->motion.velocity) speed += std::fabs(V);
+    const double pairs = double(config.places[which].size()) * double(config.places[s].size());
+    const double looks = std::min(4 * speed * config.time.end / spacing, most_looks / std::max(1.0, pairs));
+    for (const BodyPlace &at : config.places[which])
+      for (const BodyPlace &place : config.places[s])
+        for (long n = 0; n <= static_cast<long>(looks) + 1; ++n) {
+          const double time = config.time.end * double(n) / (static_cast<double>(static_cast<long>(looks)) + 1);
+          if (gap_between(config, one, at, two, place, time) < spacing)
+            return "-" + one.name + "_velocity: carries a body to one of " + two.name + " at t = " + to_text(time) +
+                   "; accepted: a path with a cell or more between them";
+        }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string check_paths(const Config &config) {
+  const int dimension = dimension_of(config);
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
+    if (!spec.travels(dimension)) continue;
+    const std::string option = "-" + spec.name + "_velocity: a body that travels through the grid ";
+    if (!config.method.staggered())
+      return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
+    if (config.method.acm_of_the_paper())
+      return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
+    if (Feeders::exist(config.sides))
+      return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
+    for (const BodyPlace &place : config.places[s])
+      for (int d = 0; d < dimension; ++d)
+        if (const std::string wrong = check_path(config, spec, place, d); !wrong.empty()) return wrong;
+    if (const std::string wrong = check_meetings(config, s); !wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+}  // namespace eulastic

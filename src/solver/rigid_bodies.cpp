@@ -1,0 +1,109 @@
+// Solver: rigid bodies: where they are, their part in the projection, and what the fluid exerts on them.
+#include "base/events.hpp"
+#include "physics/momentum.hpp"
+#include "physics/species_force.hpp"
+#include "physics/viscous_stress.hpp"
+#include "pressure/acm_sweeps.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+// Artificial compressibility needs no more than the velocity of the bodies; what solves for the increment has to know
+// which faces are closed. Increments of steps before are of no use to it.
+PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
+  PetscFunctionBeginUser;
+  rigid_ = std::move(bodies);
+  if (rigid_ && !rigid_->exist()) rigid_.reset();
+  if (rigid_) PetscCall(rigid_->place(now_.time, now_.time));
+  if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
+  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), {grid_->any_open(), false, false, false, true})));
+  if (spec_.pressure == PressureKind::acm) {
+    auto sweeps = std::make_unique<AcmSweepSolver>();
+    PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
+    pressure_solver_ = std::move(sweeps);
+  }
+  const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
+  auto obstacles = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, rigid_->faces(), accuracy,
+                                                    spec_.acm_memory, std::move(pressure_solver_));
+  obstacles_ = obstacles.get();
+  pressure_solver_ = std::move(obstacles);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::move_rigid(double time, double dt) {
+  PetscFunctionBeginUser;
+  if (!rigid_ || !rigid_->travel()) PetscFunctionReturn(0);
+  VerbScope scope(Verb::rigid);
+  PetscCall(rigid_->place(time, time - 0.5 * dt));
+  if (obstacles_) obstacles_->follow(rigid_->faces());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::fill_rigid(double time, std::vector<Phase> *phases) {
+  PetscFunctionBeginUser;
+  if (!rigid_ || !rigid_->travel()) PetscFunctionReturn(0);
+  PetscCall(rigid_->fill(time, phases));
+  for (Phase &phase : *phases)
+    if (rigid_->travels(phase)) PetscCall(find_rows(phase));
+  PetscFunctionReturn(0);
+}
+
+void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const {
+  if (!rigid_) return;
+  if (!spec_.acm_of_the_paper())
+    correct_cut_faces(*grid_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);
+  impose_rigid_motion(*grid_, rigid_->faces(), time, velocity);
+}
+
+PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
+  PetscFunctionBeginUser;
+  loads->clear();
+  if (!rigid_) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(phases_now(&phases));
+  Fluid fluid = spec_.fluid;
+  const Real3 force = fluid.body_force.at(now_.time);
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(viscosity_now(&viscosity));
+  if (viscosity) fluid.viscosity = 0;
+  const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
+  const bool travel = rigid_->travel();
+  FieldBlock none, no_pressure;
+  if (travel) {
+    fluid.inertia = false;
+    no_pressure = FieldBlock(*grid_, 1);
+    PetscCall(rigid_->place(now_.time, now_.time));
+  }
+  const FieldBlock &pressure = travel ? no_pressure : now_.pressure;
+  WorkSpace::Lease rate;
+  PetscCall(work_->take("loads on rigid bodies", grid_->dimension(), &rate));
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, pressure, *phases, none, rate.fields()));
+  add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
+  if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
+  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, pressure,
+                                rate.fields(), force, loads));
+  if (!travel) PetscFunctionReturn(0);
+  // Pressure is that of another time, when the bodies were elsewhere.
+  const double time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
+  Fluid alone = spec_.fluid;
+  alone.viscosity = 0;
+  alone.inertia = false;
+  alone.body_force = {};
+  std::vector<RigidLoad> of_pressure;
+  PetscCall(rigid_->place(time, time));
+  PetscCall(momentum_rate(*grid_, alone, step, now_.velocity, now_.pressure, {}, none, rate.fields()));
+  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), alone, time, true, now_.velocity, now_.pressure, rate.fields(),
+                                {}, &of_pressure));
+  for (std::size_t b = 0; b < loads->size(); ++b) {
+    RigidLoad &load = (*loads)[b];
+    for (int d = 0; d < 3; ++d) {
+      load.force[d] += of_pressure[b].force[d];
+      load.torque[d] += of_pressure[b].torque[d];
+    }
+    load.power += of_pressure[b].power;
+  }
+  PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
