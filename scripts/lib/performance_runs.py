@@ -66,11 +66,14 @@ def markdown_table(rows, columns):
     return "\n".join(lines)
 
 
-def write_tables(tables, path=None):
-    """Puts every text between <!-- table NAME --> and <!-- end --> in docs/performance.md, or in the page `path`."""
+def write_tables(tables, path=None, made=None):
+    """Puts every text between <!-- table NAME --> and <!-- end --> in docs/performance.md, or in the page `path`; below it the
+    sentence `made` of measured.made_with(), from before anything was written."""
     path = path or PAGE
     page = path.read_text()
     for name, text in tables.items():
+        if made:
+            text += f"\n\n{made}"
         page, count = re.subn(rf"<!-- table {name} -->.*?<!-- end -->",
                               lambda _: f"<!-- table {name} -->\n{text}\n<!-- end -->", page, flags=re.S)
         if count != 1:
