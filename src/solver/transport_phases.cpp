@@ -50,7 +50,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   std::vector<WantedGhosts> fractions, tensors;
   for (std::size_t p = 0; p < phases.size(); ++p)
     if (!phases[p].material.is_rigid()) {
-      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined, true, true});
+      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});  // all: it says what is near
       const bool extended = !swaps && spec_.exterior == SolidExterior::extrapolate;
       const int near = phases[p].material.is_membrane() ? SurfaceCells::near : extended ? ExteriorLayers::near : 0;
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0], near});
