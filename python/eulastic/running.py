@@ -56,6 +56,7 @@ def launch(case, directory, ranks, options, say, started=lambda process: None):
         process.wait()
     finally:
         stop(process)
+        process.stdout.read()  # to its end: the program may write a checkpoint after the shell that started it is gone
         process.wait()
         process.stdout.close()
     if process.returncode:
