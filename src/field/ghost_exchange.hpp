@@ -17,7 +17,7 @@ namespace eulastic {
 /// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere:
 /// ends of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several
 /// stages that wrap x around by themselves (Sides::wrap) want no row ends. `near`: only pieces that are near() to what
-/// the rows are of, if they are known; others may hold anything.
+/// the rows are of, if they are known; others may hold anything. Not for what says where that is, phi.
 struct WantedGhosts {
   FieldBlock *block;
   int width;
