@@ -127,9 +127,9 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
     what = text(
         "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
         "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
-        m.drifting_body + 1, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
+        m.drifting_body, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
     find = nullptr;
-    place = m.bodies[m.drifting_body].centroid;
+    place = m.drifting_place;
   }
   if (what.empty()) PetscFunctionReturn(0);
   if (find) PetscCall(find(solver.grid(), state.velocity, &place));

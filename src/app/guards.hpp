@@ -26,11 +26,12 @@ struct Measured {
   SurfaceEnergy surface;
   std::vector<RigidLoad> loads;            ///< of the rigid ones among the bodies
   std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
-  std::vector<BodyMeasure> bodies;
-  std::vector<SurfaceMeasure> surfaces;  ///< of the same bodies; empty without membranes
-  double volume_drift = 0;               ///< of the body that has changed most
+  std::vector<BodyMeasure> bodies;         ///< that this rank owns
+  std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
+  double volume_drift = 0;                 ///< of the body that has changed most
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
-  int drifting_body = -1;     ///< its index
+  int drifting_body = 0;      ///< its label
+  Real3 drifting_place{};
   double mach = 0;            ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 

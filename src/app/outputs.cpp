@@ -17,6 +17,8 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   solver_ = solver;
   series_due_ = {config.output.series_interval, position.series_time};
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
+  membranes_ = std::any_of(config.species.begin(), config.species.end(),
+                           [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   first_volume_ = position.first_volume;
   energy_ = position.energy;
   mach_max_ = position.mach_max;
@@ -31,11 +33,9 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
                          same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    const bool membranes = std::any_of(config_.species.begin(), config_.species.end(),
-                                       [](const SpeciesSpec &spec) { return spec.is_membrane(); });
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes, loads);
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes_, loads);
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -71,37 +71,24 @@ PetscErrorCode Outputs::measure() {
       {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
-  if (first_volume_.empty())
-    for (const BodyMeasure &body : m.bodies) first_volume_.push_back(body.volume);
+  if (first_volume_.empty()) {
+    std::vector<double> volumes;
+    for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
+    PetscCall(
+        gather_bodies(grid_->comm(), solver_->bodies().bodies(), solver_->bodies().bodies(), volumes, &first_volume_));
+  }
   solver_->bodies().complete(&first_volume_);
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
-  if (!m.bodies.empty()) PetscCall(solver_->rigid_loads(&m.loads));
-  PetscCall(measure_vessel_loads(config_, m.bodies, solver_, &m.surface_loads));
-  m.volume_drift = m.resolved_drift = 0;
-  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    const bool left = m.bodies[b].volume == 0 && grid_->any_open();
-    const double drift = first_volume_[b] > 0 && !left ? std::fabs(m.bodies[b].volume / first_volume_[b] - 1) : 0;
-    m.volume_drift = std::max(m.volume_drift, drift);
-    if (drift <= m.resolved_drift || !resolved(first_volume_[b])) continue;
-    m.resolved_drift = drift;
-    m.drifting_body = static_cast<int>(b);
-  }
+  if (solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
+  PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  PetscCall(measure_drift());
   // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
   constexpr double noise = 1e-5;  // of U/h
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
   m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
-  mach_max_ = std::max(mach_max_, m.mach);
+  if (state.step > 0) mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
   m.time = state.time;
   PetscFunctionReturn(0);
-}
-
-std::string Outputs::unresolved_bodies() const {
-  const auto small = std::count_if(first_volume_.begin(), first_volume_.end(), [&](double v) { return !resolved(v); });
-  if (small == 0) return {};
-  return "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) + " of " +
-         std::to_string(first_volume_.size()) +
-         "; hardly resolved, and -guard_volume_drift does not look at them; more "
-         "-grid_cells";
 }
 
 // Of a state that measure() has seen.
@@ -130,42 +117,6 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
                                &sides_));
   for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
   PetscFunctionReturn(0);
-}
-
-std::vector<BodyRecord> Outputs::records() const {
-  std::vector<BodyRecord> records;
-  std::size_t rigid = 0, elastic = 0;
-  for (std::size_t b = 0; b < measured_.bodies.size(); ++b) {
-    const BodyMeasure &body = measured_.bodies[b];
-    BodyRecord record;
-    record.id = body.label;
-    record.species = config_.species[body.species].name;
-    record.centroid = body.centroid;
-    record.velocity = body.velocity;
-    record.volume = body.volume;
-    record.taylor_deformation = body.taylor_deformation;
-    record.inclination = body.inclination;
-    record.elastic_energy = body.elastic_energy;
-    record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
-    record.rest_deformation = body.rest_deformation;
-    if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
-      record.force = measured_.loads[rigid].force;
-      record.torque = measured_.loads[rigid++].torque;
-    } else if (elastic < measured_.surface_loads.size() && measured_.surface_loads[elastic].label == body.label) {
-      record.force = measured_.surface_loads[elastic].force;
-      record.torque = measured_.surface_loads[elastic++].torque;
-    }
-    if (b < measured_.surfaces.size()) {
-      const SurfaceMeasure &surface = measured_.surfaces[b];
-      record.surface_area = surface.area;
-      record.shear_energy = surface.shear_energy;
-      record.area_energy = surface.area_energy;
-      record.bending_energy = surface.bending_energy;
-      record.turning_rate = surface.turning_rate;
-    }
-    records.push_back(record);
-  }
-  return records;
 }
 
 PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times) {
@@ -234,7 +185,9 @@ PetscErrorCode Outputs::write_due(bool last) {
       row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
     PetscCall(series_.write(row));
     if (bodies_file_) {
-      PetscCall(bodies_file_->add(state.time, records()));
+      BodySpecies all{{}, solver_->bodies().species()};
+      for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
+      PetscCall(bodies_file_->add(state.time, all, records(measured_.bodies, measured_.surfaces)));
       ++bodies_rows_;
     }
   }
@@ -306,7 +259,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.surface_energy = energy.surface;
   summary.surface_power = energy.surface_power;
   summary.bulk_velocity = measured_.flow.bulk_velocity[0];
-  summary.bodies = records();
+  PetscCall(list_bodies(&summary));
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
   counted[0] = double(solver_->bytes());
   for (const Phase &phase : state.phases) counted[1] += phase.solid.points();

@@ -52,12 +52,17 @@ public:
 private:
   int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
   bool resolved(double volume) const { return volume >= few_cells() * grid_->cell_volume(); }
-  std::vector<BodyRecord> records() const;
+  /// Of these bodies, with what else is measured of them.
+  std::vector<BodyRecord> records(const std::vector<BodyMeasure> &bodies,
+                                  const std::vector<SurfaceMeasure> &surfaces) const;
+  PetscErrorCode list_bodies(Summary *summary) const;
+  PetscErrorCode measure_drift();
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
   PetscErrorCode measure_energy(EnergyState *energy);
 
   Config config_;
+  bool membranes_ = false;
   const Grid *grid_ = nullptr;
   Solver *solver_ = nullptr;
   std::string directory_;

@@ -34,8 +34,9 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   return fields;
 }
 
-// Everything else; the arrays of bodies only where there are some.
-CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::uint64_t hash) {
+// Everything else; the arrays of bodies only where there are some, `references` those of the bodies.
+CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const std::vector<Int3> &references,
+                             std::uint64_t hash) {
   const State &s = solver.state();
   const OutputsPosition &o = position.outputs;
   CheckpointNumbers numbers;
@@ -63,7 +64,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
     const std::vector<int> &like = solver.bodies().like();
     if (!like.empty()) integers["bodies_like"].assign(like.begin(), like.end());
   }
-  for (const Int3 &cell : solver.bodies().references())
+  for (const Int3 &cell : references)
     integers["body_references"].insert(integers["body_references"].end(), cell.begin(), cell.end());
   return numbers;
 }
@@ -107,10 +108,10 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
     const std::vector<long> &inside = integers["bodies_in_feeders"];
     feeders->set_inside({inside.begin(), inside.end()});
   }
-  std::vector<Int3> cells(solver->bodies().references().size());
+  std::vector<Int3> cells(static_cast<std::size_t>(solver->bodies().bodies()));
   for (std::size_t n = 0; n < 3 * cells.size(); ++n)
     cells[n / 3][n % 3] = static_cast<int>(integers["body_references"][n]);
-  solver->bodies().set_references(cells);
+  solver->bodies().set_references(std::move(cells));
 }
 
 }  // namespace
@@ -118,9 +119,12 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
 PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
                           const std::string &path) {
   std::uint64_t hash = 0;
+  std::vector<Int3> references;
   PetscFunctionBeginUser;
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
-  PetscCall(write_checkpoint(solver->grid(), path, options, numbers_of(*solver, position, hash), fields_of(*solver)));
+  PetscCall(solver->bodies().all_references(solver->grid().comm(), &references));
+  PetscCall(write_checkpoint(solver->grid(), path, options, numbers_of(*solver, position, references, hash),
+                             fields_of(*solver)));
   PetscFunctionReturn(0);
 }
 
@@ -139,7 +143,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   position->outputs.first_volume.assign(solver->bodies().bodies(), 0);
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
-  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
+  const std::vector<Int3> places(static_cast<std::size_t>(solver->bodies().bodies()));
+  const CheckpointNumbers expected = numbers_of(*solver, *position, places, 0);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);

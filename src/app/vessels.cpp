@@ -25,19 +25,20 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
   return flows;
 }
 
-PetscErrorCode measure_vessel_loads(const Config &config, const std::vector<BodyMeasure> &bodies, Solver *solver,
-                                    std::vector<SurfaceLoad> *loads) {
+PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   const Grid &grid = solver->grid();
   loads->clear();
   std::vector<std::size_t> next(config.species.size(), 0);  // body of a species
-  for (const BodyMeasure &body : bodies) {
-    const SpeciesSpec &spec = config.species[body.species];
-    const std::size_t n = next[body.species]++;
+  int label = 0;
+  for (const int species : solver->bodies().species()) {
+    const SpeciesSpec &spec = config.species[species];
+    const std::size_t n = next[species]++;
+    ++label;
     if (!spec.bears_load() || spec.law == Law::rigid) continue;
     SurfaceLoad &load = loads->emplace_back();
-    load.label = static_cast<int>(body.label);
-    const std::vector<BodyPlace> &places = config.places[body.species];
+    load.label = label;
+    const std::vector<BodyPlace> &places = config.places[species];
     for (int d = 0; d < grid.dimension(); ++d)
       load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * grid.spec().length[d];
   }

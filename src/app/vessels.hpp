@@ -20,8 +20,7 @@ struct VesselFlow {
 std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
                                      const std::vector<SideFlow> &sides);
 
-/// Of all elastic bodies that bear loads, in the order of the bodies, `bodies`: as measured. Collective.
-PetscErrorCode measure_vessel_loads(const Config &config, const std::vector<BodyMeasure> &bodies, Solver *solver,
-                                    std::vector<SurfaceLoad> *loads);
+/// Of all elastic bodies that bear loads, in the order of the bodies. Collective.
+PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads);
 
 }  // namespace eulastic

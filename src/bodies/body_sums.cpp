@@ -6,7 +6,8 @@ namespace eulastic {
 namespace {
 
 constexpr int fixed_bits = 48;
-constexpr int low_bits = 40;
+// A sum travels as three doubles that are integers: of 2^19 ranks they stay below 2^53, and so exact.
+constexpr int words = 3, word_bits = 34;
 
 }  // namespace
 
@@ -14,16 +15,23 @@ void BodySums::add(const BodySums &other) noexcept {
   for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] += other.sums_[s];
 }
 
-PetscErrorCode BodySums::reduce(MPI_Comm comm) {
+PetscErrorCode BodySums::reduce(const BodyOwners &owners) {
+  constexpr std::int64_t mask = (std::int64_t{1} << word_bits) - 1;
   PetscFunctionBeginUser;
-  std::vector<std::int64_t> words(2 * sums_.size());
-  for (std::size_t s = 0; s < sums_.size(); ++s) {
-    words[2 * s] = static_cast<std::int64_t>(sums_[s] >> low_bits);  // floor
-    words[2 * s + 1] = static_cast<std::int64_t>(sums_[s] & ((std::int64_t{1} << low_bits) - 1));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, words.data(), static_cast<int>(words.size()), MPI_INT64_T, MPI_SUM, comm));
+  std::vector<double> here(words * sums_.size());
+  std::vector<double> owned(words * static_cast<std::size_t>(owners.owned().size()) * per_body_, 0.0);
   for (std::size_t s = 0; s < sums_.size(); ++s)
-    sums_[s] = static_cast<__int128>(words[2 * s]) * (std::int64_t{1} << low_bits) + words[2 * s + 1];
+    for (int w = 0; w < words; ++w) {
+      const auto part = static_cast<std::int64_t>(sums_[s] >> (w * word_bits));  // floor
+      here[words * s + w] = static_cast<double>(w == words - 1 ? part : part & mask);
+    }
+  PetscCall(owners.reduce(words * per_body_, MPI_SUM, here, &owned));
+  sums_.resize(owned.size() / words);
+  for (std::size_t s = 0; s < sums_.size(); ++s) {
+    sums_[s] = 0;
+    for (int w = words - 1; w >= 0; --w)
+      sums_[s] = sums_[s] * (std::int64_t{1} << word_bits) + static_cast<std::int64_t>(owned[words * s + w]);
+  }
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,7 @@
 // Exact sums per body over all ranks: fixed point in 128-bit integers.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "bodies/body_owners.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -12,13 +12,14 @@ namespace eulastic {
 /// `per_body` sums for each of `bodies` bodies. Terms are rounded to 2^-48 and may reach 2^30; sums may reach 2^54.
 class BodySums {
 public:
-  BodySums(int bodies, int per_body) : per_body_(per_body), sums_(std::size_t(bodies) * per_body) {}
+  BodySums(std::size_t bodies, int per_body) : per_body_(per_body), sums_(bodies * per_body) {}
 
   void add(int body, int s, double term) noexcept { sums_[std::size_t(body) * per_body_ + s] += fixed(term); }
   /// Adds the sums of `other`, of as many.
   void add(const BodySums &other) noexcept;
-  /// Sums over all ranks with one Allreduce of two words per sum; for at most 2^23 ranks.
-  PetscErrorCode reduce(MPI_Comm comm);
+  /// From those of the bodies that `owners` has here to the sums over all ranks of those it owns; for at most 2^19
+  /// ranks. Collective.
+  PetscErrorCode reduce(const BodyOwners &owners);
   double value(int body, int s) const noexcept;
 
 private:

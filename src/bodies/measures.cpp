@@ -21,24 +21,25 @@ constexpr int all_sums = 21, position_sums = 4;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 constexpr double full_cell = 0.999;
 
-// Calls visit(phase, body index, phi, i, j, k) for every cell of a part with a label.
+// Calls visit(phase, slot of the body, phi, i, j, k) for every cell of a part with a label.
 template <class Visit>
-void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies, Visit &&visit) {
+void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
+                   Visit &&visit) {
   for (const Phase &phase : phases) {
     const ConstView fraction = phase.fraction[0], label = phase.label[0];
     for (const Segment &whole : part.rows(grid)) {
       const Segment row = phase.rows.within(whole, label);
       for (int i = row.i_begin; i < row.i_end; ++i) {
-        const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
-        if (body >= 0 && body < bodies) visit(phase, body, fraction(i, row.j, row.k), i, row.j, row.k);
+        const int slot = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
+        if (slot >= 0) visit(phase, slot, fraction(i, row.j, row.k), i, row.j, row.k);
       }
     }
   }
 }
 
-// Calls visit(body index, phi W, tr B or 0 where phi < 1/2) for every cell of a part with a label.
+// Calls visit(slot of the body, phi W, tr B or 0 where phi < 1/2) for every cell of a part with a label.
 template <class Visit>
-void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, int bodies,
+void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
                      const RowEnergy &energy, Visit &&visit) {
   std::vector<double> density(grid.owned()[0]);
   for (const Phase &phase : phases) {
@@ -48,25 +49,26 @@ void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Ph
       const Segment row = phase.rows.within(whole, label);
       energy(grid, phase, row, density.data());
       for (int i = row.i_begin; i < row.i_end; ++i) {
-        const int body = static_cast<int>(label(i, row.j, row.k)) - 1;
-        if (body < 0 || body >= bodies) continue;
+        const int slot = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
+        if (slot < 0) continue;
         const double out_of_plane = grid.dimension() == 3 ? zz(i, row.j, row.k) : 1;
         const double trace = xx(i, row.j, row.k) + yy(i, row.j, row.k) + out_of_plane;
-        visit(body, density[i], fraction(i, row.j, row.k) >= 0.5 ? trace : 0);
+        visit(slot, density[i], fraction(i, row.j, row.k) >= 0.5 ? trace : 0);
       }
     }
   }
 }
 
-// `per_body` sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
+// Sums of owned bodies, of what add(part, sums) adds in every part of the owned rows to those that are here.
+// Collective.
 template <class Add>
-PetscErrorCode sum_bodies(const Grid &grid, const Add &add, BodySums *sums) {
+PetscErrorCode sum_bodies(const Grid &grid, const BodyOwners &owners, const Add &add, BodySums *sums) {
   PetscFunctionBeginUser;
   const int parts = row_parts(grid);
-  std::vector<BodySums> others(parts - 1, *sums);  // there may be millions of bodies: one thread needs no copy
+  std::vector<BodySums> others(parts - 1, *sums);
   in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), part == 0 ? *sums : others[part - 1]); });
   for (const BodySums &some : others) sums->add(some);
-  PetscCall(sums->reduce(grid.comm()));
+  PetscCall(sums->reduce(owners));
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +149,7 @@ void set_lengths(const std::array<double, 6> &moments, const std::array<double, 
   body->inclination = angle > -90 ? angle : 90;
 }
 
-// Scales of the fixed-point numbers, and the largest tr B of every body.
+// Scales of the fixed-point numbers, and the largest tr B of every owned body.
 struct Largest {
   double speed = 0, energy = 0;
   std::vector<double> trace;
@@ -182,58 +184,22 @@ BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &
 
 }  // namespace
 
-void BodyTracker::add_phase(const Grid &grid, const std::vector<BodyPlace> &places) {
-  for (const BodyPlace &place : places) {
-    Int3 cell{};
-    for (int d = 0; d < grid.dimension(); ++d) {
-      const int at = static_cast<int>(std::floor(place.centre[d] / grid.spacing()[d]));
-      cell[d] = std::clamp(at, 0, grid.cells()[d] - 1);
-    }
-    references_.push_back(cell);
-    species_.push_back(phases_);
-  }
-  ++phases_;
-}
-
-void BodyTracker::add_like(const Grid &grid, int label, const Int3 &shift) {
-  Int3 cell = references_[label - 1];
-  for (int d = 0; d < 3; ++d) cell[d] += shift[d];
-  references_.push_back(within_box(grid, {cell})[0]);
-  species_.push_back(species_[label - 1]);
-  like_.push_back(label);
-}
-
-void BodyTracker::complete(std::vector<double> *known) const {
-  const std::size_t scene = references_.size() - like_.size();
-  for (std::size_t b = known->size(); b >= scene && b < references_.size(); ++b)
-    known->push_back((*known)[like_[b - scene] - 1]);
-}
-
-void BodyTracker::set_like(const std::vector<long> &like) {
-  references_.resize(references_.size() - like_.size());
-  species_.resize(references_.size());
-  like_.clear();
-  for (const long label : like) {
-    references_.emplace_back();
-    species_.push_back(species_[label - 1]);
-    like_.push_back(static_cast<int>(label));
-  }
-}
-
 PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  BodySums sums(bodies(), position_sums);
-  const std::vector<Int3> references = within_box(grid, references_);
+  BodyOwners owners;
+  std::vector<Int3> references;
+  PetscCall(connect(grid, phases, {}, &owners, &references));
+  BodySums sums(references.size(), position_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, bodies(), [&](const Phase &, int b, double phi, int i, int j, int k) {
+    for_each_cell(grid, part, phases, owners, [&](const Phase &, int b, double phi, int i, int j, int k) {
       const Real3 x = offset(grid, references[b], {i, j, k});
       some.add(b, 0, phi);
       for (int d = 0; d < grid.dimension(); ++d) some.add(b, first_moment + d, phi * x[d]);
     });
   };
-  PetscCall(sum_bodies(grid, add, &sums));
-  for (int b = 0; b < bodies(); ++b)
+  PetscCall(sum_bodies(grid, owners, add, &sums));
+  for (int b = 0; b < owners.owned().size(); ++b)
     for (int d = 0; d < grid.dimension(); ++d) {
       const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
       // A body that fills a periodic direction has a mean of -1/2 there and must stay.
@@ -243,7 +209,7 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
 }
 
 PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
-                                    const RowEnergy &energy, std::vector<BodyMeasure> *result) const {
+                                    const RowEnergy &energy, std::vector<BodyMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   const int dimension = grid.dimension();
@@ -251,25 +217,31 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
     const double *face = &velocity[d](i, j, k);
     return (face[0] + face[velocity[d].stride(d)]) / 2;
   };
-  // Speed, energy density, tr B of every body.
-  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2 + bodies(), 0.0));
+  BodyOwners owners;
+  std::vector<Int3> references;
+  PetscCall(connect(grid, phases, {}, &owners, &references));
+  // Speed and energy density of all, tr B of every body.
+  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0));
+  std::vector<std::vector<double>> traces(found.size(), std::vector<double>(references.size(), 0.0));
   in_row_parts(grid, [&](const RowPart &part) {
-    std::vector<double> &some = found[part.number];
-    for_each_cell(grid, part, phases, bodies(), [&](const Phase &, int, double, int i, int j, int k) {
+    std::vector<double> &some = found[part.number], &trace_of = traces[part.number];
+    for_each_cell(grid, part, phases, owners, [&](const Phase &, int, double, int i, int j, int k) {
       for (int d = 0; d < dimension; ++d) some[0] = std::max(some[0], std::abs(centred(d, i, j, k)));
     });
-    for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double trace) {
+    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double trace) {
       some[1] = std::max(some[1], std::abs(density));
-      some[2 + b] = std::max(some[2 + b], trace);
+      trace_of[b] = std::max(trace_of[b], trace);
     });
   });
   std::vector<double> most;
   PetscCall(reduce_maxima(grid.comm(), found, &most));
-  const Largest largest{most[0], most[1], {most.begin() + 2, most.end()}};
-  BodySums sums(bodies(), all_sums);
-  const std::vector<Int3> references = within_box(grid, references_);
+  Largest largest{most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
+  for (const std::vector<double> &some : traces)
+    for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
+  PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest.trace));
+  BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, bodies(), [&](const Phase &phase, int b, double phi, int i, int j, int k) {
+    for_each_cell(grid, part, phases, owners, [&](const Phase &phase, int b, double phi, int i, int j, int k) {
       const Real3 x = offset(grid, references[b], {i, j, k});
       some.add(b, 0, phi);
       for (int d = 0; d < dimension; ++d) {
@@ -289,16 +261,16 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
         some.add(b, mean_tensor + (p == q ? p : 6 - p - q), value);
       }
     });
-    for_each_strain(grid, part, phases, bodies(), energy, [&](int b, double density, double) {
+    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double) {
       if (largest.energy > 0) some.add(b, strain, density / largest.energy);
     });
   };
-  PetscCall(sum_bodies(grid, add, &sums));
+  PetscCall(sum_bodies(grid, owners, add, &sums));
   result->clear();
-  for (int b = 0; b < bodies(); ++b) {
+  for (int b = 0; b < owners.owned().size(); ++b) {
     result->push_back(evaluate(grid, sums, b, references_[b], largest));
-    result->back().label = b + 1;
-    result->back().species = species_[b];
+    result->back().label = owners.owned().begin + b + 1;
+    result->back().species = species_[result->back().label - 1];
   }
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,12 @@
 // What is known of every body: volume, unwrapped centroid, velocity, lengths, deformation, inclination, strain.
 //
 // From the sums of phi, phi x, phi x x, phi u and phi W over the cells of a label, x in whole cells from a reference
-// cell that follows the body. Sums are integers: the same bits on any ranks. sum phi x x holds h^2/12 per volume too
-// much, on average over the positions of a curved surface in its cells (phi is averaged over a cell): it is subtracted.
+// cell that follows the body. Sums are integers: the same bits on any ranks. Every rank knows the bodies that it owns.
+// sum phi x x holds h^2/12 per volume too much, on average over the positions of a curved surface in its cells (phi is
+// averaged over a cell): it is subtracted.
 #pragma once
 
+#include "bodies/body_owners.hpp"
 #include "bodies/placement.hpp"
 #include "field/phase.hpp"
 
@@ -37,29 +39,40 @@ public:
   /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
   void add_phase(const Grid &grid, const std::vector<BodyPlace> &places);
   /// Another body, like the one with this label, as many cells away.
-  void add_like(const Grid &grid, int label, const Int3 &shift);
+  PetscErrorCode add_like(const Grid &grid, int label, const Int3 &shift);
   /// Labels that others were made like; those others come last, in this order.
   const std::vector<int> &like() const { return like_; }
   /// Adds to what is known of the first bodies, at least all of the scene, the same of those made like them.
   void complete(std::vector<double> *known) const;
   /// All of them again, to be followed by set_references().
   void set_like(const std::vector<long> &like);
-  int bodies() const { return static_cast<int>(references_.size()); }
+  int bodies() const { return static_cast<int>(species_.size()); }
+  /// Index of the phase of every body.
+  const std::vector<int> &species() const { return species_; }
+
+  /// Who owns the bodies of which a rank has labelled cells, or that it names in `more`; `references`: of these, within
+  /// the box. Collective.
+  PetscErrorCode connect(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &more,
+                         BodyOwners *owners, std::vector<Int3> *references);
 
   /// Moves the reference cells to the centroids. Call after carry_labels(), on its schedule and nowhere else: then
-  /// the unwrapping never depends on how often bodies are measured. One Allreduce.
+  /// the unwrapping never depends on how often bodies are measured. Collective.
   PetscErrorCode follow(const Grid &grid, const std::vector<Phase> &phases);
-  /// Measures all bodies, changing nothing; every rank gets the result. `velocity`: u, v (, w) on faces with one
-  /// valid ghost layer, as phi and B. Two Allreduces.
+  /// Measures all bodies, changing nothing; every rank gets those that it owns. `velocity`: u, v (, w) on faces with
+  /// one valid ghost layer, as phi and B. Collective.
   PetscErrorCode measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
-                         const RowEnergy &energy, std::vector<BodyMeasure> *bodies) const;
+                         const RowEnergy &energy, std::vector<BodyMeasure> *bodies);
 
-  /// Unwrapped reference cells, one per body: with the fields, all a restart needs.
-  const std::vector<Int3> &references() const { return references_; }
-  void set_references(const std::vector<Int3> &references) { references_ = references; }
+  /// Unwrapped reference cells of all bodies: with the fields, all a restart needs. Collective.
+  PetscErrorCode all_references(MPI_Comm comm, std::vector<Int3> *all) const;
+  void set_references(std::vector<Int3> all) {
+    references_ = std::move(all);
+    shared_ = false;
+  }
 
 private:
-  std::vector<Int3> references_;
+  std::vector<Int3> references_;  ///< of the bodies that this rank owns; of all while not shared_
+  bool shared_ = false;
   std::vector<int> species_, like_;
   int phases_ = 0;
 };

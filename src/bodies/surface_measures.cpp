@@ -80,11 +80,11 @@ double scaled(double value, double scale) { return scale > 0 ? value / scale : 0
 }  // namespace
 
 PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
-                                const std::vector<SurfaceSample> &samples, const std::vector<Int3> &references,
-                                std::vector<SurfaceMeasure> *result) {
+                                const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
+                                const std::vector<Int3> &references, std::vector<SurfaceMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dim = grid.dimension(), bodies = static_cast<int>(references.size());
+  const int dim = grid.dimension();
   const Real3 &h = grid.spacing();
   const double face = *std::min_element(h.begin(), h.begin() + dim);
   double unit = 1;  // of areas
@@ -99,12 +99,11 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
   std::vector<double> most;
   PetscCall(reduce_maxima(grid.comm(), found, &most));
   const Scales scale(most);
-  const std::vector<Int3> near = within_box(grid, references);
-  BodySums sums(bodies, all_sums);
+  BodySums sums(references.size(), all_sums);
   for (const SurfaceSample &s : samples) {
-    const int b = s.label - 1;
-    if (b < 0 || b >= bodies) continue;
-    const Real3 x = offset(grid, near[b], s.place);
+    const int b = owners.slot(s.label - 1);
+    if (b < 0) continue;
+    const Real3 x = offset(grid, references[b], s.place);
     const double w = s.delta * face;
     sums.add(b, weight, w);
     for (int d = 0; d < dim; ++d) {
@@ -125,14 +124,15 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
       if (phase.rows.idle(row.j, row.k)) continue;
       const double *q = phi.row(row.j, row.k);
       for (int i = row.i_begin; i < row.i_end; ++i) {
-        const int b = static_cast<int>(label(i, row.j, row.k)) - 1;
-        if (b >= 0 && b < bodies) sums.add(b, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, q + i, h) / unit);
+        const int b = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
+        if (b >= 0) sums.add(b, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, q + i, h) / unit);
       }
     }
   }
-  PetscCall(sums.reduce(grid.comm()));
-  result->assign(bodies, {});
-  for (int b = 0; b < bodies; ++b)
+  PetscCall(sums.reduce(owners));
+  const int owned = owners.owned().size();
+  result->assign(owned, {});
+  for (int b = 0; b < owned; ++b)
     (*result)[b] = {sums.value(b, area) * unit, sums.value(b, energies) * scale.shear,
                     sums.value(b, energies + 1) * scale.area, sums.value(b, energies + 2) * scale.bending,
                     turning_rate(sums, b, h, dim, scale.speed)};

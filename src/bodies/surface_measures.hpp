@@ -1,6 +1,7 @@
 // What is known of the surface of every membrane: its area, energies, and how fast it goes round.
 #pragma once
 
+#include "bodies/body_owners.hpp"
 #include "field/phase.hpp"
 #include "field/surface_sample.hpp"
 
@@ -15,10 +16,10 @@ struct SurfaceMeasure {
   double turning_rate = 0;
 };
 
-/// Of every body of a membrane, by label - 1 for as many as there are in `references`, unwrapped cells near the bodies
-/// (BodyTracker). One ghost of phi. Exact sums; two Allreduces.
+/// Of the bodies that this rank owns; `references`: cells near the bodies that are here (BodyTracker::connect). One
+/// ghost of phi. Exact sums. Collective.
 PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
-                                const std::vector<SurfaceSample> &samples, const std::vector<Int3> &references,
-                                std::vector<SurfaceMeasure> *bodies);
+                                const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
+                                const std::vector<Int3> &references, std::vector<SurfaceMeasure> *bodies);
 
 }  // namespace eulastic

@@ -1,9 +1,9 @@
 #include "io/bodies_file.hpp"
 
+#include "base/body_range.hpp"
 #include "base/events.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
-#include "io/hdf5_handle.hpp"
 #include "io/text_file.hpp"
 
 #include <algorithm>
@@ -17,6 +17,8 @@ namespace eulastic {
 namespace {
 
 constexpr std::size_t waiting_bytes_max = 64u << 20;
+constexpr int block = 1 << 17;  // bodies that rank 0 collects at once
+constexpr hsize_t chunk_bodies = 1 << 13;
 
 // The directory is locked, and not all file systems can.
 Hdf5Property unlocked_access() {
@@ -35,18 +37,19 @@ bool write_text_attribute(hid_t object, const char *name, const std::string &tex
 }
 
 // `id` and `species`: who the bodies are.
-bool write_bodies(hid_t file, const std::vector<BodyRecord> &bodies) {
+bool write_bodies(hid_t file, const BodySpecies &bodies) {
   for (const char *name : {"id", "species"})
     if (H5Lexists(file, name, H5P_DEFAULT) > 0 && H5Ldelete(file, name, H5P_DEFAULT) < 0) return false;
   std::vector<long> ids;
   std::size_t width = 1;
-  for (const BodyRecord &body : bodies) {
-    ids.push_back(body.id);
-    width = std::max(width, body.species.size());
+  for (const int species : bodies.of) {
+    ids.push_back(static_cast<long>(ids.size()) + 1);
+    width = std::max(width, bodies.names[species].size());
   }
   std::string names;
-  for (const BodyRecord &body : bodies) names += body.species + std::string(width - body.species.size(), '\0');
-  const hsize_t count = bodies.size();
+  for (const int species : bodies.of)
+    names += bodies.names[species] + std::string(width - bodies.names[species].size(), '\0');
+  const hsize_t count = bodies.of.size();
   const Hdf5Space space(H5Screate_simple(1, &count, nullptr));
   const Hdf5Type text = hdf5_string(width);
   const Hdf5Dataset id(H5Dcreate2(file, "id", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -60,32 +63,44 @@ bool write_bodies(hid_t file, const std::vector<BodyRecord> &bodies) {
 // What is said of a body in rows from before it came in.
 double before_it_came(const std::string &column) { return column == "volume" ? 0 : std::nan(""); }
 
-// Rows [begin, begin + count) of a dataset of shape (rows), (rows, bodies) or (rows, bodies, width).
-bool append_rows(hid_t file, const char *name, hsize_t begin, hsize_t count, hsize_t bodies, hsize_t width,
-                 const std::vector<double> &values, const std::string &sum) {
-  const int rank = width == 0 ? 1 : width == 1 ? 2 : 3;
-  const hsize_t row = std::max<hsize_t>(1, bodies * width);
-  const hsize_t start[3] = {begin, 0, 0}, size[3] = {count, bodies, width}, total[3] = {begin + count, bodies, width};
-  Hdf5Dataset dataset;
-  if (begin == 0) {
-    const hsize_t limit[3] = {H5S_UNLIMITED, H5S_UNLIMITED, width};
-    const hsize_t chunk[3] = {std::clamp<hsize_t>(8192 / row, 1, 1024), bodies, width};  // 64 kB
-    const Hdf5Space space(H5Screate_simple(rank, total, limit));
-    const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
-    (void)H5Pset_chunk(creation.get(), rank, chunk);
-    const double before = before_it_came(name);
-    (void)H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &before);
-    dataset =
-        Hdf5Dataset(H5Dcreate2(file, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
-  } else {
-    dataset = Hdf5Dataset(H5Dopen2(file, name, H5P_DEFAULT));
-    if (H5Dset_extent(dataset.get(), total) < 0) return false;
+// A part of a dataset of shape (rows), (rows, bodies) or (rows, bodies, width): its first row and body, how many.
+struct Part {
+  hsize_t row, rows, body, bodies, width;
+  int rank() const { return width == 0 ? 1 : width == 1 ? 2 : 3; }
+};
+
+bool set_rows(hid_t file, const char *name, const Part &whole) {
+  const hsize_t total[3] = {whole.row + whole.rows, whole.bodies, whole.width};
+  if (H5Lexists(file, name, H5P_DEFAULT) > 0) {
+    Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+    return H5Dset_extent(dataset.get(), total) >= 0 && dataset.close();
   }
-  const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(rank, size, nullptr));
+  const hsize_t chunk_row = std::min(std::max<hsize_t>(1, whole.bodies), chunk_bodies);
+  const hsize_t limit[3] = {H5S_UNLIMITED, H5S_UNLIMITED, whole.width};
+  const hsize_t values = chunk_row * std::max<hsize_t>(1, whole.width);
+  const hsize_t chunk[3] = {std::clamp<hsize_t>(8192 / values, 1, 1024), chunk_row, whole.width};  // 64 kB
+  const Hdf5Space space(H5Screate_simple(whole.rank(), total, limit));
+  const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
+  (void)H5Pset_chunk(creation.get(), whole.rank(), chunk);
+  const double before = before_it_came(name);
+  (void)H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &before);
+  Hdf5Dataset dataset(H5Dcreate2(file, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
+  return dataset.close();
+}
+
+bool write_part(hid_t file, const char *name, const Part &part, const std::vector<double> &values) {
+  const hsize_t start[3] = {part.row, part.body, 0}, size[3] = {part.rows, part.bodies, part.width};
+  Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+  const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(part.rank(), size, nullptr));
   return H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, size, nullptr) >= 0 &&
          H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) >=
              0 &&
-         write_text_attribute(dataset.get(), "checksum", sum) && dataset.close();
+         dataset.close();
+}
+
+bool write_checksum(hid_t file, const char *name, std::uint64_t sum) {
+  Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+  return write_text_attribute(dataset.get(), "checksum", checksum_text(sum)) && dataset.close();
 }
 
 // Gives all rows of a dataset another number of bodies.
@@ -149,64 +164,45 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool membranes, bool loads)
     : comm_(comm), path_(std::move(path)), membranes_(membranes), loads_(loads) {
-  columns_ = {{"time", 0, {}, 0}, {"centroid", 3, {}, 0}, {"velocity", 3, {}, 0}};
+  columns_ = {{"centroid", 3, 0}, {"velocity", 3, 0}};
   for (const char *name :
        {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch", "rest_deformation"})
-    columns_.push_back({name, 1, {}, 0});
+    columns_.push_back({name, 1, 0});
   for (const char *name : {"surface_area", "shear_energy", "area_energy", "bending_energy", "turning_rate"})
-    if (membranes) columns_.push_back({name, 1, {}, 0});
+    if (membranes) columns_.push_back({name, 1, 0});
   for (const char *name : {"force", "torque"})
-    if (loads) columns_.push_back({name, 3, {}, 0});
+    if (loads) columns_.push_back({name, 3, 0});
+  for (const Column &column : columns_) width_ += column.width;
   (void)MPI_Comm_rank(comm, &rank_);
+  (void)MPI_Comm_size(comm, &ranks_);
 }
 
-std::vector<double> BodiesFile::scalars(const BodyRecord &body) const {
-  std::vector<double> values{body.volume,         body.taylor_deformation, body.inclination,
-                             body.elastic_energy, body.largest_stretch,    body.rest_deformation};
-  if (membranes_)
-    values.insert(values.end(),
-                  {body.surface_area, body.shear_energy, body.area_energy, body.bending_energy, body.turning_rate});
-  return values;
-}
-
-PetscErrorCode BodiesFile::add(double time, const std::vector<BodyRecord> &bodies) {
-  std::string problem;
+PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned) {
   PetscFunctionBeginUser;
-  if (rank_ == 0 && bodies.size() > known_.size()) get_to_know(bodies);
-  if (bodies.size() != known_.size() && rank_ == 0) {
-    problem = path_ + ": the number of bodies has become smaller";
-  } else if (!known_.empty()) {
-    columns_[0].waiting.push_back(time);
-    for (const BodyRecord &body : bodies) {
-      columns_[1].waiting.insert(columns_[1].waiting.end(), body.centroid.begin(), body.centroid.end());
-      columns_[2].waiting.insert(columns_[2].waiting.end(), body.velocity.begin(), body.velocity.end());
-      const std::vector<double> values = scalars(body);
-      for (std::size_t c = 0; c < values.size(); ++c) columns_[3 + c].waiting.push_back(values[c]);
-      for (std::size_t c = 0; loads_ && c < 2; ++c) {
-        const Real3 &load = c == 0 ? body.force : body.torque;
-        std::vector<double> &waiting = columns_[3 + values.size() + c].waiting;
-        waiting.insert(waiting.end(), load.begin(), load.end());
-      }
-    }
-    ++waiting_;
-    const std::size_t bytes =
-        waiting_ * (1 + (12 + (membranes_ ? 5 : 0) + (loads_ ? 6 : 0)) * bodies.size()) * sizeof(double);
-    if (4 * waiting_ >= written_ || bytes >= waiting_bytes_max) problem = write_waiting();
+  const bool fewer = all.of.size() < known_.of.size();
+  PetscCall(fail_together(comm_, fewer ? path_ + ": the number of bodies has become smaller" : std::string()));
+  if (all.of.size() > known_.of.size()) {
+    PetscCall(write_waiting());  // ranks will own others
+    known_ = all;
   }
-  PetscCall(fail_together(comm_, problem));
+  if (known_.of.empty()) PetscFunctionReturn(0);
+  times_.push_back(time);
+  const auto put = [&](const Real3 &vector) { waiting_.insert(waiting_.end(), vector.begin(), vector.end()); };
+  for (const BodyRecord &b : owned) {
+    put(b.centroid);
+    put(b.velocity);
+    waiting_.insert(waiting_.end(), {b.volume, b.taylor_deformation, b.inclination, b.elastic_energy, b.largest_stretch,
+                                     b.rest_deformation});
+    if (membranes_)
+      waiting_.insert(waiting_.end(),
+                      {b.surface_area, b.shear_energy, b.area_energy, b.bending_energy, b.turning_rate});
+    if (!loads_) continue;
+    put(b.force);
+    put(b.torque);
+  }
+  const std::size_t bytes = times_.size() * (1 + width_ * known_.of.size()) * sizeof(double);
+  if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
   PetscFunctionReturn(0);
-}
-
-void BodiesFile::get_to_know(const std::vector<BodyRecord> &bodies) {
-  for (Column &column : columns_) {
-    if (column.width == 0) continue;
-    const std::size_t more = (bodies.size() - known_.size()) * column.width;
-    for (std::size_t row = 1; row <= waiting_; ++row)
-      column.waiting.insert(
-          column.waiting.begin() + static_cast<std::ptrdiff_t>(row * bodies.size() * column.width - more), more,
-          before_it_came(column.name));
-  }
-  known_ = bodies;
 }
 
 std::string BodiesFile::cut(std::size_t rows) {
@@ -220,13 +216,13 @@ std::string BodiesFile::cut(std::size_t rows) {
   if (std::string problem = copy_file(path_, target); !problem.empty()) return problem;
   Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
   bool fine = bool(file);
+  fine = fine && cut_rows(file.get(), "time", rows, &time_checksum_);
   for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
   if (!file.close() || !fine) {
     std::filesystem::remove(target, error);
     return path_ +
            ": damaged, or has fewer rows than the checkpoint says; moving it away lets the restart begin a new one";
   }
-  written_ = rows;
   stored_ = unknown;
   return replace_file(path_);
 }
@@ -237,42 +233,115 @@ PetscErrorCode BodiesFile::resume(long *rows) {
   if (rank_ == 0 && !std::filesystem::exists(path_, ignored)) *rows = 0;
   PetscCallMPI(MPI_Bcast(rows, 1, MPI_LONG, 0, comm_));
   PetscCall(fail_together(comm_, rank_ == 0 ? cut(static_cast<std::size_t>(*rows)) : std::string()));
+  written_ = static_cast<std::size_t>(*rows);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodiesFile::flush() {
   PetscFunctionBeginUser;
-  PetscCall(fail_together(comm_, rank_ == 0 && waiting_ > 0 ? write_waiting() : std::string()));
+  PetscCall(write_waiting());
   PetscFunctionReturn(0);
 }
 
-std::string BodiesFile::write_waiting() {
+// What waits of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
+PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
+  PetscFunctionBeginUser;
+  const std::size_t rows = times_.size();
+  const auto share = [&](int rank) {
+    const BodyRange range = BodyRange::of(static_cast<int>(known_.of.size()), rank, ranks_);
+    return BodyRange{std::clamp(begin, range.begin, range.end), std::clamp(end, range.begin, range.end)};
+  };
+  const BodyRange own = BodyRange::of(static_cast<int>(known_.of.size()), rank_, ranks_), mine = share(rank_);
+  std::vector<double> sent;
+  for (int b = mine.begin - own.begin; b < mine.end - own.begin; ++b)
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double *first = waiting_.data() + (row * own.size() + b) * width_;
+      sent.insert(sent.end(), first, first + width_);
+    }
+  std::vector<int> counts(ranks_), begins(ranks_ + 1, 0);
+  for (int r = 0; r < ranks_; ++r) {
+    counts[r] = share(r).size();
+    begins[r + 1] = begins[r] + counts[r];
+  }
+  if (rank_ == 0) values->resize(begins[ranks_] * rows * width_);
+  MPI_Datatype body;
+  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(rows) * width_, MPI_DOUBLE, &body));
+  PetscCallMPI(MPI_Type_commit(&body));
+  PetscCallMPI(
+      MPI_Gatherv(sent.data(), mine.size(), body, values->data(), counts.data(), begins.data(), body, 0, comm_));
+  PetscCallMPI(MPI_Type_free(&body));
+  PetscFunctionReturn(0);
+}
+
+// Of bodies [begin, end), as collected.
+bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<double> &values) {
+  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin), all = known_.of.size();
+  std::size_t first = 0;  // of the column
+  for (Column &column : columns_) {
+    const auto width = static_cast<std::size_t>(column.width);
+    std::vector<double> part(rows * bodies * width);
+    for (std::size_t row = 0; row < rows; ++row) {
+      double *const to = part.data() + row * bodies * width;
+      for (std::size_t b = 0; b < bodies; ++b)
+        std::copy_n(values.data() + (b * rows + row) * width_ + first, width, to + b * width);
+      column.checksum += checksum(to, bodies * width, ((written_ + row) * all + begin) * width);
+    }
+    if (!write_part(file, column.name, {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
+      return false;
+    first += width;
+  }
+  return true;
+}
+
+PetscErrorCode BodiesFile::write_waiting() {
+  PetscFunctionBeginUser;
+  if (times_.empty()) PetscFunctionReturn(0);
   VerbScope scope(Verb::write);
-  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hsize_t rows = times_.size(), bodies = known_.of.size();
   const std::string target = temporary_name(path_);
   std::error_code error;
-  if (std::string problem = written_ > 0 ? copy_file(path_, target) : ""; !problem.empty()) return problem;
-  const Hdf5Property access = unlocked_access();
-  Hdf5FileHandle file(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
-                                    : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
-  if (!file) return path_ + ": cannot be opened (" + std::strerror(errno) + ")";
-  bool fine = stored_ == known_.size() || write_bodies(file.get(), known_);
-  for (Column &column : columns_) {
-    if (written_ > 0 && stored_ != known_.size() && column.width > 0)
-      fine = fine && set_bodies(file.get(), column.name, known_.size(), &column.checksum);
-    const std::size_t row = column.width == 0 ? 1 : column.width * known_.size();
-    column.checksum += checksum(column.waiting.data(), column.waiting.size(), written_ * row);
-    fine = fine && append_rows(file.get(), column.name, written_, waiting_, known_.size(), column.width, column.waiting,
-                               checksum_text(column.checksum));
-    column.waiting.clear();
+  std::string problem;
+  Hdf5FileHandle file;
+  bool fine = true;
+  if (rank_ == 0) {
+    (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    problem = written_ > 0 ? copy_file(path_, target) : "";
+    const Hdf5Property access = unlocked_access();
+    if (problem.empty())
+      file = Hdf5FileHandle(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
+                                          : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
+    if (problem.empty() && !file) problem = path_ + ": cannot be opened (" + std::strerror(errno) + ")";
+    fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
+    for (Column &column : columns_) {
+      if (written_ > 0 && stored_ != bodies)
+        fine = fine && set_bodies(file.get(), column.name, bodies, &column.checksum);
+      fine = fine && set_rows(file.get(), column.name, {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
+    }
   }
-  if (!file.close() || !fine) {
-    std::filesystem::remove(target, error);
-    return path_ + ": cannot be written (disk full?)";
+  std::vector<double> values;
+  for (int begin = 0; begin < static_cast<int>(bodies); begin += block) {
+    const int end = std::min(begin + block, static_cast<int>(bodies));
+    PetscCall(collect(begin, end, &values));
+    if (rank_ == 0) fine = fine && write_block(file.get(), begin, end, values);
   }
-  stored_ = known_.size();
-  written_ += std::exchange(waiting_, 0);
-  return replace_file(path_);
+  if (rank_ == 0 && problem.empty()) {
+    time_checksum_ += checksum(times_.data(), rows, written_);
+    fine = fine && set_rows(file.get(), "time", {written_, rows, 0, 0, 0}) &&
+           write_part(file.get(), "time", {written_, rows, 0, 0, 0}, times_) &&
+           write_checksum(file.get(), "time", time_checksum_);
+    for (const Column &column : columns_) fine = fine && write_checksum(file.get(), column.name, column.checksum);
+    if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
+    if (problem.empty())
+      problem = replace_file(path_);
+    else
+      std::filesystem::remove(target, error);
+  }
+  PetscCall(fail_together(comm_, problem));
+  stored_ = bodies;
+  written_ += rows;
+  times_.clear();
+  waiting_.clear();
+  PetscFunctionReturn(0);
 }
 
 }  // namespace eulastic

@@ -1,16 +1,26 @@
 // bodies.h5: the history of every body, as extendible datasets.
 //
-// An HDF5 file that is open when its process is killed cannot be read. So rows wait in memory, and now and then the
-// file is copied, extended, synced and renamed: whenever the rows have grown by a quarter, or wait in 64 MB, and on
-// flush(). Cost: at most about five times the bytes of the final file; a kill loses at most a fifth of the rows.
+// An HDF5 file that is open when its process is killed cannot be read. So rows wait in memory, each rank's of the
+// bodies that it owns, and now and then rank 0 collects them: the file is copied, extended, synced and renamed whenever
+// the rows have grown by a quarter, or wait in 64 MB, when bodies come in, and on flush(). Cost: at most about five
+// times the bytes of the final file; a kill loses at most a fifth of the rows. Rank 0 holds what waits of some 100,000
+// bodies at a time.
 #pragma once
 
 #include "io/body_record.hpp"
+#include "io/hdf5_handle.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace eulastic {
+
+/// Species of all bodies: names, and the index of that of each.
+struct BodySpecies {
+  std::vector<std::string> names;
+  std::vector<int> of;
+};
 
 class BodiesFile {
 public:
@@ -18,9 +28,9 @@ public:
   /// loads.
   BodiesFile(MPI_Comm comm, std::string path, bool membranes = false, bool loads = false);
 
-  /// Collective. One row; rank 0's records count, always the same bodies in the same order, others may follow: in
-  /// earlier rows those have the volume 0 and no other number. No bodies, no file.
-  PetscErrorCode add(double time, const std::vector<BodyRecord> &bodies);
+  /// Collective. One row; every rank has records of the bodies that it owns (BodyRange), always the same in the same
+  /// order; others may follow: in earlier rows those have the volume 0 and no other number. No bodies, no file.
+  PetscErrorCode add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned);
   void moved_to(const std::string &path) { path_ = path; }
   /// Collective. All rows so far are on disk when this returns.
   PetscErrorCode flush();
@@ -29,26 +39,28 @@ public:
   PetscErrorCode resume(long *rows);
 
 private:
-  std::vector<double> scalars(const BodyRecord &body) const;  ///< of the columns behind the vectors
   struct Column {
     const char *name;
-    int width;  ///< values per body; 0 = one per row
-    std::vector<double> waiting;
+    int width;  ///< values per body
     std::uint64_t checksum;
   };
-  void get_to_know(const std::vector<BodyRecord> &bodies);
   std::string cut(std::size_t rows);  ///< rank 0; empty, or what went wrong
-  std::string write_waiting();        ///< rank 0; empty, or what went wrong
+  PetscErrorCode write_waiting();     ///< collective
+  PetscErrorCode collect(int begin, int end, std::vector<double> *values) const;
+  bool write_block(hid_t file, int begin, int end, const std::vector<double> &values);
 
   MPI_Comm comm_;
-  int rank_ = 0;
+  int rank_ = 0, ranks_ = 1;
   std::string path_;
-  std::vector<BodyRecord> known_;  ///< who the bodies are
+  BodySpecies known_;  ///< who the bodies are
   std::vector<Column> columns_;
+  int width_ = 0;  ///< values of a body in a row
   bool membranes_, loads_;
   static constexpr std::size_t unknown = ~std::size_t(0);
-  std::size_t written_ = 0, waiting_ = 0;  ///< rows
-  std::size_t stored_ = unknown;           ///< bodies of the rows that are written
+  std::vector<double> times_, waiting_;  ///< rows that wait: (rows), (rows, owned bodies, width_)
+  std::uint64_t time_checksum_ = 0;
+  std::size_t written_ = 0;       ///< rows
+  std::size_t stored_ = unknown;  ///< bodies of the rows that are written
 };
 
 }  // namespace eulastic

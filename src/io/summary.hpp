@@ -32,7 +32,8 @@ struct Summary {
     double flow_rate, pressure;
   };
   std::vector<SideRecord> sides;  ///< that volume crosses
-  std::vector<BodyRecord> bodies;
+  static constexpr int most_bodies = 500;
+  std::vector<BodyRecord> bodies;  ///< the first of them
 };
 
 std::string summary_text(const Summary &summary);

@@ -105,7 +105,7 @@ PetscErrorCode Solver::feed_bodies() {
         if (now_.phases[p].species == now_.phases[copy.phase].species && !room.near[p]) break;
       if (p == phases) add_colour(*grid_, copy.phase, &now_.phases);
     }
-    bodies_.add_like(*grid_, copy.label, shift);
+    PetscCall(bodies_.add_like(*grid_, copy.label, shift));
     feeders_->come_in(copy.label);
     feeders_->forget(copy.label);
     put_body(*grid_, copy, shift, bodies_.bodies(), &now_.phases[p]);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eulastic {
 
@@ -108,27 +109,32 @@ PetscErrorCode Feeders::recall_velocity(const FieldBlock &velocity, BoxSides *si
   PetscFunctionReturn(0);
 }
 
-// Of every body a bit for each stretch that has a cell of it.
-PetscErrorCode Feeders::find_bodies(const std::vector<Phase> &phases, int bodies, std::vector<unsigned> *where) const {
+// Of each of these bodies, ascending, a bit for each stretch that has a cell of it.
+PetscErrorCode Feeders::find_bodies(const std::vector<Phase> &phases, const std::vector<int> &labels,
+                                    std::vector<unsigned> *where) const {
   PetscFunctionBeginUser;
-  where->assign(bodies, 0);
+  where->assign(labels.size(), 0);
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     for (const Phase &phase : phases) {
       if (!phase.label || phase.material.is_rigid()) continue;
       const BodyCells cells{phase.label[0], phase.fraction[0]};
       for_cells(stretches_[s], [&](int i, int j, int k) {
         const int label = static_cast<int>(cells(i, j, k));
-        if (label > 0 && label <= bodies) (*where)[label - 1] |= 1U << s;
+        const auto at = std::lower_bound(labels.begin(), labels.end(), label);
+        if (at != labels.end() && *at == label) (*where)[at - labels.begin()] |= 1U << s;
       });
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, where->data(), bodies, MPI_UNSIGNED, MPI_BOR, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, where->data(), static_cast<int>(where->size()), MPI_UNSIGNED, MPI_BOR,
+                             grid_->comm()));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Feeders::start(const std::vector<Phase> &phases, int bodies) {
   std::vector<unsigned> where;
+  std::vector<int> all(bodies);
   PetscFunctionBeginUser;
-  PetscCall(find_bodies(phases, bodies, &where));
+  std::iota(all.begin(), all.end(), 1);
+  PetscCall(find_bodies(phases, all, &where));
   inside_.assign(bodies, 0);
   for (int b = 0; b < bodies; ++b)
     for (int s = static_cast<int>(stretches_.size()) - 1; s >= 0; --s)
@@ -137,13 +143,15 @@ PetscErrorCode Feeders::start(const std::vector<Phase> &phases, int bodies) {
 }
 
 PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const {
-  const int bodies = static_cast<int>(inside_.size());
   std::vector<unsigned> where;
+  std::vector<int> inside;
   PetscFunctionBeginUser;
   labels->clear();
-  PetscCall(find_bodies(phases, bodies, &where));
-  for (int b = 0; b < bodies; ++b)
-    if (inside_[b] > 0 && !(where[b] >> (inside_[b] - 1) & 1U)) labels->push_back(b + 1);
+  for (std::size_t b = 0; b < inside_.size(); ++b)
+    if (inside_[b] > 0) inside.push_back(static_cast<int>(b) + 1);
+  PetscCall(find_bodies(phases, inside, &where));
+  for (std::size_t n = 0; n < inside.size(); ++n)
+    if (!(where[n] >> (inside_[inside[n] - 1] - 1) & 1U)) labels->push_back(inside[n]);
   PetscFunctionReturn(0);
 }
 

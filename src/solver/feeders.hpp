@@ -51,7 +51,8 @@ private:
   };
   template <class Visit>
   void for_cells(const Stretch &stretch, const Visit &visit) const;  ///< owned ones, and those just beyond
-  PetscErrorCode find_bodies(const std::vector<Phase> &phases, int bodies, std::vector<unsigned> *where) const;
+  PetscErrorCode find_bodies(const std::vector<Phase> &phases, const std::vector<int> &labels,
+                             std::vector<unsigned> *where) const;
 
   const Grid *grid_ = nullptr;
   std::vector<Stretch> stretches_;

@@ -49,8 +49,13 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   if (!membranes_) PetscFunctionReturn(0);
   std::vector<SurfaceSample> samples;
   PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
-  if (bodies && bodies_.bodies() > 0)
-    PetscCall(measure_surfaces(*grid_, *phases, samples, bodies_.references(), bodies));
+  if (!bodies || bodies_.bodies() == 0) PetscFunctionReturn(0);
+  BodyOwners owners;
+  std::vector<Int3> references;
+  std::vector<int> labels;
+  for (const SurfaceSample &sample : samples) labels.push_back(sample.label);
+  PetscCall(bodies_.connect(*grid_, *phases, labels, &owners, &references));
+  PetscCall(measure_surfaces(*grid_, *phases, samples, owners, references, bodies));
   PetscFunctionReturn(0);
 }
 

@@ -42,11 +42,13 @@ PetscErrorCode advance(Solver *solver, int steps, double dt) {
 }
 
 std::vector<double> volumes(Solver &solver) {
-  std::vector<BodyMeasure> bodies;
+  std::vector<BodyMeasure> owned, bodies;
   std::vector<double> all;
   const std::vector<Phase> *phases = nullptr;
   EXPECT_EQ(solver.phases_now(&phases), 0);
-  EXPECT_EQ(solver.bodies().measure(solver.grid(), *phases, solver.state().velocity, strain_energy, &bodies), 0);
+  EXPECT_EQ(solver.bodies().measure(solver.grid(), *phases, solver.state().velocity, strain_energy, &owned), 0);
+  const int count = solver.bodies().bodies();
+  EXPECT_EQ(gather_bodies(solver.grid().comm(), count, count, owned, &bodies), 0);
   for (const BodyMeasure &body : bodies) all.push_back(body.volume);
   return all;
 }

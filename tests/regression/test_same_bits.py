@@ -121,6 +121,22 @@ class SameBits(unittest.TestCase):
                 self.assertEqual(run(program="EULASTIC_WHOLE")["state_hash"], one["state_hash"])
                 self.assertEqual(run(ranks=2)["state_hash"], one["state_hash"])
 
+    def test_many_bodies(self):
+        # More than summary.json lists, and on four ranks not as many for each.
+        scene = ("-grid_cells 250,164,1 -grid_length 250,164,1 -fluid_viscosity 1 -initial_velocity_mean 1,.5,0 -species "
+                 "a,b -a_shape sphere -a_radius 2.2 -a_count 41,26,1 -a_placement lattice -a_shear_modulus .1 -b_shape "
+                 "sphere -b_radius 1.2 -b_centre 6.1,6.3,0 -b_shear_modulus .1 -time_end 1000 -time_steps_max 3").split()
+        one = self.run_program(*scene)
+        self.assertEqual(len(one["bodies"]), 500)
+        with h5py.File(self.room / "run/bodies.h5") as bodies:
+            self.assertEqual(bodies["id"][...].tolist(), list(range(1, 1068)))
+            volume = bodies["volume"][-1]
+        self.assertEqual([body["volume"] for body in one["bodies"]], volume[:500].tolist())
+        for n in (2, 3, 4):
+            other = self.run_program(*scene, ranks=n)
+            self.same(one, other, f"{n} ranks")
+            self.assertEqual(other["bodies"], one["bodies"])
+
     def test_turned_bodies_with_prestrain(self):
         # B = R diag(l^2) R^T: a turned disc relaxes as one that is not turned, on any ranks.
         scene = ("-grid_cells 96,96,1 -grid_length 2,2,1 -fluid_viscosity 1 -species a -a_shape ellipsoid -a_semi_axes "

@@ -73,10 +73,13 @@ struct BodyScene {
           if (phase.fraction[0](i, row.j, row.k) > 0)
             phase.tensor[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
   }
-  std::vector<BodyMeasure> measure() const {
-    std::vector<BodyMeasure> bodies;
-    EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &bodies), 0);
-    return bodies;
+  // Of all bodies, on every rank.
+  std::vector<BodyMeasure> measure() {
+    std::vector<BodyMeasure> owned, all;
+    const int bodies = tracker.bodies();
+    EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &owned), 0);
+    EXPECT_EQ(gather_bodies(grid.comm(), bodies, bodies, owned, &all), 0);
+    return all;
   }
 };
 

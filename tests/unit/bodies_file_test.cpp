@@ -48,13 +48,15 @@ std::vector<BodyRecord> bodies_at(int row) {
   return bodies;
 }
 
+const BodySpecies three{{"rbc", "platelet"}, {0, 0, 1}}, two{{"rbc", "platelet"}, {0, 0}};
+
 TEST(BodiesFile, GrowsAndIsReadableAllTheTime) {
   const TemporaryDirectory base;
   const std::string path = base / "bodies.h5";
   BodiesFile file(PETSC_COMM_SELF, path);
   constexpr int rows = 100;
   for (int n = 0; n < rows; ++n) {
-    ASSERT_EQ(file.add(0.5 * n, bodies_at(n)), 0);
+    ASSERT_EQ(file.add(0.5 * n, three, bodies_at(n)), 0);
     EXPECT_FALSE(fs::exists(path + ".tmp"));
     const BodyTable table(path);
     ASSERT_TRUE(bool(table.file));
@@ -97,15 +99,15 @@ TEST(BodiesFile, SaysWhatIsWrong) {
   const TemporaryDirectory base;
   BodiesFile nowhere(PETSC_COMM_SELF, base / "no/bodies.h5"), changing(PETSC_COMM_SELF, base / "bodies.h5"),
       empty(PETSC_COMM_SELF, base / "empty.h5");
-  EXPECT_NE(error_of([&] { return nowhere.add(0, bodies_at(0)); }).find("(No such file"), std::string::npos);
-  ASSERT_EQ(changing.add(0, bodies_at(0)), 0);
+  EXPECT_NE(error_of([&] { return nowhere.add(0, three, bodies_at(0)); }).find("(No such file"), std::string::npos);
+  ASSERT_EQ(changing.add(0, three, bodies_at(0)), 0);
   {
     const FullDisk full_disk(1024);
-    EXPECT_NE(error_of([&] { return changing.add(1, bodies_at(1)); }), "no error");
+    EXPECT_NE(error_of([&] { return changing.add(1, three, bodies_at(1)); }), "no error");
   }
   EXPECT_EQ(BodyTable(base / "bodies.h5").rows(), 1u) << "the old file stays";
-  EXPECT_NE(error_of([&] { return changing.add(0, {}); }).find("number of bodies"), std::string::npos);
-  ASSERT_EQ(empty.add(0, {}), 0);
+  EXPECT_NE(error_of([&] { return changing.add(0, {}, {}); }).find("number of bodies"), std::string::npos);
+  ASSERT_EQ(empty.add(0, {}, {}), 0);
   ASSERT_EQ(empty.flush(), 0);
   EXPECT_FALSE(fs::exists(base / "empty.h5"));
 }
@@ -139,7 +141,7 @@ TEST(BodiesFile, BodiesComeIn) {
   };
   {
     BodiesFile file(PETSC_COMM_SELF, path);
-    for (int n = 0; n < 30; ++n) ASSERT_EQ(file.add(n, some(n, n < 13 ? 2 : 3)), 0);
+    for (int n = 0; n < 30; ++n) ASSERT_EQ(file.add(n, n < 13 ? two : three, some(n, n < 13 ? 2 : 3)), 0);
     ASSERT_EQ(file.flush(), 0);
     check(30, 2, 3, 13);
   }
@@ -148,7 +150,8 @@ TEST(BodiesFile, BodiesComeIn) {
     long rows = kept;
     ASSERT_EQ(file.resume(&rows), 0);
     ASSERT_EQ(rows, kept);
-    for (int n = static_cast<int>(kept); n < 25; ++n) ASSERT_EQ(file.add(n, some(n, n < change ? 2 : 3)), 0);
+    for (int n = static_cast<int>(kept); n < 25; ++n)
+      ASSERT_EQ(file.add(n, n < change ? two : three, some(n, n < change ? 2 : 3)), 0);
     ASSERT_EQ(file.flush(), 0);
     check(25, 2, 3, change);
   }
@@ -159,7 +162,7 @@ TEST(BodiesFile, NothingUnfinishedStays) {
   const TemporaryDirectory base;
   const std::string path = base / "bodies.h5";
   BodiesFile file(PETSC_COMM_SELF, path);
-  for (int n = 0; n < 8; ++n) ASSERT_EQ(file.add(n, bodies_at(n)), 0);
+  for (int n = 0; n < 8; ++n) ASSERT_EQ(file.add(n, three, bodies_at(n)), 0);
   ASSERT_EQ(file.flush(), 0);
   const hsize_t before = BodyTable(path).rows();
   struct rlimit old {};
@@ -169,7 +172,7 @@ TEST(BodiesFile, NothingUnfinishedStays) {
   (void)std::signal(SIGXFSZ, SIG_IGN);
   (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
-  ASSERT_EQ(file.add(8, bodies_at(8)), 0) << "it waits";
+  ASSERT_EQ(file.add(8, three, bodies_at(8)), 0) << "it waits";
   EXPECT_NE(file.flush(), 0);
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
   (void)PetscPopErrorHandler();

@@ -49,7 +49,7 @@ TEST_F(GuardsTest, EachTripsBeyondItsBoundOnly) {
     const char *name;
   };
   Measured bad = good;
-  bad.drifting_body = 2;
+  bad.drifting_body = 3;
   GuardControl &guard = config.guard;
   for (const Case &c :
        {Case{&guard.divergence, &bad.flow.divergence_rms, "-guard_divergence 0.25"},

@@ -54,7 +54,9 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   std::vector<SurfaceSample> samples;
   EXPECT_EQ(membrane.measure(phases, scene.velocity, energy, &samples), 0);
   std::vector<SurfaceMeasure> bodies;
-  EXPECT_EQ(measure_surfaces(scene.grid, phases, samples, {{20, 20, dim == 2 ? 0 : 20}}, &bodies), 0);
+  BodyOwners owners;
+  EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
+  EXPECT_EQ(measure_surfaces(scene.grid, phases, samples, owners, {{20, 20, dim == 2 ? 0 : 20}}, &bodies), 0);
   return bodies.at(0);
 }
 

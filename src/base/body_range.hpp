@@ -1,0 +1,20 @@
+// Which of all bodies a rank owns: what is known of them is known there.
+#pragma once
+
+#include <cstdint>
+
+namespace eulastic {
+
+/// Bodies [begin, end), indices over all of them.
+struct BodyRange {
+  int begin = 0, end = 0;
+  int size() const { return end - begin; }
+  bool has(int body) const { return body >= begin && body < end; }
+  /// Of rank `rank` of `ranks`, of `bodies`.
+  static BodyRange of(int bodies, int rank, int ranks) {
+    const auto bound = [&](int r) { return static_cast<int>(std::int64_t(bodies) * r / ranks); };
+    return {bound(rank), bound(rank + 1)};
+  }
+};
+
+}  // namespace eulastic

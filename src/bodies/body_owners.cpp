@@ -1,0 +1,69 @@
+#include "bodies/body_owners.hpp"
+
+namespace eulastic {
+namespace {
+
+// `width` values of a body. PetscSF has no maxima of types that are not built in.
+class Unit {
+public:
+  explicit Unit(int width) {
+    if (width == 1) return;
+    (void)MPI_Type_contiguous(width, MPIU_REAL, &type_);
+    (void)MPI_Type_commit(&type_);
+  }
+  Unit(const Unit &) = delete;
+  Unit &operator=(const Unit &) = delete;
+  ~Unit() {
+    if (type_ != MPIU_REAL) (void)MPI_Type_free(&type_);
+  }
+  MPI_Datatype type() const { return type_; }
+
+private:
+  MPI_Datatype type_ = MPIU_REAL;
+};
+
+}  // namespace
+
+BodyOwners::~BodyOwners() { (void)PetscSFDestroy(&sf_); }
+
+PetscErrorCode BodyOwners::connect(MPI_Comm comm, int bodies, std::vector<int> here) {
+  int rank, ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  owned_ = BodyRange::of(bodies, rank, ranks);
+  here_ = std::move(here);
+  slots_.assign(static_cast<std::size_t>(bodies), -1);
+  std::vector<PetscSFNode> owners;
+  BodyRange range;
+  int owner = -1;
+  for (std::size_t slot = 0; slot < here_.size(); ++slot) {
+    while (!range.has(here_[slot])) range = BodyRange::of(bodies, ++owner, ranks);  // both ascend
+    owners.push_back({owner, here_[slot] - range.begin});
+    slots_[static_cast<std::size_t>(here_[slot])] = static_cast<int>(slot);
+  }
+  PetscCall(PetscSFCreate(comm, &sf_));
+  PetscCall(PetscSFSetGraph(sf_, owned_.size(), static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,
+                            owners.data(), PETSC_COPY_VALUES));
+  PetscCall(PetscSFSetUp(sf_));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyOwners::reduce(int width, MPI_Op op, const std::vector<double> &here,
+                                  std::vector<double> *owned) const {
+  PetscFunctionBeginUser;
+  const Unit unit(width);
+  PetscCall(PetscSFReduceBegin(sf_, unit.type(), here.data(), owned->data(), op));
+  PetscCall(PetscSFReduceEnd(sf_, unit.type(), here.data(), owned->data(), op));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyOwners::bring(int width, const std::vector<double> &owned, std::vector<double> *here) const {
+  PetscFunctionBeginUser;
+  const Unit unit(width);
+  PetscCall(PetscSFBcastBegin(sf_, unit.type(), owned.data(), here->data(), MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf_, unit.type(), owned.data(), here->data(), MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

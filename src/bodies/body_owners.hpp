@@ -1,0 +1,65 @@
+// Who adds up what of which body: every rank owns a range of all bodies and hears of them from the ranks that have
+// cells of theirs. What a rank holds and sends is in proportion to its own bodies and those it owns.
+#pragma once
+
+#include "base/body_range.hpp"
+#include "base/petsc.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace eulastic {
+
+class BodyOwners {
+public:
+  BodyOwners() = default;
+  BodyOwners(const BodyOwners &) = delete;
+  BodyOwners &operator=(const BodyOwners &) = delete;
+  ~BodyOwners();
+
+  /// Of `bodies`; `here`: those that have something on this rank, ascending. Collective, once.
+  PetscErrorCode connect(MPI_Comm comm, int bodies, std::vector<int> here);
+
+  const BodyRange &owned() const { return owned_; }
+  const std::vector<int> &here() const { return here_; }
+  /// Position in here(), or -1.
+  int slot(int body) const {
+    return body >= 0 && body < static_cast<int>(slots_.size()) ? slots_[static_cast<std::size_t>(body)] : -1;
+  }
+
+  /// Combines `width` values of every body here() with those of the owned bodies, there or on another rank; `op`:
+  /// MPI_SUM, or MPI_MAX of one value.
+  PetscErrorCode reduce(int width, MPI_Op op, const std::vector<double> &here, std::vector<double> *owned) const;
+  /// Copies `width` values of the owned bodies to all that have them here().
+  PetscErrorCode bring(int width, const std::vector<double> &owned, std::vector<double> *here) const;
+
+private:
+  BodyRange owned_;
+  std::vector<int> here_, slots_;
+  PetscSF sf_ = nullptr;
+};
+
+/// The first `limit` of `bodies` values in the order of the bodies, on every rank, from those of the owners.
+/// Collective.
+template <class T>
+PetscErrorCode gather_bodies(MPI_Comm comm, int bodies, int limit, const std::vector<T> &owned, std::vector<T> *all) {
+  int rank, ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  std::vector<int> counts, begins;
+  for (int r = 0; r < ranks; ++r) {
+    const BodyRange range = BodyRange::of(bodies, r, ranks);
+    begins.push_back(std::min(limit, range.begin));
+    counts.push_back(std::min(limit, range.end) - begins.back());
+  }
+  all->resize(static_cast<std::size_t>(std::min(limit, bodies)));
+  MPI_Datatype one;
+  PetscCallMPI(MPI_Type_contiguous(sizeof(T), MPI_BYTE, &one));
+  PetscCallMPI(MPI_Type_commit(&one));
+  PetscCallMPI(MPI_Allgatherv(owned.data(), counts[rank], one, all->data(), counts.data(), begins.data(), one, comm));
+  PetscCallMPI(MPI_Type_free(&one));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
