@@ -14,11 +14,12 @@ file(RELATIVE_PATH cases /${CMAKE_INSTALL_DOCDIR} /${share}/options)  # for link
 file(CREATE_LINK ${cases} ${PROJECT_BINARY_DIR}/options SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/options DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# On PATH: what every run needs.
-foreach(name run plot render)
+# On PATH: eulastic-run, eulastic-compare-pressure-solvers, ...
+foreach(name run plot render compare_pressure_solvers make_vessel profile)
   file(RELATIVE_PATH script /${CMAKE_INSTALL_BINDIR} /${share}/scripts/${name})
-  file(CREATE_LINK ${script} ${PROJECT_BINARY_DIR}/eulastic-${name} SYMBOLIC)
-  install(FILES ${PROJECT_BINARY_DIR}/eulastic-${name} DESTINATION ${CMAKE_INSTALL_BINDIR})
+  string(REPLACE _ - command eulastic-${name})
+  file(CREATE_LINK ${script} ${PROJECT_BINARY_DIR}/${command} SYMBOLIC)
+  install(FILES ${PROJECT_BINARY_DIR}/${command} DESTINATION ${CMAKE_INSTALL_BINDIR})
 endforeach()
 
 # The page for man is what the program says of itself; the system's Python finds the package in /usr alone.
@@ -36,7 +37,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_CONTACT "The Eulastic developers")
 set(CPACK_PACKAGE_DESCRIPTION "Red blood cells and other soft bodies, drops, membranes and rigid vessels in incompressible
-flow, with PETSc and MPI: eulastic, eulastic-run, eulastic-plot, eulastic-render, and a Python package.")
+flow, with PETSc and MPI: eulastic, scripts around it (eulastic-run, eulastic-plot, eulastic-render), and a Python package.")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)

@@ -20,7 +20,7 @@ from read_page import blocks, commands, file_name, is_python  # noqa: E402
 BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
 FLAT = SHORT.replace("16,16,16", "16,16,1")
-OTHERS = {"python.md": FLAT, "sweep.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2",
+OTHERS = {"python.md": FLAT, "sweep.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
           "long_run.md": "-grid_cells 16,16,1 -checkpoint_interval 30"}
 NO_COMMANDS = "tutorial.md", "gallery.md"  # scripts/dev/tutorial follows the one, a test below looks at the other
 NOT_RUN = {
@@ -31,15 +31,15 @@ NOT_RUN = {
     "scripts/count_communication": "it has a test of its own", "scripts/studies/scaling/scaling_tables": "it has a test of its own",
     "scripts/studies/paper/paper_figure5": "it has a test of its own", "scripts/studies/paper/paper_figure6": "it has a test of its own",
     "scripts/studies/paper/paper_section5": "an hour; it has a test of its own",
-    "scripts/validate": "hours, and a part of scripts/test", "scripts/make_vessel": "test_voxels.py runs it",
+    "scripts/validate": "hours, and a part of scripts/test",
     "scripts/studies/validation/accuracy_tables": "needs the runs of scripts/validate",
-    "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", "scripts/docs": "it has a test of its own", ".ci/": "scripts/test again", "cmake": "compiles",
-    "git": "a clone is there", "sbatch": "needs SLURM",
-    "srun": "needs SLURM",
+    "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", "scripts/docs": "it has a test of its own", ".ci/": "scripts/test again",
+    "cmake": "compiles, or installs: test_install.py", "git": "a clone is there", "sbatch": "needs SLURM",
 }
 EVIDENCE = ("validation", "accuracy", "dimple", "performance", "scaling", "stability", "robustness", "contact", "capillary")
 # What a page takes for granted.
-BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_interval 1e-9 -output_dir output"}
+BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_interval 1e-9 -output_dir output",
+          "cluster.md": "cp options/channel_rbc.opts case.opts"}
 
 
 def pages():
@@ -68,7 +68,10 @@ class Docs(unittest.TestCase):
         (cls.room / "build/release/eulastic").symlink_to(BINARY)
         for name in "run", "plot":  # as an installation has them; tests/regression/test_install.py tests that it does
             (cls.room / f"build/release/eulastic-{name}").symlink_to(cls.room / "scripts" / name)
-        cls.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+        srun = cls.room / "build/release/srun"  # as SLURM has it for a job of two tasks
+        srun.write_text('#!/bin/sh\nexec mpiexec "$@"\n')
+        srun.chmod(0o755)
+        cls.environment = dict(os.environ, SLURM_NTASKS="2", SCRATCH=str(cls.room / "scratch"), OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                                OMPI_MCA_rmaps_base_oversubscribe="1", PETSC_OPTIONS=SHORT)
         cls.environment.pop("EULASTIC", None)
         cls.environment["PATH"] = f"{cls.room / 'build/release'}:{os.environ['PATH']}"
@@ -112,7 +115,8 @@ class Docs(unittest.TestCase):
         self.assertGreaterEqual(ran, 5)
 
     def test_gallery(self):
-        """Every case once, with options that the program takes, its picture, and what it is as the file says."""
+        """Every case once, with options that the program takes, its picture, and what it is as the file says; each way to draw
+        one of them in a run of two steps."""
         page = ROOT / "docs/gallery.md"
         text = page.read_text()
         cases = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
@@ -125,6 +129,16 @@ class Docs(unittest.TestCase):
         for _, case, directory, *options in runs:
             done = subprocess.run([BINARY, ROOT / case, *options, "-print_options"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
+        ways = {}
+        for _, block in blocks(page):
+            run, draw = commands(block)
+            script, directory, *options = shlex.split(draw)
+            self.assertEqual(directory, shlex.split(run)[2])
+            ways.setdefault((script, *options), (run, draw))
+        self.assertGreaterEqual(len(ways), 5)
+        for run, draw in ways.values():
+            self.run_line(run, page)
+            self.run_line(draw, page)
 
     def test_every_page_is_in_the_index(self):
         index = ROOT / "docs/README.md"

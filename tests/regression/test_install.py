@@ -9,6 +9,8 @@ import subprocess
 import tempfile
 import unittest
 
+import h5py
+
 BUILD = pathlib.Path(os.environ["EULASTIC"]).resolve().parent
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHORT = ["-grid_cells", "16,16,1", "-time_steps_max", "2"]
@@ -54,6 +56,16 @@ class Installed(unittest.TestCase):
         self.call(self.environment.get("EULASTIC_MPIEXEC", "mpiexec"), "-n", "2", "eulastic", case, *SHORT, "-output_dir", "other")
         self.assertEqual(*((self.room / name / "series.csv").read_text() for name in ("run", "other")))
 
+    def test_other_commands_on_the_path(self):
+        self.call("eulastic-make-vessel", "wall.h5", "--cells", "12,8,4", "--length", "12,8,4")
+        with h5py.File(self.room / "wall.h5") as file:
+            self.assertEqual(file["solid_fraction"].shape, (4, 8, 12))
+        self.call("eulastic-compare-pressure-solvers", "disc_in_channel", *SHORT, "--output", "compared")
+        self.assertIn("ns_per_cell_step", (self.room / "compared/comparison.txt").read_text())
+        self.assertIn("ms per step", self.call("eulastic-profile", "disc_in_channel", "-grid_cells", "16,16,1", "--steps", 2,
+                                               "--output", "profiled"))
+        self.assertTrue((self.room / "profiled/profile.png").exists())
+
     def test_every_script_says_what_it_does(self):
         scripts = [path for path in (self.prefix / "share/eulastic/scripts").iterdir() if os.access(path, os.X_OK) and path.is_file()]
         self.assertGreaterEqual(len(scripts), 5)
@@ -92,7 +104,8 @@ class Packages(unittest.TestCase):
             package, = pathlib.Path(room).glob("eulastic_*.deb")
             ask = lambda *words: subprocess.run(["dpkg-deb", *words], capture_output=True, text=True, check=True).stdout  # noqa: E731
             files = set(re.findall(r" \./(\S+)", ask("-c", package)))
-            for name in ("bin/eulastic", "bin/eulastic-run", "share/man/man1/eulastic.1", "lib/python3/dist-packages/eulastic",
+            for name in ("bin/eulastic", "bin/eulastic-run", "bin/eulastic-make-vessel", "share/man/man1/eulastic.1",
+                         "lib/python3/dist-packages/eulastic",
                          "share/eulastic/options/channel_rbc.opts", "share/eulastic/scripts/render"):
                 self.assertIn(f"usr/{name}", files)
             self.assertEqual([name for name in files if not name.startswith("usr/") and name], [])

@@ -31,6 +31,17 @@ def driven(kinetic, elastic, power):
     return types.SimpleNamespace(series=series, options=options, length=(1, 1, 1), cells=(32, 32, 1))
 
 
+class Map(unittest.TestCase):
+    def test_scenes_shaken(self):
+        """--shake, as docs/stability.md has it, of one group of the reduced set."""
+        page = (ROOT / "docs/stability.md").read_text()
+        done = subprocess.run([ROOT / "scripts/studies/stability/stability_map", "--quick", "--shake", "1", "--group", "flat_cells"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"[1-9]\d* scenes at the automatic time step, 0 died")
+        self.assertEqual((ROOT / "docs/stability.md").read_text(), page)
+
+
 class Judge(unittest.TestCase):
     def test_what_is_given_back_was_not_made(self):
         """A wall of power 20 stretches the solid to 13.5 until t = .7; half of it becomes motion at once, and is lost."""

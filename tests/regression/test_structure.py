@@ -43,6 +43,11 @@ class Structure(unittest.TestCase):
     def test_rooms_are_known(self):
         self.assertEqual({path.name for path in (ROOT / "src").iterdir()} - set(LEVEL), set())
 
+    def test_unit_tests_lie_in_the_rooms_of_src(self):
+        found = [path.relative_to(ROOT / "tests/unit") for path in files("tests/unit")]
+        self.assertTrue(found)
+        self.assertEqual([str(path) for path in found if len(path.parts) != 2 or path.parts[0] not in LEVEL], [])
+
     def test_includes_point_one_way(self):
         wrong = []
         for path in files("src"):
