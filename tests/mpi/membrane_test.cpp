@@ -66,7 +66,9 @@ End run(MPI_Comm comm, const Case &c) {
   End end;
   end.phases = static_cast<long>(scene.solver.state().phases.size());
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
-  EXPECT_EQ(scene.solver.surface_energy(&end.surface, &end.bodies), 0);
+  std::vector<SurfaceMeasure> owned;
+  EXPECT_EQ(scene.solver.surface_energy(&end.surface, &owned), 0);
+  EXPECT_EQ(gather_bodies(comm, scene.solver.bodies().bodies(), 2, owned, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
   return end;
 }
