@@ -18,6 +18,7 @@ struct Case {
   kernels::MembraneLaw law;
   double viscosity = 0;
   bool split_x = false;
+  double stretch_force = 0;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
@@ -54,6 +55,7 @@ End run(MPI_Comm comm, const Case &c) {
   capsule.radius = 1.1;
   if (c.viscosity > 0) capsule.viscosity = c.viscosity;
   capsule.membrane = {c.law, 2, 1.5, 1.1, 0.02, 0.5};
+  capsule.stretch_force = {c.stretch_force, 0.1};
   const double z = flat ? 0.125 : grid.length[2] / 2;
   const std::vector<BodyPlace> places{{{0.6, 1.7, z}, {}}, {{3.2, 2.2, z}, {}}};
   Phase phase;
@@ -68,6 +70,7 @@ End run(MPI_Comm comm, const Case &c) {
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
   EXPECT_EQ(scene.solver.surface_energy(&end.surface, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
+  EXPECT_EQ(end.surface.stretch_power > 0, c.stretch_force > 0);
   return end;
 }
 
@@ -94,7 +97,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Capsules,
                          testing::Values(Case{"neo_hookean", {22, 17, 14}, neo_hookean},
                                          Case{"skalak_viscous", {22, 17, 14}, skalak, 4},
                                          Case{"flat", {23, 17, 1}, neo_hookean},
-                                         Case{"split_x", {1030, 16, 1}, skalak, 0, true}),
+                                         Case{"stretched", {22, 17, 14}, skalak, 0, false, 3},
+                                         Case{"split_x", {1030, 16, 1}, skalak, 0, true},
+                                         Case{"stretched_split_x", {1030, 16, 1}, skalak, 0, true, 3}),
                          [](const auto &test) { return test.param.name; });
 
 }  // namespace
