@@ -97,7 +97,7 @@ TWEEZERS = {round(row[0]): row for row in reference("mills_2004_tweezers")[[0, 2
 
 
 def tweezers(force, _):
-    return {"cell_stretch_force": TWEEZERS[force][0] / 1000, "snapshot_interval": 0}
+    return {"cell_stretch_force": TWEEZERS[force][0] / 1000, "snapshot_interval": 1000}
 
 
 def diameters(run):
