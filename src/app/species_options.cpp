@@ -80,8 +80,8 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "c0: of a ball with the radius 2/c0, in 2-D of a disc with 1/c0, it is that at rest");
   rows.real("stretch_force", spec.stretch_force.force, not_negative, "force",
             "pulls both ends of every body apart along x, as optical tweezers do; 2-D: per depth");
-  rows.real("stretch_area", spec.stretch_force.area, {0, true, 0.5}, "",
-            "the part of its surface at each end that -NAME_stretch_force pulls; of a red cell a spot of 2 um");
+  rows.real("stretch_volume", spec.stretch_force.volume, {0, true, 0.5}, "",
+            "the part of its volume at each end that -NAME_stretch_force pulls; of a red cell the outer half um");
   for_law(8, {Law::membrane, Law::red_cell});
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",

@@ -1,26 +1,32 @@
-// -NAME_stretch_force: both ends of a membrane are pulled apart along x, as optical tweezers do; docs/method.md, (27a).
+// -NAME_stretch_force: both ends of a body are pulled apart along x, as optical tweezers do; docs/method.md, (27a).
 #pragma once
 
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
-#include "field/surface_sample.hpp"
 
 namespace eulastic {
 
-/// Whether any phase is pulled.
-bool bodies_are_stretched(const std::vector<Phase> &phases);
+class StretchForces {
+public:
+  /// Whether any phase is pulled.
+  static bool exist(const std::vector<Phase> &phases);
 
-/// Forces along x per volume, of every sample; 0 where its material has no stretch force. On every body they add up to
-/// plus that force at one end and minus it at the other. `references`: unwrapped cells near the bodies (BodyTracker).
-/// Exact sums, four per cell along x and body; one Allreduce.
-PetscErrorCode find_stretch_forces(const Grid &grid, const std::vector<SurfaceSample> &samples,
-                                   const std::vector<Int3> &references, std::vector<double> *forces);
-/// rate += scale times these at owned faces, half of each on either x face of its cell. `scratch`: a field.
-PetscErrorCode add_stretch_forces(const Grid &grid, GhostExchange &exchange, const std::vector<SurfaceSample> &samples,
-                                  const std::vector<double> &forces, double scale, FieldBlock &scratch,
-                                  FieldBlock &rate);
-/// What they do on the flow, at the velocities of the samples. Collective.
-PetscErrorCode stretch_power(const Grid &grid, const std::vector<SurfaceSample> &samples,
-                             const std::vector<double> &forces, double *power);
+  /// Finds the ends of all bodies. `references`: unwrapped cells near the bodies (BodyTracker). Exact sums, one per
+  /// cell along x and body; one Allreduce.
+  PetscErrorCode find(const Grid &grid, const std::vector<Phase> &phases, const std::vector<Int3> &references);
+  /// rate += scale times the force per volume at owned faces. `scratch`: a field.
+  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale, FieldBlock &scratch,
+                     FieldBlock &rate) const;
+  /// What they do on the flow; one ghost of the velocity. Collective.
+  PetscErrorCode power(const std::vector<Phase> &phases, const FieldBlock &velocity, double *power) const;
+
+private:
+  template <class Visit>
+  void for_cells(const std::vector<Phase> &phases, const Visit &visit) const;
+
+  const Grid *grid_ = nullptr;
+  std::vector<Int3> near_;                 ///< references within the box
+  std::vector<std::vector<double>> pull_;  ///< of every body, by column of cells across x: w_+ - w_- over a V
+};
 
 }  // namespace eulastic

@@ -12,8 +12,8 @@ using kernels::Membrane;
 
 /// Pulls both ends of a body apart along x, as optical tweezers do (bodies/stretch_force.hpp).
 struct StretchForce {
-  double force = 0;    ///< on each end, outwards; 2-D: per depth
-  double area = 0.02;  ///< of the surface of the body, the part at each end
+  double force = 0;      ///< on each end, outwards; 2-D: per depth
+  double volume = 0.02;  ///< of the body, the part at each end
 };
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I

@@ -1,18 +1,15 @@
 // What a cell near a membrane says of it.
 #pragma once
 
-#include "field/material.hpp"
+#include "grid/grid.hpp"
 
 namespace eulastic {
 
 /// A cell at a surface.
 struct SurfaceSample {
   int label;
-  Int3 place;        ///< local
-  double delta;      ///< of the surface, 1/length
-  double spread;     ///< delta that spreads forces
-  double surface_x;  ///< of the nearest point of the surface, in cells from the cell's centre
-  const Material *material;
+  Int3 place;      ///< local
+  double delta;    ///< of the surface, 1/length
   Real3 velocity;  ///< at its centre
   double shear_energy, area_energy, bending_energy;
 };

@@ -53,8 +53,6 @@ public:
   /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
   PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured,
                          std::vector<SurfaceSample> *samples = nullptr);
-  /// The places alone, of the bodies that a stretch force pulls.
-  PetscErrorCode find_stretched(const std::vector<Phase> &phases, std::vector<SurfaceSample> *samples);
 
 private:
   /// delta tau at centres, of the cells in surface_.

@@ -41,10 +41,6 @@ Real3 centre_velocity(const FieldBlock &velocity, std::ptrdiff_t at) {
   return v;
 }
 
-double surface_x(const Grid &grid, const SurfaceCells::Cell &cell) {
-  return -cell.distance * cell.normal[0] / grid.spacing()[0];
-}
-
 }  // namespace
 
 PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
@@ -78,34 +74,13 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
     const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
     sum[0].add(stored, energies.total() + bending[c]);
     if (!label.empty())
-      samples->push_back({label[c], cell.place, cell.delta, cell.spread, surface_x(*grid_, cell), &phase.material,
-                          centre_velocity(velocity, cell.at), energies.shear * volume, energies.area * volume,
-                          bending[c] * volume});
+      samples->push_back({label[c], cell.place, cell.delta, centre_velocity(velocity, cell.at), energies.shear * volume,
+                          energies.area * volume, bending[c] * volume});
   }
   double total[sums];
   PetscCall(reduce_parts(grid_->comm(), sum, total));
   measured->power += total[power] * volume;
   measured->energy += total[stored] * volume;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::find_stretched(const std::vector<Phase> &phases,
-                                                 std::vector<SurfaceSample> *samples) {
-  PetscFunctionBeginUser;
-  for (const Phase &phase : phases) {
-    if (!(phase.material.stretch_force.force > 0) || !phase.label) continue;
-    WorkSpace::Lease surface;
-    PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-    PetscCall(surface_.find(phase, surface.fields()));
-    std::vector<int> label;
-    PetscCall(surface_.find_labels(phase, surface.fields(), &label));
-    for (std::size_t c = 0; c < label.size(); ++c) {
-      const SurfaceCells::Cell &cell = surface_.all()[c];
-      if (cell.owned)
-        samples->push_back(
-            {label[c], cell.place, cell.delta, cell.spread, surface_x(*grid_, cell), &phase.material, {}, 0, 0, 0});
-    }
-  }
   PetscFunctionReturn(0);
 }
 

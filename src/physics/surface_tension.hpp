@@ -12,8 +12,7 @@ namespace eulastic {
 struct SurfaceEnergy {
   double energy =
       0;  ///< sum of sigma times the area of the planes that transport cuts cells with, and that of membranes
-  double power = 0;          ///< minus that of the forces: flow to surfaces
-  double stretch_power = 0;  ///< what stretch forces do on the flow
+  double power = 0;  ///< minus that of the forces: flow to surfaces
 };
 
 class SurfaceTension {

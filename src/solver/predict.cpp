@@ -1,5 +1,4 @@
 // Solver: v*, (7), by plain Euler or in viscous stages.
-#include "bodies/stretch_force.hpp"
 #include "field/open_sides.hpp"
 #include "physics/momentum.hpp"
 #include "physics/species_force.hpp"
@@ -45,12 +44,6 @@ PetscErrorCode Solver::predict(double dt) {
   ForceSlope slope;
   if (!now_.phases.empty() && spec_.linear_force()) slope = {&slope_, 1 / (0.5 * (now_.dt + dt))};
   const int dim = grid_->dimension();
-  std::vector<SurfaceSample> stretched;
-  std::vector<double> pull;
-  if (bodies_are_stretched(now_.phases)) {
-    PetscCall(membranes_->find_stretched(now_.phases, &stretched));
-    PetscCall(find_stretch_forces(*grid_, stretched, bodies_.references(), &pull));
-  }
   WorkSpace::Lease rate, before;
   PetscCall(work_->take("rate of momentum", dim, &rate));
   PetscCall(work_->take("viscous stage before", dim, &before));
@@ -60,10 +53,7 @@ PetscErrorCode Solver::predict(double dt) {
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
-  if (bodies_are_stretched(now_.phases)) {
-    FieldBlock scratch = before.part(0, 1);
-    PetscCall(add_stretch_forces(*grid_, *exchange_, stretched, pull, 1 / fluid.density, scratch, rate.fields()));
-  }
+  PetscCall(add_stretch_forces(before.part(0, 1), rate.fields()));
   std::vector<double> cut;
   if (rigid_) {
     see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,

@@ -1,5 +1,4 @@
 // Solver: what depends on how far the viscosities of fluid and bodies lie apart.
-#include "bodies/stretch_force.hpp"
 #include "solver/solver.hpp"
 
 #include <algorithm>
@@ -49,13 +48,7 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
   if (!membranes_) PetscFunctionReturn(0);
   std::vector<SurfaceSample> samples;
-  const bool stretched = bodies_are_stretched(*phases);
-  PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies || stretched ? &samples : nullptr));
-  if (stretched) {
-    std::vector<double> pull;
-    PetscCall(find_stretch_forces(*grid_, samples, bodies_.references(), &pull));
-    PetscCall(stretch_power(*grid_, samples, pull, &measured->stretch_power));
-  }
+  PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
   if (bodies && bodies_.bodies() > 0)
     PetscCall(measure_surfaces(*grid_, *phases, samples, bodies_.references(), bodies));
   PetscFunctionReturn(0);

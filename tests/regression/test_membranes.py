@@ -34,7 +34,7 @@ class Membranes(SceneCase):
     def test_ends_are_pulled_apart(self):
         """The flow is its own mirror image, nothing moves as a whole, and the budget is closed."""
         capsule = CAPSULE[:CAPSULE.index("-time_end")]
-        run = self.run_program("pulled", *capsule, *("-a_stretch_force .5 -a_stretch_area .1 -time_end 2e-2 "
+        run = self.run_program("pulled", *capsule, *("-a_stretch_force .5 -a_stretch_volume .1 -time_end 2e-2 "
                                                      "-series_interval 1e-3 -snapshot_interval 2e-2 -snapshot_precision double").split())
         x, y, z = run.snapshots[-1].velocity()
         largest, round_off = abs(x).max(), 1e-9

@@ -55,7 +55,7 @@ class SameBits(Restart):
 
     def test_pulled_membrane(self):
         case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law membrane -bead_surface_shear_modulus .5 "
-                                                          "-bead_stretch_force .2 -bead_stretch_area .1")
+                                                          "-bead_stretch_force .2 -bead_stretch_volume .1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
     def test_flat_viscosities(self):

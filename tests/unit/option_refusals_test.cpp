@@ -227,7 +227,7 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force -1", {"-a_stretch_force", ">= 0"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_area .6", {"-a_stretch_area", "> 0 and <= 0.5"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_volume .6", {"-a_stretch_volume", "> 0 and <= 0.5"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force 1 -body_series false",
         {"-a_stretch_force", "-body_series true"}},
        {"-a_shear_modulus 1 -a_stretch_force 1", {"-a_stretch_force", "-a_law membrane or red_cell"}},

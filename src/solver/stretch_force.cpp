@@ -1,0 +1,29 @@
+// Solver: forces that pull the ends of bodies apart.
+#include "bodies/stretch_force.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+// On the phases as they are, with labels and references of the last step.
+PetscErrorCode Solver::add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate) {
+  PetscFunctionBeginUser;
+  if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
+  StretchForces forces;
+  PetscCall(forces.find(*grid_, now_.phases, bodies_.references()));
+  PetscCall(forces.add(*exchange_, now_.phases, 1 / spec_.fluid.density, scratch, rate));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::stretch_power(double *power) {
+  PetscFunctionBeginUser;
+  *power = 0;
+  if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(phases_now(&phases));
+  StretchForces forces;
+  PetscCall(forces.find(*grid_, *phases, bodies_.references()));
+  PetscCall(forces.power(*phases, now_.velocity, power));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
