@@ -231,7 +231,7 @@ private:
   bool stretched() const {
     bool any = !config_.initial_state.empty();
     for (const SpeciesSpec &spec : config_.species)
-      for (int d = 0; d < dimension_; ++d) any = any || spec.initial_stretch[d] != 1;
+      for (int d = 0; d < dimension_; ++d) any = any || spec.initial_stretch[d] != 1 || spec.stretch_force.force > 0;
     return any;
   }
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }

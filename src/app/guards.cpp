@@ -60,7 +60,8 @@ Guards::Guards(const Config &config) : control_(config.guard) {
                                                      : "lower -time_step";
   for (double f : config.fluid.body_force.force) forced_ = forced_ || f != 0;
   forced_ = forced_ || wall_speed(config.sides) != 0 || volume_crosses(config.sides);
-  for (const SpeciesSpec &spec : config.species) forced_ = forced_ || spec.motion.moves() || spec.body_force.acts();
+  for (const SpeciesSpec &spec : config.species)
+    forced_ = forced_ || spec.motion.moves() || spec.body_force.acts() || spec.stretch_force.force > 0;
 }
 
 PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const {

@@ -112,6 +112,8 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   double power = 0;
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
   energy->rates.force_power += power;
+  PetscCall(solver_->stretch_power(&power));
+  energy->rates.force_power += power;
   for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
   PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
                                &sides_));

@@ -78,7 +78,11 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "curvatures");
   rows.real("spontaneous_curvature", spec.membrane.spontaneous_curvature, any_number, "1/length",
             "c0: of a ball with the radius 2/c0, in 2-D of a disc with 1/c0, it is that at rest");
-  for_law(6, {Law::membrane, Law::red_cell});
+  rows.real("stretch_force", spec.stretch_force.force, not_negative, "force",
+            "pulls both ends of every body apart along x, as optical tweezers do; 2-D: per depth");
+  rows.real("stretch_volume", spec.stretch_force.volume, {0, true, 0.5}, "",
+            "the part of its volume at each end that -NAME_stretch_force pulls; of a red cell the outer half um");
+  for_law(8, {Law::membrane, Law::red_cell});
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
             "velocity V cos(frequency t + phase) of a rigid body, which travels through the grid, or slides along "

@@ -119,6 +119,8 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: nothing bends back to it; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
+  if (spec.stretch_force.force > 0 && !config.body_series)
+    return "-" + spec.name + "_stretch_force: must know one body from the other; accepted: -body_series true, or 0";
   return {};
 }
 

@@ -49,6 +49,7 @@ struct SpeciesSpec {
   double surface_tension = 0;       ///< force per length
   BodyForce body_force{};           ///< of these bodies alone
   Membrane membrane{};              ///< Law::membrane
+  StretchForce stretch_force{};     ///< Law::membrane
   RigidMotion motion;               ///< Law::rigid
   std::optional<bool> attached;     ///< default by shape: is_attached()
   std::optional<Contact> contact;   ///< default by method: Config::separates()
@@ -96,7 +97,8 @@ struct SpeciesSpec {
             viscosity.value_or(0),
             surface_tension,
             body_force,
-            membrane};
+            membrane,
+            stretch_force};
   }
 };
 

@@ -10,6 +10,12 @@ namespace eulastic {
 enum class Law { neo_hookean, mooney_rivlin, membrane, red_cell, rigid };
 using kernels::Membrane;
 
+/// Pulls both ends of a body apart along x, as optical tweezers do (bodies/stretch_force.hpp).
+struct StretchForce {
+  double force = 0;      ///< on each end, outwards; 2-D: per depth
+  double volume = 0.02;  ///< of the body, the part at each end
+};
+
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I
 /// and II the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
 struct Material {
@@ -22,6 +28,7 @@ struct Material {
   double surface_tension = 0;     ///< force per length
   BodyForce body_force{};         ///< of its own, per mass
   Membrane membrane{};            ///< Law::membrane: B is B_s, all of it at centres
+  StretchForce stretch_force{};   ///< Law::membrane
 
   bool is_rigid() const { return law == Law::rigid; }
   bool is_membrane() const { return law == Law::membrane; }

@@ -53,6 +53,7 @@ PetscErrorCode Solver::predict(double dt) {
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   add_species_forces(*grid_, now_.phases, step.force_time, 1, rate.fields());
+  PetscCall(add_stretch_forces(before.part(0, 1), rate.fields()));
   std::vector<double> cut;
   if (rigid_) {
     see_rigid_surfaces(*grid_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,

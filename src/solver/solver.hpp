@@ -65,6 +65,8 @@ public:
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and
   /// membranes. `bodies`: what is known of the surface of every body, if there are labels and membranes.
   PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
+  /// What stretch forces do on the flow, at the time of the velocity.
+  PetscErrorCode stretch_power(double *power);
   /// Null where nothing is rigid.
   const RigidFaces *rigid() const { return rigid_ ? &rigid_->faces() : nullptr; }
   /// Sides with profiles that know the bodies; before prepare().
@@ -126,6 +128,7 @@ private:
   bool drifts() const;  ///< no wall holds the fluid
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
+  PetscErrorCode add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate);
   PetscErrorCode project(double dt);
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
   /// middle.

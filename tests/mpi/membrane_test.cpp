@@ -18,6 +18,7 @@ struct Case {
   kernels::MembraneLaw law;
   double viscosity = 0;
   bool split_x = false;
+  double stretch_force = 0;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
@@ -25,6 +26,7 @@ void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 struct End {
   std::uint64_t hash = 0;
   SurfaceEnergy surface;
+  double stretch_power = 0;
   std::vector<SurfaceMeasure> bodies;
   long phases = 0;
 };
@@ -54,6 +56,7 @@ End run(MPI_Comm comm, const Case &c) {
   capsule.radius = 1.1;
   if (c.viscosity > 0) capsule.viscosity = c.viscosity;
   capsule.membrane = {c.law, 2, 1.5, 1.1, 0.02, 0.5};
+  capsule.stretch_force = {c.stretch_force, 0.1};
   const double z = flat ? 0.125 : grid.length[2] / 2;
   const std::vector<BodyPlace> places{{{0.6, 1.7, z}, {}}, {{3.2, 2.2, z}, {}}};
   Phase phase;
@@ -70,6 +73,8 @@ End run(MPI_Comm comm, const Case &c) {
   EXPECT_EQ(scene.solver.surface_energy(&end.surface, &owned), 0);
   EXPECT_EQ(gather_bodies(comm, scene.solver.bodies().bodies(), 2, owned, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
+  EXPECT_EQ(scene.solver.stretch_power(&end.stretch_power), 0);
+  EXPECT_EQ(end.stretch_power > 0, c.stretch_force > 0);
   return end;
 }
 
@@ -79,6 +84,7 @@ TEST_P(Capsules, SameBitsAsOnOneRank) {
   const End all = run(PETSC_COMM_WORLD, GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
   EXPECT_EQ(all.hash, alone.hash);
   EXPECT_EQ(std::memcmp(&all.surface, &alone.surface, sizeof all.surface), 0);
+  EXPECT_EQ(all.stretch_power, alone.stretch_power);
   ASSERT_EQ(all.bodies.size(), 2u);
   EXPECT_EQ(std::memcmp(all.bodies.data(), alone.bodies.data(), 2 * sizeof(SurfaceMeasure)), 0);
   double sum = 0;
@@ -96,7 +102,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Capsules,
                          testing::Values(Case{"neo_hookean", {22, 17, 14}, neo_hookean},
                                          Case{"skalak_viscous", {22, 17, 14}, skalak, 4},
                                          Case{"flat", {23, 17, 1}, neo_hookean},
-                                         Case{"split_x", {1030, 16, 1}, skalak, 0, true}),
+                                         Case{"stretched", {22, 17, 14}, skalak, 0, false, 3},
+                                         Case{"split_x", {1030, 16, 1}, skalak, 0, true},
+                                         Case{"stretched_split_x", {1030, 16, 1}, skalak, 0, true, 3}),
                          [](const auto &test) { return test.param.name; });
 
 }  // namespace

@@ -31,6 +31,24 @@ class Membranes(SceneCase):
         numpy.testing.assert_allclose(speed[1], speed[0], atol=round_off * largest)
         self.assertGreater(abs(speed[2] - speed[0]).max(), 0.1 * largest)
 
+    def test_ends_are_pulled_apart(self):
+        """The flow is its own mirror image, nothing moves as a whole, and the budget is closed."""
+        capsule = CAPSULE[:CAPSULE.index("-time_end")]
+        run = self.run_program("pulled", *capsule, *("-a_stretch_force .5 -a_stretch_volume .1 -time_end 2e-2 "
+                                                     "-series_interval 1e-3 -snapshot_interval 2e-2 -snapshot_precision double").split())
+        x, y, z = run.snapshots[-1].velocity()
+        largest, round_off = abs(x).max(), 1e-9
+        self.assertGreater(largest, 1e-4)
+        numpy.testing.assert_allclose(x, -x[:, :, ::-1], atol=round_off * largest)
+        numpy.testing.assert_allclose(y, y[:, :, ::-1], atol=round_off * largest)
+        numpy.testing.assert_allclose(z, z[:, :, ::-1], atol=round_off * largest)
+        self.assertGreater(x[16, 16, 24], 0.5 * largest)  # away from the middle
+        self.assertLess(abs(x.mean()), round_off * largest)
+        self.assertGreater(run.series.force_power[-1], 0)
+        supplied = run.summary["energy_supplied"]
+        self.assertLess(abs(run.summary["energy_lost"]), 0.005 * supplied)
+        self.assertGreater(run.bodies.taylor_deformation[-1, 0], run.bodies.taylor_deformation[0, 0])
+
 
 if __name__ == "__main__":
     unittest.main()

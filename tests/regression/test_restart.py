@@ -53,6 +53,11 @@ class SameBits(Restart):
                                                           ".7 -bead_velocity_phase .4 -bead_angular_velocity 0,0,1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
+    def test_pulled_membrane(self):
+        case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law membrane -bead_surface_shear_modulus .5 "
+                                                          "-bead_stretch_force .2 -bead_stretch_volume .1")
+        self.check(case.split() + FLAT[-4:], [], before=2, after=3)
+
     def test_flat_viscosities(self):
         self.check(FLAT, "-cell_viscosity 1.5 -bead_viscosity .03".split(), before=2, after=3)
 

@@ -1,10 +1,10 @@
 """V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule
 in shear flow, by a boundary-integral
-method in unbounded Stokes flow. docs/method.md, section 18."""
+method in unbounded Stokes flow. V6: a red cell in optical tweezers, against the experiment. docs/method.md, section 18."""
 import numpy
 
 from .bodies import fast_at
-from .case import Case, Measure, reference, square
+from .case import Case, Measure, Setting, reference, square
 
 START = reference("capsule_startup")
 
@@ -92,6 +92,49 @@ def slow_rate(run):
     return float(-numpy.polyfit(middle[late], numpy.log(slope[late]), 1)[0] * CAPILLARY)
 
 
+# V6: force in pN: what is measured there, um: long and short diameter of the silhouette, each with its error.
+TWEEZERS = {round(row[0]): row for row in reference("mills_2004_tweezers")[[0, 2, 5, 7, 9, 12]]}
+
+
+def tweezers(force, _):
+    return {"cell_stretch_force": TWEEZERS[force][0] / 1000, "snapshot_interval": 1000}
+
+
+def diameters(run):
+    """Along x and y of the silhouette along z, of the surface phi = 1/2."""
+    silhouette = run.snapshots[-1]["solid_fraction"].max(axis=0)
+    found = []
+    for across, spacing in ((0, run.spacing[0]), (1, run.spacing[1])):
+        line = silhouette.max(axis=across)
+        first, *_, last = numpy.flatnonzero(line >= .5)
+        ends = [(line[at] - .5) / (line[at] - line[beyond]) for at, beyond in ((first, first - 1), (last, last + 1))]
+        found.append(float((last - first + sum(ends)) * spacing))
+    return found
+
+
+def tweezer_measures():
+    for force, (_, *measured) in TWEEZERS.items():
+        for d, name in enumerate(("axial", "transverse")):
+            yield Measure(f"{name} diameter at {force} pN, um", lambda runs, force=force, d=d: diameters(runs[force])[d],
+                          {"fast": measured[2 * d + 1]}, "the experiment's error bar", measured[2 * d], whole=True,
+                          misses={"fast": (measured[2 * d + 1] + .3, "the cell stays wider; not by the grid, see below")} if d else {})
+
+
+def tweezer_line(runs):
+    """Axial diameters over the force, then transverse ones."""
+    found = numpy.array([(TWEEZERS[force][0], *diameters(run)) for force, run in runs.items()])
+    known = reference("mills_2004_tweezers")[:, [0, 1, 3]]
+    return tuple((numpy.concatenate([part[:, 0], [numpy.nan], part[:, 0]]),
+                  numpy.concatenate([part[:, 1], [numpy.nan], part[:, 2]])) for part in (found, known))
+
+
+def largest_change(name):
+    def value(runs):
+        changes = [abs(getattr(run.bodies, name)[-1, 0] / getattr(run.bodies, name)[0, 0] - 1) for run in runs.values()]
+        return float(max(changes))
+    return value
+
+
 CASES = (
     Case("V3", "Ring that bends back", "bending_ring", lambda n, _: {**square(4 * n, 4), "snapshot_interval": 0},
          fast_at((8, 16)), fast_at((8,)),
@@ -117,4 +160,10 @@ CASES = (
          (measure(.64), measure(1.28), measure(1.92),
           Measure("change of volume", drift, {"fast": 1e-5}, "of the divergence, as AREA of S10")),
          line, ("shear x time", "D")),
+    Case("V6", "Red cell in optical tweezers", "red_cell_in_tweezers", tweezers, (Setting("fast", "acm", tuple(TWEEZERS)),), (),
+         (*tweezer_measures(),
+          Measure("largest change of the membrane's area", largest_change("surface_area"), {}, "the modulus of area is a thousandth of a real one",
+                  whole=True),
+          Measure("largest change of volume", largest_change("volume"), {"fast": 1e-5}, "of the divergence, as AREA of S10", whole=True)),
+         tweezer_line, ("force, pN", "axial and transverse diameter, um"), whole_curve=True),
 )

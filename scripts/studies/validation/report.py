@@ -89,8 +89,9 @@ def draw(cases, results, path):
         reference = None
         for setting, runs in results[case]:
             key = list(runs)[-1]
-            mine, reference = case.curve(runs[key])
-            axis.plot(*mine, styles[setting.label], lw=1, label=f"{setting.label}, {name_of(key)}")
+            mine, reference = case.curve(runs if case.whole_curve else runs[key])
+            at = "" if case.whole_curve else f", {name_of(key)}"
+            axis.plot(*mine, styles[setting.label], lw=1, label=setting.label + at)
         if reference is not None:
             axis.plot(*reference, "ko" if len(reference[0]) < 20 else "k-", ms=3, lw=3, alpha=.25, label="reference", zorder=0)
         axis.set(xlabel=case.axes[0], ylabel=case.axes[1])
