@@ -1,0 +1,111 @@
+"""V7: capsules and red cells that tumble or tank-tread in shear flow (ellipsoids.py). docs/method.md, section 18."""
+import functools
+
+import numpy
+
+from . import ellipsoids
+from .bodies import fast_at
+from .case import Case, Measure
+
+BOX = (4, 5, 4)  # in radii: what walls add to the strain rate there, images nearly take away
+
+
+def strain(run):
+    return run.bodies.time * 2 * float(run.options["wall_ymax_velocity"].split(",")[0]) / run.length[1]
+
+
+def turned(run):
+    """Angle by which the long axis has turned, in degrees, clockwise and counted on through turns."""
+    inclination = numpy.unwrap(run.bodies.inclination[:, 0], period=180)
+    return inclination[0] - inclination
+
+
+def gone_round(run):
+    """Angle by which the material has gone round."""
+    t, speed = run.bodies.time, run.bodies.turning_rate[:, 0]
+    return numpy.degrees(-numpy.append(0, numpy.cumsum(numpy.diff(t) * (speed[1:] + speed[:-1]) / 2)))
+
+
+def when(angle, of, what=strain):
+    """That quantity where an angle is reached; nan if it is not."""
+    def value(run):
+        found = numpy.maximum.accumulate(of(run))
+        return float(numpy.interp(angle, found, what(run))) if found[-1] >= angle else float("nan")
+    return value
+
+
+def deformation(run):
+    return run.bodies.taylor_deformation[:, 0]
+
+
+def long_axis(run):
+    return strain(run), run.bodies.inclination[0, 0] - turned(run)
+
+
+def cells(n, radius=1):
+    return {"grid_cells": ",".join(str(n * side) for side in BOX),
+            "grid_length": ",".join(str(radius * side) for side in BOX), "snapshot_interval": 0}
+
+
+# Inside 50 times as viscous, the elastic stress of the membrane a part of that: a drop without tension, which is exact.
+OBLATE, VISCOUS = (1, .5, 1), 50
+
+
+@functools.lru_cache
+def drop():
+    times = numpy.arange(0, 10.01, .1)
+    return times, ellipsoids.drop(OBLATE, 90, VISCOUS, times, BOX)
+
+
+def of_drop(column, angle=180):
+    times, found = drop()
+    return float(numpy.interp(angle, 90 - found[:, 1], times if column is None else found[:, column]))
+
+
+def beside_drop(run):
+    times, found = drop()
+    return long_axis(run), (times, found[:, 1])
+
+
+# Inside as outside, the membrane so stiff that it should turn as a rigid body does.
+CAPILLARY = .05
+
+
+def stiff(n, _):
+    return {**cells(n), "capsule_viscosity": 1, "capsule_surface_shear_modulus": 1 / CAPILLARY}
+
+
+# A red cell: does its shape go round with its material (1), or its material alone (0)?
+def with_material(run):
+    return (when(360, gone_round, turned)(run) - when(180, gone_round, turned)(run)) / 180
+
+
+def red_cell(ratio, end):
+    """Radius 4, viscosity 20, shear rate 6.6e-5: as in the file."""
+    def options(n, _):
+        wall = 6.6e-5 * 4 * BOX[1] / 2
+        return {**cells(n, 4), "cell_viscosity": 20 * ratio, "wall_ymin_velocity": f"{-wall},0,0",
+                "wall_ymax_velocity": f"{wall},0,0", "time_end": end / 6.6e-5, "series_interval": .1 / 6.6e-5}
+    return options
+
+
+def motion(what, expected):
+    return Measure(f"turn of the long axis over that of the material, {what}", with_material, {"fast": .25},
+                   "0 of tank-treading, 1 of tumbling", expected)
+
+
+CASES = (
+    Case("V7", "Oblate capsule, 50 times as viscous inside", "tumbling_capsule", lambda n, _: cells(n), fast_at((8,)), (),
+         (Measure("strain to half a turn", when(180, turned), {"fast": .03}, "", of_drop(None), True),
+          Measure("D at a quarter turn", when(90, turned, deformation), {"fast": .03}, "", of_drop(0, 90), True),
+          Measure("D at half a turn", when(180, turned, deformation), {"fast": .03}, "", of_drop(0), True)),
+         beside_drop, ("strain", "inclination, viscous")),
+    Case("V7", "Oblate capsule, Ca = .05", "tumbling_capsule", stiff, fast_at((8,)), (),
+         (Measure("D when the material has turned by pi", when(180, gone_round, deformation), {"fast": 25 / 12 * CAPILLARY},
+                  "of the rest; what the flow adds, of a sphere: 25/12 Ca", 1 / 3),),
+         lambda run: (long_axis(run), None), ("strain", "inclination, stiff")),
+    Case("V7", "Red cell, viscosity ratio .3", "red_cell_in_shear", red_cell(.3, 18), fast_at((10,)), (),
+         (motion("ratio .3", 0),), lambda run: (long_axis(run), None), ("strain", "inclination, .3")),
+    Case("V7", "Red cell, viscosity ratio 20", "red_cell_in_shear", red_cell(20, 24), fast_at((10,)), (),
+         (motion("ratio 20", 1),), lambda run: (long_axis(run), None), ("strain", "inclination, 20")),
+)
