@@ -34,4 +34,9 @@ NOTES = {
     "L4": "Exact (scripts/studies/validation/exact.py): shear along layers is linear at any amplitude. Along the cells, surfaces on faces, "
           "the fast method is of second order, which checks the reference too. At 45 degrees the surfaces "
           "cut the cells, hx != hy, in all ways.",
+    "V7": "The capsule that is viscous inside follows the exact drop whose viscosity ratio is 27 instead of 50: 1/50 and .017, of the cells of the "
+          "surface at 8 cells per radius, so that a ratio of 5 counts as 4.6. The stiff one rounds off while it turns: D .17 instead of .33 +- .1 "
+          "after half a turn. Being carried along by a uniform flow does it, too: the part of J that "
+          "comes of averaging tensors of different planes is kept, and the membrane contracts. Red cells of viscosity ratio .3 tank-tread at Ca = "
+          ".05 to 1 (there at 23 to 27 degrees, .38 of the shear rate); at Ca = .05 a cell that remembered its rest would tumble.",
 }
