@@ -80,18 +80,24 @@ def area(run):
     return run.bodies.surface_area[:, 0]
 
 
-def after_three(what, ours, asked, wanted):
-    return Measure(f"{what}, three revolutions", ours, {"fast": asked}, f"asked for: {100 * asked:g} %", wanted, True)
+FORGETS = "the membrane forgets its rest, and its area drifts"
+
+
+def after_three(what, ours, asked, wanted, kept=None):
+    return Measure(f"{what}, three revolutions", ours, {"fast": asked}, f"asked for: {100 * asked:g} %", wanted, True,
+                   misses={"fast": (kept, FORGETS)} if kept else {})
 
 
 LONG = Case(
     "V5", "Capsule in shear flow, three revolutions", "capsule_in_shear", long_run, fast_at((12,)), (),
-    (after_three("D", when(1080, gone_round, deformation), .01, STEADY),
-     *(after_three(f"semi-axis {name}", lambda run, name=name: semi_axes(run)[name], .03, wanted) for name, wanted in AXES.items()),
-     after_three("area over that after one", lambda run: when(1080, gone_round, area)(run) / when(360, gone_round, area)(run), .005, 1),
+    (after_three("D", when(1080, gone_round, deformation), .01, STEADY, .12),
+     *(after_three(f"semi-axis {name}", lambda run, name=name: semi_axes(run)[name], .03, wanted, .12)
+       for name, wanted in AXES.items()),
+     after_three("area over that after one", lambda run: when(1080, gone_round, area)(run) / when(360, gone_round, area)(run),
+                 .005, 1, .013),
      after_three("period over that in this box", lambda run: when(1080, gone_round)(run) / (3 * period_in(LONG_BOX)), .03, 1),
      Measure("change of volume, three revolutions", lambda run: float(abs(run.bodies.volume[-1, 0] / run.bodies.volume[0, 0] - 1)),
-             {"fast": 1e-6}, "asked for")),
+             {"fast": 1e-6}, "asked for", misses={"fast": (1e-5, "of the divergence")})),
     lambda run: ((strain(run), deformation(run)), None), ("shear x time", "D"))
 
 
@@ -138,9 +144,6 @@ def red_cell(ratio, end):
                          "series_interval": .1 / 6.6e-5}
 
 
-FORGETS = "the membrane forgets its rest: at the rim its radius of curvature is 2 cells"
-
-
 def drop_measure(what, ours, wanted, kept):
     return Measure(what, ours, {"fast": .03}, "asked for; leading order of walls and images", wanted, True,
                    misses={"fast": (kept, "the mixture in cells of the surface yields: at 8 cells per radius the body does as one "
@@ -162,7 +165,7 @@ CASES = (
     Case("V7", "Oblate capsule, Ca = .05", "tumbling_capsule", stiff, fast_at((8,)), (),
          (Measure("strain to half a turn, stiff", when(180, turned), {"fast": .05},
                   "of a rigid one; what Ca adds to the angle is gone after half a turn", of_drop(RIGID, 180), True,
-                  misses={"fast": (.23, FORGETS)}),
+                  misses={"fast": (.23, f"{FORGETS}: at the rim 2 cells are its radius of curvature")}),
           Measure("D when the material has turned by pi", when(180, gone_round, deformation), {"fast": 25 / 12 * CAPILLARY},
                   "of the rest; what the flow adds, of a sphere: 25/12 Ca", 1 / 3, misses={"fast": (.18, FORGETS)})),
          beside(RIGID), ("strain", "inclination, stiff")),
