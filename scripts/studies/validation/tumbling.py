@@ -49,7 +49,8 @@ def cells(n, box=BOX):
 
 # V5: neo-Hookean, Ca = .15. The membrane turns as the vorticity does, to which walls and images add what they do to a sphere.
 LONG_BOX = (5, 6, 5)
-PERIOD, STEADY, AXES = 14.71, .2704, {"L": 1.2569, "B": .7218, "W": 1.0930}
+PERIOD, STEADY = 14.71, .2704
+AXES = {"L": (1.2569, .04), "B": (.7218, .12), "W": (1.0930, .12)}  # and the miss that is kept
 
 
 def period_in(box):
@@ -91,8 +92,8 @@ def after_three(what, ours, asked, wanted, kept=None):
 LONG = Case(
     "V5", "Capsule in shear flow, three revolutions", "capsule_in_shear", long_run, fast_at((12,)), (),
     (after_three("D", when(1080, gone_round, deformation), .01, STEADY, .12),
-     *(after_three(f"semi-axis {name}", lambda run, name=name: semi_axes(run)[name], .03, wanted, .12)
-       for name, wanted in AXES.items()),
+     *(after_three(f"semi-axis {name}", lambda run, name=name: semi_axes(run)[name], .03, wanted, kept)
+       for name, (wanted, kept) in AXES.items()),
      after_three("area over that after one", lambda run: when(1080, gone_round, area)(run) / when(360, gone_round, area)(run),
                  .005, 1, .013),
      after_three("period over that in this box", lambda run: when(1080, gone_round)(run) / (3 * period_in(LONG_BOX)), .03, 1),
