@@ -1,4 +1,4 @@
-"""The exact solutions of scripts/studies/validation/exact.py against closed forms, sampling and their own equations."""
+"""The exact solutions of scripts/studies/validation, exact.py and ellipsoids.py, against closed forms, sampling and their own equations."""
 import math
 import pathlib
 import sys
@@ -8,7 +8,7 @@ import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/studies"))
 sys.dont_write_bytecode = True
-from validation import exact  # noqa: E402
+from validation import ellipsoids, exact  # noqa: E402
 
 
 class References(unittest.TestCase):
@@ -57,6 +57,42 @@ class References(unittest.TestCase):
         self.assertAlmostEqual(exact.duct_startup(9, 1, 1, 1)[0], 0.0736713, delta=1e-6)
         self.assertAlmostEqual(exact.duct_startup(1e-3, 1, 1, 1)[0], 1e-3, delta=1e-6)
         self.assertAlmostEqual(exact.duct_startup(0.4, 2, 2, 4)[0], 2 * exact.duct_startup(0.4, 1, 1, 1)[0], delta=1e-12)
+
+    def test_a_rigid_spheroid_turns_as_jeffery_says(self):
+        half = math.pi * (2 + 1 / 2)
+        quarter, whole = ellipsoids.drop((1, 0.5, 1), 90, 1e9, [half / 2, half])
+        numpy.testing.assert_allclose(quarter, (1 / 3, 0), atol=1e-3)
+        numpy.testing.assert_allclose(whole, (1 / 3, -90), atol=1e-3)
+
+    def test_a_drop_as_viscous_as_the_fluid_deforms_with_it(self):
+        """Along axis 3, too, which does not change."""
+        flow, start = numpy.array([[1, 1.5], [0, 1]]), numpy.diag([1, 0.25])
+        squares, directions = numpy.linalg.eigh(flow @ start @ flow.T)
+        short, long = numpy.sqrt(squares)
+        angle = math.degrees(math.atan(directions[1, 1] / directions[0, 1]))
+        numpy.testing.assert_allclose(ellipsoids.drop((1, 0.5, 0.7), 0, 1, [1.5])[0], ((long - short) / (long + short), angle),
+                                      atol=1e-4)
+
+    def test_a_drop_nearly_a_sphere_is_strained_as_taylor_says(self):
+        self.assertAlmostEqual(ellipsoids.resistance((1, 1, 1)), 2.5, delta=1e-9)
+        d = ellipsoids.drop((1, 1, 1), 0, 5, [1e-3])[0, 0]
+        self.assertAlmostEqual(d, 5 / (2 * 5 + 3) * 1e-3 / 2, delta=1e-7)
+
+    def test_walls_and_images_of_a_stresslet(self):
+        sphere = 10 / 3 * math.pi  # its stresslet, in shear of rate 1
+        self.assertAlmostEqual(sphere * ellipsoids.images((60, 1, 60))[:2].sum(), 14.249, delta=5e-4)  # as in V4
+        for one, other in zip(ellipsoids.images((4, 5, 4)), ellipsoids.images((8, 10, 8))):
+            self.assertAlmostEqual(one, 8 * other, delta=1e-6 * abs(one))
+
+    def test_tank_treading_ends_at_the_largest_ratio(self):
+        axes = 1, 0.5, 0.8
+        most = ellipsoids.largest_ratio(axes)
+        self.assertLess(ellipsoids.tank_treading(axes, most - 1e-6)[0], 0.1)
+        self.assertTrue(math.isnan(ellipsoids.tank_treading(axes, most + 1e-6)[0]))
+        # A neo-Hookean capsule at Ca = .15 by the boundary-integral method: its steady axes, angle and period.
+        angle, rate = ellipsoids.tank_treading((1.2569, 0.7218, 1.0930), 1)
+        self.assertAlmostEqual(angle, 0.1713 * 180, delta=1)
+        self.assertAlmostEqual(-2 * math.pi / rate / 14.71, 1, delta=0.012)
 
 
 if __name__ == "__main__":

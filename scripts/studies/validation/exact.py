@@ -172,11 +172,8 @@ def relaxing_disc(stretch, box, times):
     return found
 
 
-def images_of_disc(height, length):
-    """Velocity gradient in the middle of a channel, periodic after `length`, that walls and images add where a body of
-    unit area has the deviatoric stress tau, viscosity 1: (L_xy, L_yx) of tau_xy and L_xx = -L_yy of tau_xx. Streamfunction
-    of a force dipole in Stokes flow, for each k the free one, -|y| e^{-k|y|}/2 or i y e^{-k|y|}/2, and what the walls add."""
-    k, b = 2 * pi / length * numpy.arange(1, math.ceil(20 * length / height) + 1), height / 2
+def added_by_walls(k, b):
+    """L_xy, L_yx of tau_xy and L_xx of tau_xx in images_of_disc, for each wave number k: what walls at y = +-b add."""
     c, s, e = numpy.cosh(k * b), numpy.sinh(k * b), numpy.exp(-k * b)
 
     def added(f, g):
@@ -184,10 +181,16 @@ def images_of_disc(height, length):
         value, slope = b * e / 2, (1 - k * b) * e / 2
         determinant = f[0] * g[1] - f[1] * g[0]
         return (value * g[1] - slope * g[0]) / determinant, (slope * f[0] - value * f[1]) / determinant
-    alpha, beta = added((c, k * s), (b * s, s + b * k * c))  # cosh ky, y sinh ky
-    xy, yx = (alpha * k * k + 2 * beta * k).sum(), (alpha * k * k).sum()
-    alpha, beta = added((s, k * c), (b * c, c + b * k * s))  # sinh ky, y cosh ky
-    xx = (k * (alpha * k + beta)).sum()
+    odd, even = added((c, k * s), (b * s, s + b * k * c)), added((s, k * c), (b * c, c + b * k * s))  # cosh, y sinh; sinh, y cosh
+    return odd[0] * k * k + 2 * odd[1] * k, odd[0] * k * k, k * (even[0] * k + even[1])
+
+
+def images_of_disc(height, length):
+    """Velocity gradient in the middle of a channel, periodic after `length`, that walls and images add where a body of
+    unit area has the deviatoric stress tau, viscosity 1: (L_xy, L_yx) of tau_xy and L_xx = -L_yy of tau_xx. Streamfunction
+    of a force dipole in Stokes flow, for each k the free one, -|y| e^{-k|y|}/2 or i y e^{-k|y|}/2, and what the walls add."""
+    k = 2 * pi / length * numpy.arange(1, math.ceil(20 * length / height) + 1)
+    xy, yx, xx = (part.sum() for part in added_by_walls(k, height / 2))
     # k = 0, and sums less integrals of the free part: sum of n is -1/12.
     return (2 / length * xy + 1 / (length * height) - pi / (3 * length**2), 2 / length * yx,
             2 / length * xx + pi / (6 * length**2))

@@ -1,0 +1,122 @@
+"""Ellipsoids that turn, are strained and tank-tread in Stokes shear u = y, viscosity 1 outside, two of their axes in the plane
+of the shear. In a linear flow all is linear in an ellipsoid, too (Jeffery, Proc. R. Soc. A 102, 1922; Eshelby, Proc. R. Soc.
+A 241, 1957): a drop without tension, exact; one that is rigid, the limit; a membrane that goes round a shape that stays
+(Keller and Skalak, J. Fluid Mech. 120, 1982)."""
+import numpy
+
+from .exact import added_by_walls, pi
+
+NODES, WEIGHTS = numpy.polynomial.legendre.leggauss(60)
+NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
+NODES, WEIGHTS = (NODES / (1 - NODES))**2, WEIGHTS * 2 * NODES / (1 - NODES)**3  # of the half line
+
+
+def integrals(axes):
+    """3-by-3 I_ij of Eshelby over 4 pi, i != j: a1 a2 a3/2 times the integral of 1/((a_i^2 + s)(a_j^2 + s) Delta) over s > 0;
+    on the diagonal three times that."""
+    parts = numpy.square(axes)[:, None] + NODES
+    found = numpy.einsum("in,jn,n->ij", 1 / parts, 1 / parts, WEIGHTS / numpy.sqrt(parts.prod(axis=0)))
+    return numpy.prod(axes) / 2 * found * (1 + 2 * numpy.eye(3))
+
+
+def resistance(axes):
+    """K: a rigid ellipsoid free to turn in the strain E_12 has the stresslet 2 K E_12 per volume, 5/2 of a sphere; a fluid one,
+    `ratio` times as viscous, is strained at K E_12/(K - 1 + ratio)."""
+    return 1 / ((axes[0]**2 + axes[1]**2) * integrals(axes)[0, 1])
+
+
+def flatness(axes):
+    a, b, _ = numpy.square(axes)
+    return (a - b) / (a + b)
+
+
+def tank_treading(axes, ratio):
+    """Steady inclination in degrees, and rate at which the surface goes round, of Keller and Skalak's ellipsoid,
+    axes[0] > axes[1]; above largest_ratio there is none, nan."""
+    a, b, _ = axes
+    k = resistance(axes)
+    rate = -k / (k - 1 + ratio) * a * b / (a * a - b * b)  # times cos 2 theta
+    with numpy.errstate(invalid="ignore"):
+        angle = numpy.arccos(1 / (flatness(axes) - 4 * rate * a * b / (a * a + b * b))) / 2
+    return numpy.degrees(angle), rate * numpy.cos(2 * angle)
+
+
+def largest_ratio(axes):
+    """Viscosity ratio above which that ellipsoid tumbles."""
+    a, b, _ = axes
+    return 1 - resistance(axes) * (1 - 4 * a * a * b * b / (a**4 - b**4) / (1 - flatness(axes)))
+
+
+def images(box):
+    """Velocity gradient in the middle of a channel with walls at y = +-box[1]/2, periodic in x and z, that walls and images add
+    to a body with the stresslet S: (L_xy, L_yx) of S_xy = 1 and (L_xx, L_yy) of S_xx = -S_yy = 1. Walls for each wave (kx, kz)
+    as in exact.images_of_disc, images one by one, -3/(8 pi) x (x.S.x)/r^5, and as a sheet beyond a distance."""
+    area, b, reach = box[0] * box[2], box[1] / 2, 60 * max(box)
+    kx, kz = (2 * pi / side * numpy.arange(-n, n + 1) for side, n in ((side, int(5 * side / b)) for side in (box[0], box[2])))
+    kx, kz = (q.ravel() for q in numpy.meshgrid(kx, kz))
+    kx, kz = kx[kx**2 + kz**2 > 0], kz[kx**2 + kz**2 > 0]
+    k = numpy.hypot(kx, kz)
+    c, s, e = (kx / k)**2, (kz / k)**2, numpy.exp(-k * b)
+    xy, yx, xx = added_by_walls(k, b)
+    walls = numpy.array([(c * xy + s * k * e / (2 * numpy.sinh(k * b))).sum() + 1 / box[1], (c * yx).sum(),
+                         (c * (1 + c) / 2 * xx + s * c * k * e / (2 * numpy.cosh(k * b))).sum(), -((1 + c) / 2 * xx).sum()]) / area
+    x, z = numpy.meshgrid(*(side * numpy.arange(-int(reach / side), int(reach / side) + 1) for side in (box[0], box[2])))
+    r = numpy.hypot(x, z)
+    x, r = x[(r > 0) & (r < reach)], r[(r > 0) & (r < reach)]
+    square, fourth = (x**2 / r**5).sum() + pi / (area * reach), (x**4 / r**7).sum() + .75 * pi / (area * reach)
+    return walls - 3 / (8 * pi) * numpy.array([2 * square, 0, 3 * square - 5 * fourth, square])
+
+
+def flow_in(shape, ratio, added):
+    """Velocity gradient in the plane, and the strain rate along axis 3, in a drop whose ellipsoid is x.shape^-1.x = 1; `added`:
+    images(box), of its stresslet 2 (ratio - 1) e per volume, found in turn with the flow."""
+    squares, turn = numpy.linalg.eigh(shape[:2, :2])
+    axes = numpy.sqrt([*squares, shape[2, 2]])
+    eshelby = integrals(axes)
+    shear = (axes[0]**2 + axes[1]**2) * eshelby[0, 1]
+    uneven = numpy.eye(3) + (ratio - 1) * eshelby * numpy.square(axes)
+    volume, there = 4 / 3 * pi * numpy.prod(axes), numpy.zeros((2, 2))
+    for _ in range(3):
+        far = numpy.array([[0, 1], [0, 0]]) + there
+        strain = turn.T @ (far + far.T) @ turn / 2
+        own = numpy.linalg.solve(uneven, [*numpy.diag(strain), -numpy.trace(strain)])
+        e = numpy.diag(own[:2])
+        e[0, 1] = e[1, 0] = strain[0, 1] / (1 + (ratio - 1) * shear)
+        spin = (turn.T @ (far - far.T) @ turn)[1, 0] / 2 + flatness(axes) * (strain[0, 1] - e[0, 1])
+        stresslet = 2 * (ratio - 1) * volume * turn @ e @ turn.T
+        xx = (stresslet[0, 0] - stresslet[1, 1]) / 2
+        there = numpy.array([[added[2] * xx, added[0] * stresslet[0, 1]], [added[1] * stresslet[0, 1], added[3] * xx]])
+    inside = turn @ (e + numpy.array([[0, -spin], [spin, 0]])) @ turn.T
+    return inside, own[2]
+
+
+def drop(axes, angle, ratio, times, box=None):
+    """Taylor deformation in the plane and inclination in degrees, counted on through turns, of a drop without tension, `ratio`
+    times as viscous, at times shear x t, from these axes, the first at `angle`; a rigid ellipsoid is one with a very large
+    ratio. In a box walls and images add what they do, to leading order in size over distance."""
+    added = images(box) if box is not None else numpy.zeros(4)
+    c, s = numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))
+    turn = numpy.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    shape, t, found = turn @ numpy.diag(numpy.square(axes)) @ turn.T, 0.0, []
+
+    def rate(m):
+        inside, across = flow_in(m, ratio, added)
+        change = numpy.zeros((3, 3))
+        change[:2, :2] = inside @ m[:2, :2] + m[:2, :2] @ inside.T
+        change[2, 2] = 2 * across * m[2, 2]
+        return change
+    for until in times:
+        steps = max(1, int(numpy.ceil((until - t) / .1)))
+        dt = (until - t) / steps
+        for _ in range(steps):  # Runge-Kutta 4
+            k1 = rate(shape)
+            k2 = rate(shape + dt / 2 * k1)
+            k3 = rate(shape + dt / 2 * k2)
+            shape = shape + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(shape + dt * k3))
+        t = until
+        squares, directions = numpy.linalg.eigh(shape[:2, :2])
+        short, long = numpy.sqrt(squares)
+        inclined = numpy.degrees(numpy.arctan2(directions[1, 1], directions[0, 1]))
+        last = found[-1][1] if found else angle
+        found.append(((long - short) / (long + short), inclined + 180 * numpy.round((last - inclined) / 180)))
+    return numpy.array(found)
