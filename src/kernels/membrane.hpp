@@ -119,13 +119,57 @@ EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
   return {sum, 0.5 * twice > least ? 0.5 * twice : least};
 }
 
-/// P B P times what keeps J: where the normal of B differs by an angle from n, P B P alone loses its square in area, in
-/// every step anew.
+/// B turned by the smallest rotation from its own plane into that normal to n, by 45 degrees at most. What a mean of
+/// planes has along its normal is given back to all directions alike: such a mean keeps the trace, and J would grow.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> project_surface(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
-  Tensor<Dim> out = project<Dim>(B, n);
-  const double ratio = surface_strain<Dim>(B).area_squared / surface_strain<Dim>(out).area_squared;
-  const double scale = Dim == 2 ? ratio : __builtin_sqrt(ratio);
+  constexpr double least = 1e-4;
+  const Tensor<Dim> A = project<Dim>(B, n);
+  double trace = 0, squares = 0, across = 0;
+  Vector<Dim> tilt{};  // B n, along the plane; then times the inverse of A: tangent of the angle between the planes
+  for (int a = 0; a < Dim; ++a) {
+    trace += A[a][a];
+    for (int b = 0; b < Dim; ++b) {
+      squares = fma(A[a][b], A[a][b], squares);
+      tilt[a] = fma(B[a][b], n[b], tilt[a]);
+    }
+    across = fma(tilt[a], n[a], across);
+  }
+  for (int a = 0; a < Dim; ++a) tilt[a] -= across * n[a];
+  Vector<Dim> x{};
+  double along = 0, square = 0;
+  for (int a = 0; a < Dim; ++a) {
+    if (Dim == 2) {
+      x[a] = tilt[a] / (trace > least ? trace : least);
+    } else {
+      double turned = trace * tilt[a];
+      for (int b = 0; b < Dim; ++b) turned -= A[a][b] * tilt[b];
+      const double area_squared = 0.5 * (trace * trace - squares);
+      x[a] = turned / (area_squared > least ? area_squared : least);
+    }
+    square = fma(x[a], x[a], square);
+  }
+  const double turn = 1 / __builtin_sqrt(square > 1 ? square : 1);
+  square = square > 1 ? 1 : square;
+  for (int a = 0; a < Dim; ++a) {
+    x[a] *= turn;
+    along = fma(x[a], tilt[a], along);
+  }
+  const double g = 1 / (__builtin_sqrt(1 + square) + 1);
+  Tensor<Dim> M, MA{}, out{};
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) M[a][b] = (a == b) + g * x[a] * x[b];
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b)
+      for (int c = 0; c < Dim; ++c) MA[a][b] = fma(M[a][c], A[c][b], MA[a][b]);
+  double whole = 0;
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b)
+      for (int c = 0; c < Dim; ++c) out[a][b] = fma(MA[a][c], M[c][b], out[a][b]);
+    whole += out[a][a];
+  }
+  const double given = (across - along) / (whole > least ? whole : least);  // round 0 and of either sign
+  const double scale = 1 + (given > -0.5 ? given : -0.5);
   for (auto &row : out)
     for (double &value : row) value *= scale;
   return out;

@@ -36,7 +36,7 @@ struct Pulled : InterfaceScene {
     EXPECT_EQ(exchange->update(phase.fraction, 1), 0);
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
-    EXPECT_EQ(forces.find(grid, phases, owners, {{int(x * cells) - cells, 19, 0}}), 0);
+    EXPECT_EQ(forces.find(grid, phases, owners, {{int(x * cells) % cells, 19, 0}}), 0);
   }
   /// From the centre, of a face or a cell.
   double x_of(int i, bool cell) const {
