@@ -1,6 +1,6 @@
 """V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule
 in shear flow, by a boundary-integral
-method in unbounded Stokes flow. V6: a red cell in optical tweezers, against the experiment. docs/method.md, section 18."""
+method in unbounded Stokes flow. V6: a red cell in optical tweezers, against the experiment. V8: a capsule that a uniform flow carries. docs/method.md, section 18."""
 import numpy
 
 from .bodies import fast_at
@@ -135,6 +135,17 @@ def largest_change(name):
     return value
 
 
+# V8: exact, as L3: nothing deforms in a uniform flow. An oblate capsule, turned by 30 degrees, at rest but for the flow.
+def carried(n, _):
+    return {"grid_cells": f"{3 * n},{3 * n},{3 * n}", "grid_length": "3,3,3", "initial_velocity": "uniform", "initial_velocity_mean": "1,.5,0",
+            "fluid_density": .1, "ring_semi_axes": "1,.5,1", "ring_orientation": "0,0,30", "ring_bending_modulus": 0,
+            "ring_surface_shear_modulus": 20, "time_end": 3, "series_interval": .25, "snapshot_interval": 0}
+
+
+def change_carried(quantity):
+    return lambda run: float(abs(getattr(run.bodies, quantity)[-1, 0] / getattr(run.bodies, quantity)[0, 0] - 1))
+
+
 CASES = (
     Case("V3", "Ring that bends back", "bending_ring", lambda n, _: {**square(4 * n, 4), "snapshot_interval": 0},
          fast_at((8, 16)), fast_at((8,)),
@@ -166,4 +177,10 @@ CASES = (
                   whole=True),
           Measure("largest change of volume", largest_change("volume"), {"fast": 1e-5}, "of the divergence, as AREA of S10", whole=True)),
          tweezer_line, ("force, pN", "axial and transverse diameter, um"), whole_curve=True),
+    Case("V8", "Capsule that a uniform flow carries 3.4 radii along (2, 1)", "bending_ring", carried, fast_at((8, 12)), fast_at((6,)),
+         (Measure("change of D", change_carried("taylor_deformation"), {"fast": lambda n: .04 * (8 / n)**2},
+                  "exact: nothing deforms; as a capsule's D in V4 at 16, of second order"),
+          Measure("change of the area", change_carried("surface_area"), {"fast": lambda n: .005 * (8 / n)**2}, "as that of a body after V5"),
+          Measure("change of volume", drift, {"fast": 1e-5}, "of the divergence, as AREA of S10")),
+         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D")),
 )
