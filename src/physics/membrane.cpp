@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "grid/threads.hpp"
-#include "kernels/weno5.hpp"
+#include "kernels/upwind5.hpp"
 #include "physics/membrane_tensor.hpp"
 
 #include <algorithm>
@@ -12,10 +12,6 @@ namespace {
 
 using kernels::Tensor;
 using kernels::Vector;
-
-// WENO5 with its linear weights: those that follow the smoothness of each component would not keep the trace of a mean
-// of planes. B_s is of order 1.
-constexpr double epsilon = 1e6;
 
 template <int Dim>
 struct Local {
@@ -77,7 +73,8 @@ EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const FieldBl
   return flow;
 }
 
-// -v.grad B + L B + B L^T.
+// -v.grad B + L B + B L^T. Linear differences: weights that follow the smoothness of each component, as those of WENO5,
+// would not keep the trace of a mean of planes.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const FieldBlock &B, std::ptrdiff_t at,
                                     const Flow<Dim> &flow) {
@@ -88,8 +85,8 @@ EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const FieldBlock &B
       const double *q = B[x == y ? x : Dim == 2 ? 2 : 6 - x - y].origin + at;
       double carried = 0, stretched = 0;
       for (int d = 0; d < Dim; ++d) {
-        carried = kernels::fma(flow.v[d] * local.inverse[d],
-                               kernels::weno5_difference(q, local.stride[d], flow.v[d], epsilon), carried);
+        carried = kernels::fma(flow.v[d] * local.inverse[d], kernels::upwind5_difference(q, local.stride[d], flow.v[d]),
+                               carried);
         stretched += flow.L[x][d] * b[d][y] + b[x][d] * flow.L[y][d];
       }
       rate[x][y] = rate[y][x] = stretched - carried;
@@ -173,7 +170,7 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
         const Piece piece(surface_.nearest(), part, parts);
         for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c);
       });
-      scope.flops(double(surface_.nearest()) * (Dim == 2 ? 450 : 2000));
+      scope.flops(double(surface_.nearest()) * (Dim == 2 ? 250 : 1300));
     }
     PetscCall(surface_.extend(*phase, second ? tensor : next));
   }
