@@ -104,6 +104,19 @@ class Verdicts(unittest.TestCase):
             if cells[2].startswith("classic"):
                 self.assertEqual(missed, kept, row)
 
+    def test_rows_of_some_cases_are_updated(self):
+        row = lambda case, ours: dict(zip(report.HEADER, [case, "|B| at x", "fast, ACM", "64", "1", ours, "0", "", "", "", "pass"]))
+        with tempfile.TemporaryDirectory() as room:
+            page = pathlib.Path(room) / "page.md"
+            report.write_page([row("S1", "1"), row("S3", "1"), row("S3", "2")], {}, {}, page)
+            self.assertEqual(report.rows_of(page.read_text()), [row("S1", "1"), row("S3", "1"), row("S3", "2")])
+            for new, made, known in ((row("S2", "5"), "Made with a", {"S2": "Made with a"}),
+                                     (row("S3", "7"), "Made with b", {"S2": "Made with a", "S3": "Made with b"})):
+                rows, since = report.updated(page.read_text(), [new], made, ["S1", "S2", "S3"])
+                self.assertEqual(since, known)
+                report.write_page(rows, {}, {}, page, since)
+            self.assertEqual(report.rows_of(page.read_text()), [row("S1", "1"), row("S2", "5"), row("S3", "7")])
+
     def test_full_runs_with_misses_pass(self):
         with tempfile.TemporaryDirectory() as room:
             done = subprocess.run([ROOT / "scripts/validate", "--only", "S3", "--work", room], capture_output=True, text=True)

@@ -1,6 +1,7 @@
 """Judges the runs of the cases: the rows of the table, docs/validation.md and one plot per name."""
 import io
 import math
+import re
 
 import matplotlib
 
@@ -115,6 +116,7 @@ runs are kept in build/validation, a killed one goes on. A row that misses its t
     scripts/validate              # everything: hours
     scripts/validate --quick      # a short form of every reference, part of scripts/test
     scripts/validate --only S6
+    scripts/validate --only S6 --update       # and puts its rows into this page
 
 "at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
 coarser grids stand in front of it, with the observed order. Errors in % are relative. A tolerance follows from theory
@@ -125,7 +127,7 @@ scripts/studies/validation.
 
 {counts}
 
-{table}
+{made}{table}
 
 ## What is known about misses and limits
 
@@ -133,11 +135,33 @@ scripts/studies/validation.
 {plots}"""
 
 
-def write_page(rows, titles, pictures, path):
+OF_CASE = re.compile(r"^- ([A-Z]+\d+): (Made with .*)$", re.M)
+
+
+def rows_of(page):
+    """Those of a page that write_page() has written."""
+    lines = [line for line in page.splitlines() if line.startswith("| ")]
+    cells = [[cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines]
+    return [dict(zip(HEADER, row)) for row in cells if row != HEADER]
+
+
+def updated(page, rows, made, order):
+    """Rows of `page` with those of the cases in `rows` in place of theirs, and {case: with what it was made} of all that were
+    updated; `order`: names of all cases."""
+    new = {row["case"] for row in rows}
+    whole = [row for row in rows_of(page) if row["case"] not in new] + rows
+    since = {**dict(OF_CASE.findall(page)), **{name: made for name in new}}
+    return sorted(whole, key=lambda row: order.index(row["case"])), {name: since[name] for name in order if name in since}
+
+
+def write_page(rows, titles, pictures, path, made=None):
+    """`made`: {case: with what}, of those not made with the page."""
     counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
                        ((WORDS[True], "passed"), (WORDS["misses"], "missed as documented"), (WORDS[False], "failed"),
                         (WORDS[None], "reported")))
     plots = "".join(f"\n![{titles[name]}](images/{picture.name})\n\n*{name}: {titles[name]}*\n"
                     for name, picture in pictures.items())
     notes = "\n".join(f"- {name}: {text}" for name, text in NOTES.items() if name in titles)
-    path.write_text(PAGE.format(notes=notes, counts=counts + ".", table=table(rows), plots=plots))
+    since = "".join(f"- {name}: {text}\n" for name, text in (made or {}).items())
+    since = f"Rows of these cases are newer than the page:\n\n{since}\n" if since else ""
+    path.write_text(PAGE.format(notes=notes, counts=counts + ".", made=since, table=table(rows), plots=plots))
