@@ -50,7 +50,7 @@ def cells(n, box=BOX):
 # V5: neo-Hookean, Ca = .15. The membrane turns as the vorticity does, to which walls and images add what they do to a sphere.
 LONG_BOX = (5, 6, 5)
 PERIOD, STEADY = 14.71, .2704
-AXES = {"L": (1.2569, .04), "B": (.7218, .12), "W": (1.0930, .12)}  # and the miss that is kept
+AXES = {"L": (1.2569, .04), "B": (.7218, .07), "W": (1.0930, .08)}  # and the miss that is kept
 
 
 def period_in(box):
@@ -61,7 +61,7 @@ def period_in(box):
 def long_run(n, _):
     wall = LONG_BOX[1] / 2
     return {**cells(n, LONG_BOX), "grid_length": ",".join(map(str, LONG_BOX)), "wall_ymin_velocity": f"{-wall},0,0",
-            "wall_ymax_velocity": f"{wall},0,0", "time_end": 46, "series_interval": .1, "snapshot_interval": 46}
+            "wall_ymax_velocity": f"{wall},0,0", "time_end": 47.5, "series_interval": .1, "snapshot_interval": 47.5}
 
 
 def semi_axes(run):
@@ -81,7 +81,7 @@ def area(run):
     return run.bodies.surface_area[:, 0]
 
 
-FORGETS = "the membrane forgets its rest, and its area drifts"
+FORGETS = "the membrane forgets its rest"
 
 
 def after_three(what, ours, asked, wanted, kept=None):
@@ -91,11 +91,11 @@ def after_three(what, ours, asked, wanted, kept=None):
 
 LONG = Case(
     "V5", "Capsule in shear flow, three revolutions", "capsule_in_shear", long_run, fast_at((12,)), (),
-    (after_three("D", when(1080, gone_round, deformation), .01, STEADY, .12),
+    (after_three("D", when(1080, gone_round, deformation), .01, STEADY, .05),
      *(after_three(f"semi-axis {name}", lambda run, name=name: semi_axes(run)[name], .03, wanted, kept)
        for name, (wanted, kept) in AXES.items()),
      after_three("area over that after one", lambda run: when(1080, gone_round, area)(run) / when(360, gone_round, area)(run),
-                 .005, 1, .013),
+                 .005, 1),
      after_three("period over that in this box", lambda run: when(1080, gone_round)(run) / (3 * period_in(LONG_BOX)), .03, 1),
      Measure("change of volume, three revolutions", lambda run: float(abs(run.bodies.volume[-1, 0] / run.bodies.volume[0, 0] - 1)),
              {"fast": 1e-6}, "asked for", misses={"fast": (1e-5, "of the divergence")})),
@@ -147,8 +147,8 @@ def red_cell(ratio, end):
 
 def drop_measure(what, ours, wanted, kept):
     return Measure(what, ours, {"fast": .03}, "asked for; leading order of walls and images", wanted, True,
-                   misses={"fast": (kept, "the mixture in cells of the surface yields: at 8 cells per radius the body does as one "
-                                    "27 times as viscous; first order")})
+                   misses={"fast": (kept, "the mixture in cells of the surface yields: at 8 cells per radius the body turns as one "
+                                    "22 times as viscous")})
 
 
 def motion(what, expected):
@@ -159,16 +159,15 @@ def motion(what, expected):
 CASES = (
     LONG,
     Case("V7", "Oblate capsule, 50 times as viscous inside", "tumbling_capsule", viscous, fast_at((8,)), (),
-         (drop_measure("strain to half a turn", when(180, turned), of_drop(VISCOUS, 180), .2),
-          drop_measure("D at a quarter turn", when(90, turned, deformation), of_drop(VISCOUS, 90, 0), .06),
-          drop_measure("D at half a turn", when(180, turned, deformation), of_drop(VISCOUS, 180, 0), .12)),
+         (drop_measure("strain to half a turn", when(180, turned), of_drop(VISCOUS, 180), .22),
+          drop_measure("D at a quarter turn", when(90, turned, deformation), of_drop(VISCOUS, 90, 0), .05),
+          drop_measure("D at half a turn", when(180, turned, deformation), of_drop(VISCOUS, 180, 0), .04)),
          beside(VISCOUS), ("strain", "inclination, viscous")),
     Case("V7", "Oblate capsule, Ca = .05", "tumbling_capsule", stiff, fast_at((8,)), (),
          (Measure("strain to half a turn, stiff", when(180, turned), {"fast": .05},
-                  "of a rigid one; what Ca adds to the angle is gone after half a turn", of_drop(RIGID, 180), True,
-                  misses={"fast": (.23, f"{FORGETS}: at the rim 2 cells are its radius of curvature")}),
+                  "of a rigid one; what Ca adds to the angle is gone after half a turn", of_drop(RIGID, 180), True),
           Measure("D when the material has turned by pi", when(180, gone_round, deformation), {"fast": 25 / 12 * CAPILLARY},
-                  "of the rest; what the flow adds, of a sphere: 25/12 Ca", 1 / 3, misses={"fast": (.18, FORGETS)})),
+                  "of the rest; what the flow adds, of a sphere: 25/12 Ca", 1 / 3)),
          beside(RIGID), ("strain", "inclination, stiff")),
     Case("V7", "Red cell, viscosity ratio .3", "red_cell_in_shear", red_cell(.3, 20), fast_at((10,)), (),
          (motion("ratio .3", 0),), lambda run: (long_axis(run), None), ("strain", "inclination, .3")),
