@@ -171,6 +171,6 @@ CASES = (
          beside(RIGID), ("strain", "inclination, stiff")),
     Case("V7", "Red cell, viscosity ratio .3", "red_cell_in_shear", red_cell(.3, 20), fast_at((10,)), (),
          (motion("ratio .3", 0),), lambda run: (long_axis(run), None), ("strain", "inclination, .3")),
-    Case("V7", "Red cell, viscosity ratio 20", "red_cell_in_shear", red_cell(20, 26), fast_at((10,)), (),
+    Case("V7", "Red cell, viscosity ratio 20", "red_cell_in_shear", red_cell(20, 36), fast_at((10,)), (),
          (motion("ratio 20", 1),), lambda run: (long_axis(run), None), ("strain", "inclination, 20")),
 )
