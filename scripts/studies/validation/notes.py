@@ -39,8 +39,7 @@ NOTES = {
           "the fast method is of second order, which checks the reference too. At 45 degrees the surfaces "
           "cut the cells, hx != hy, in all ways.",
     "V5": "In a box of 8, 8 and 6 radii walls and images add 1.8 % to the strain rate, of 5, 6 and 5 .8 % and take 2.8 % off the "
-          "vorticity (ellipsoids.py). Through three revolutions D falls, .274, .268, .259 at 12 cells per radius, and the axis across "
-          "the shear shortens; area and period stay.",
-    "V7": "The capsule that is viscous inside turns as the exact drop whose viscosity ratio is 22 instead of 50, at 8 cells per radius. "
-          "The stiff one rounds off while it turns: D .24 instead of .33 +- .1 after half a turn.",
+          "vorticity (ellipsoids.py). Through three revolutions D falls and the axis across the shear shortens; area and period stay.",
+    "V7": "The capsule that is viscous inside turns as a drop that is less viscous would: the harmonic mean of cells of the surface yields "
+          "where the flow stretches them along it. The stiff one rounds off while it turns.",
 }

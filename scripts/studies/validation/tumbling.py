@@ -147,8 +147,7 @@ def red_cell(ratio, end):
 
 def drop_measure(what, ours, wanted, kept):
     return Measure(what, ours, {"fast": .03}, "asked for; leading order of walls and images", wanted, True,
-                   misses={"fast": (kept, "the mixture in cells of the surface yields: at 8 cells per radius the body turns as one "
-                                    "22 times as viscous")})
+                   misses={"fast": (kept, "the mixture in cells of the surface yields")})
 
 
 def motion(what, expected):
