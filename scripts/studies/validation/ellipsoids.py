@@ -4,7 +4,7 @@ A 241, 1957): a drop without tension, exact; one that is rigid, the limit; a mem
 (Keller and Skalak, J. Fluid Mech. 120, 1982)."""
 import numpy
 
-from .exact import added_by_walls, pi
+from .exact import added_by_walls, pi, runge_kutta
 
 NODES, WEIGHTS = numpy.polynomial.legendre.leggauss(60)
 NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
@@ -108,11 +108,8 @@ def drop(axes, angle, ratio, times, box=None):
     for until in times:
         steps = max(1, int(numpy.ceil((until - t) / .1)))
         dt = (until - t) / steps
-        for _ in range(steps):  # Runge-Kutta 4
-            k1 = rate(shape)
-            k2 = rate(shape + dt / 2 * k1)
-            k3 = rate(shape + dt / 2 * k2)
-            shape = shape + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(shape + dt * k3))
+        for _ in range(steps):
+            shape = runge_kutta(rate, shape, dt)
         t = until
         squares, directions = numpy.linalg.eigh(shape[:2, :2])
         short, long = numpy.sqrt(squares)

@@ -196,6 +196,14 @@ def images_of_disc(height, length):
             2 / length * xx + pi / (6 * length**2))
 
 
+def runge_kutta(rate, x, dt):
+    """x after dt, dx/dt = rate(x): the classical scheme of fourth order."""
+    k1 = rate(x)
+    k2 = rate(x + dt / 2 * k1)
+    k3 = rate(x + dt / 2 * k2)
+    return x + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(x + dt * k3))
+
+
 def sheared_disc(capillary, times, height=math.inf, length=math.inf):
     """Taylor deformation and B (xx, xy, yy) at times (shear rate x t) of a disc of radius 1, viscosity and shear rate 1,
     modulus 1/Ca, put at rest into Stokes shear: it stays an ellipse with uniform B (Eshelby), B' = L B + B L^T, L the flow's
@@ -212,11 +220,8 @@ def sheared_disc(capillary, times, height=math.inf, length=math.inf):
     for until in times:
         steps = max(1, math.ceil((until - t) / min(0.02, capillary / 5)))
         dt = (until - t) / steps
-        for _ in range(steps):  # Runge-Kutta 4
-            k1 = rate(b)
-            k2 = rate(b + dt / 2 * k1)
-            k3 = rate(b + dt / 2 * k2)
-            b = b + dt / 6 * (k1 + 2 * k2 + 2 * k3 + rate(b + dt * k3))
+        for _ in range(steps):
+            b = runge_kutta(rate, b, dt)
         t = until
         found.append((stretch_deformation(*b), *b))
     return numpy.array(found)
