@@ -72,7 +72,7 @@ double fields(const Config &config) {
   if (method.interface == InterfaceScheme::weno5) sum += 1;
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
-  if (contrast.exists()) sum += viscosity_fields(dimension);
+  if (contrast.exists()) sum += viscosity_fields(dimension) + (dimension == 2 ? 3 : 6);
   return sum;
 }
 

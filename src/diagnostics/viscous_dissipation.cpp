@@ -28,6 +28,18 @@ double at_centre_of(const ConstView &viscosity, const FieldBlock &velocity, cons
   return (dimension == 2 ? 1 : 2. / 3) * viscosity(cell[0], cell[1], cell[2]) * sum;
 }
 
+// That of the stress along surfaces: it and the rate of strain have no shear across them in common.
+template <int Dim>
+double along_surface(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Int3 &cell) {
+  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, cell[1], cell[2]);
+  if (stress.excess[cell[0]] == 0) return 0;
+  constexpr int components = Dim == 2 ? 3 : 6;
+  double rate[components], sum = 0;
+  stress.rate(cell[0], rate);
+  for (int c = 0; c < components; ++c) sum += (c < Dim ? 0.5 : 1) * square(rate[c]);
+  return stress.excess[cell[0]] * sum;
+}
+
 }  // namespace
 
 void viscous_dissipation(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Segment &row,
@@ -42,7 +54,8 @@ void viscous_dissipation(const Grid &grid, const FieldBlock &viscosity, const Fi
   };
   for (int i = 0; i < grid.owned()[0]; ++i) {
     const Int3 cell{i, row.j, row.k};
-    double sum = at_centre_of(viscosity[0], velocity, h, dim, cell);
+    double sum = at_centre_of(viscosity[0], velocity, h, dim, cell) +
+                 (dim == 2 ? along_surface<2> : along_surface<3>)(grid, viscosity, velocity, cell);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b)
         for (int upper_a = 0; upper_a < 2; ++upper_a)

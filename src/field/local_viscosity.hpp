@@ -2,12 +2,15 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "kernels/tangential_stress.hpp"
 
 namespace eulastic {
 
-/// Kinematic viscosities in a block: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy).
-inline constexpr int viscosity_fields(int dimension) { return dimension == 2 ? 2 : 4; }
+/// Kinematic viscosities in a block: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy),
+/// then at centres what they lack for strain along a surface, and its unit normal.
 inline constexpr int viscosity_of_edge(int dimension, int a, int b) { return dimension == 2 ? 1 : 4 - a - b; }
+inline constexpr int viscosity_along_surface(int dimension) { return dimension == 2 ? 2 : 4; }
+inline constexpr int viscosity_fields(int dimension) { return viscosity_along_surface(dimension) + 1 + dimension; }
 
 /// Dynamic viscosity on edges: one for all, or where bodies have their own that of the place.
 struct EdgeViscosity {
@@ -25,5 +28,22 @@ struct EdgeViscosity {
     return local ? density * (*local)[0](cell[0], cell[1], cell[2]) : uniform;
   }
 };
+
+/// The stress along surfaces around the centres of a row; two ghosts of v.
+template <int Dim>
+EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Grid &grid, const FieldBlock &viscosity,
+                                                                 const FieldBlock &velocity, int j, int k) {
+  kernels::TangentialStress<Dim> stress{};
+  const int along = viscosity_along_surface(Dim);
+  const ConstView q = velocity[0];
+  stress.excess = viscosity[along].row(j, k);
+  for (int d = 0; d < Dim; ++d) {
+    stress.velocity[d] = velocity[d].row(j, k);
+    stress.normal[d] = viscosity[along + 1 + d].row(j, k);
+    stress.stride[d] = q.stride(d);
+    stress.inverse[d] = 1 / grid.spacing()[d];
+  }
+  return stress;
+}
 
 }  // namespace eulastic

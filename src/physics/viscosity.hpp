@@ -3,6 +3,7 @@
 
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
+#include "grid/active_segments.hpp"
 #include "physics/fluid.hpp"
 
 #include <limits>
@@ -29,9 +30,23 @@ struct ViscosityContrast {
   bool exists() const { return least < most; }
 };
 
-/// Harmonic means, weighted by the solid fractions at centres and of four centres on edges. Centres with one layer of
-/// ghosts, edges of owned cells on both sides; one ghost of phi.
+/// Viscosity where it varies, of the phases of some moment.
+struct LocalViscosity {
+  FieldBlock fields;      ///< field/local_viscosity.hpp
+  ActiveSegments cut;     ///< cells, a layer of ghosts included, of which some have a viscosity along the surface
+  ActiveSegments beside;  ///< points whose faces feel them
+  FieldBlock stress;      ///< symmetric, at centres: work space of the force; 0 but for `cut`
+
+  LocalViscosity() = default;
+  explicit LocalViscosity(const Grid &grid);
+  std::size_t bytes() const { return fields.bytes() + stress.bytes(); }
+  explicit operator bool() const { return static_cast<bool>(fields); }
+};
+
+/// Harmonic means, weighted by the solid fractions at centres and of four centres on edges; along surfaces what
+/// arithmetic means have more, but for cells beside sides of the box. Centres with one layer of ghosts, edges of owned
+/// cells on both sides; two ghosts of phi.
 PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const std::vector<Phase> &phases,
-                                 FieldBlock &viscosity);
+                                 LocalViscosity *viscosity);
 
 }  // namespace eulastic

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/deviatoric_stress.hpp"
+#include "kernels/tangential_stress.hpp"
 #include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
 #include "physics/viscosity.hpp"
@@ -59,6 +60,85 @@ EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity,
 EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity, double scale,
                                   const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
   add_force<3>(grid, viscosity, scale, velocity, out, a, row);
+}
+
+template <int Dim>
+EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+                                    FieldBlock &out, const Segment &row) {
+  constexpr int components = Dim == 2 ? 3 : 6;
+  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, row.j, row.k);
+  double *T[components];
+  for (int c = 0; c < components; ++c) T[c] = out[c].row(row.j, row.k);
+#pragma omp simd
+  for (int i = row.i_begin; i < row.i_end; ++i) {
+    double rate[components];
+    stress.rate(i, rate);
+    for (int c = 0; c < components; ++c) T[c][i] = stress.excess[i] * rate[c];
+  }
+}
+
+EULASTIC_CLONES void tangential_row_2d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+                                       FieldBlock &out, const Segment &row) {
+  tangential_row<2>(grid, viscosity, velocity, out, row);
+}
+EULASTIC_CLONES void tangential_row_3d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+                                       FieldBlock &out, const Segment &row) {
+  tangential_row<3>(grid, viscosity, velocity, out, row);
+}
+
+// The stress along surfaces at all centres whose faces feel it.
+void find_tangential_stress(const Grid &grid, LocalViscosity &viscosity, const FieldBlock &velocity) {
+  const std::vector<Segment> &cut = viscosity.cut.all();
+  const int parts = row_parts(grid);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece piece(cut.size(), part, parts);
+    for (std::size_t s = piece.begin; s < piece.end; ++s)
+      (grid.dimension() == 2 ? tangential_row_2d : tangential_row_3d)(grid, viscosity.fields, velocity,
+                                                                      viscosity.stress, cut[s]);
+  });
+}
+
+template <int Dim>
+EULASTIC_INLINE void add_tangential_force(const Grid &grid, const FieldBlock &stress, double scale, int a,
+                                          const Segment &row, double *out) {
+  const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
+  const auto component = [&](int x, int y) { return stress[kernels::position<Dim>(x, y)].row(row.j, row.k); };
+  const ConstView q = stress[0];
+  const Real3 &h = grid.spacing();
+  const kernels::DivergenceFromCentres<Dim> force{component(a, a), component(a, b), component(a, c),
+                                                  q.stride(a),     q.stride(b),     q.stride(c),
+                                                  1 / h[a],        1 / h[b],        1 / h[c]};
+#pragma omp simd
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(scale, force.at(i), out[i]);
+}
+
+EULASTIC_CLONES void add_tangential_force_2d(const Grid &grid, const FieldBlock &stress, double scale, int a,
+                                             const Segment &row, double *out) {
+  add_tangential_force<2>(grid, stress, scale, a, row, out);
+}
+EULASTIC_CLONES void add_tangential_force_3d(const Grid &grid, const FieldBlock &stress, double scale, int a,
+                                             const Segment &row, double *out) {
+  add_tangential_force<3>(grid, stress, scale, a, row, out);
+}
+
+// Its force on faces of a row; bodies do not come to open sides.
+void add_tangential_force(const Grid &grid, const LocalViscosity &viscosity, double scale, int a, const Faces &row,
+                          double *out) {
+  if (row.side != 0 || viscosity.cut.all().empty()) return;
+  for (Segment s : viscosity.beside.row(row.j, row.k)) {
+    s.i_begin = std::max(s.i_begin, row.i_begin);
+    s.i_end = std::min(s.i_end, row.i_end);
+    (grid.dimension() == 2 ? add_tangential_force_2d : add_tangential_force_3d)(grid, viscosity.stress, scale, a, s,
+                                                                                out);
+  }
+}
+
+// Flops of both.
+double tangential_flops(const Grid &grid, const LocalViscosity &viscosity) {
+  const bool flat = grid.dimension() == 2;
+  return viscosity.cut.points() * (flat ? kernels::tangential_stress_flops_2d : kernels::tangential_stress_flops_3d) +
+         viscosity.beside.points() * grid.dimension() *
+             (2 + (flat ? kernels::centred_divergence_flops_2d : kernels::centred_divergence_flops_3d));
 }
 
 struct StageTerms {
@@ -178,19 +258,21 @@ EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, c
 
 }  // namespace
 
-PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                 const FieldBlock &velocity, FieldBlock &out) {
+PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
+                                 FieldBlock &out) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
+  find_tangential_stress(grid, viscosity, velocity);
   for_velocity_rows(grid, [&](int a, const Faces &row) {
-    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity, scale, velocity, out, a, row);
+    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity.fields, scale, velocity, out, a, row);
+    add_tangential_force(grid, viscosity, scale, a, row, out[a].row(row.j, row.k));
   });
-  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2));
+  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2) + tangential_flops(grid, viscosity));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
-                               const FieldBlock &viscosity, double time, double dt, int stages,
+                               LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
                                const RigidFaces *rigid, double viscosity_beside_rigid) {
   PetscFunctionBeginUser;
@@ -207,11 +289,17 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
               work.now[a].row(row.j, row.k));
   });
   for (int j = 2; j <= stages; ++j) {
-    PetscCall(exchange.update(work.now, 1));
+    PetscCall(exchange.update(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
     fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 1);
-    const StageTerms stage{
-        &viscosity, &work.rate, slope, &work.now, &work.before, rkl_stage_coefficients(j, stages, dt, 1), j == 2};
+    find_tangential_stress(grid, viscosity, work.now);
+    const StageTerms stage{&viscosity.fields,
+                           &work.rate,
+                           slope,
+                           &work.now,
+                           &work.before,
+                           rkl_stage_coefficients(j, stages, dt, 1),
+                           j == 2};
     std::unique_ptr<RigidStage> beside;
     if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached);
     for_velocity_rows(grid, [&](int a, const Faces &row) {
@@ -227,6 +315,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                      work.rate[a].row(row.j, row.k), slope ? (*slope)[a].row(row.j, row.k) : nullptr, out, &held);
       }
       (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row);
+      add_tangential_force(grid, viscosity, stage.c.viscous, a, row, out);
       if (!faces.empty()) RigidStage::release(faces, row.i_begin, row.i_end, held, out);
     });
     work.now.swap(work.before);
@@ -235,7 +324,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   for_velocity_rows(grid, [&](int a, const Faces &row) {
     end_row(row, work.now[a].row(row.j, row.k), velocity[a].row(row.j, row.k), velocity_star[a].row(row.j, row.k));
   });
-  scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3));
+  scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3) +
+              (stages - 1) * tangential_flops(grid, viscosity));
   PetscFunctionReturn(0);
 }
 

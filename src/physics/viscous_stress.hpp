@@ -3,17 +3,18 @@
 #pragma once
 
 #include "physics/super_time_stepping.hpp"
+#include "physics/viscosity.hpp"
 
 namespace eulastic {
 
-/// out += scale div(tau(v))/rho at owned faces; one ghost of v, corners included. `viscosity`: compute_viscosity().
-PetscErrorCode add_viscous_force(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                 const FieldBlock &velocity, FieldBlock &out);
+/// out += scale div(tau(v))/rho at owned faces; two ghosts of v, corners included. `viscosity`: compute_viscosity().
+PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
+                                 FieldBlock &out);
 
 /// super_time_step() with this stress for the Laplacian: its components see each other, so that ghosts are exchanged
 /// before every stage. Cut faces of rigid bodies have the kinematic viscosity of the fluid beside them.
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
-                               const FieldBlock &viscosity, double time, double dt, int stages,
+                               LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
                                const RigidFaces *rigid = nullptr, double viscosity_beside_rigid = 0);
 

@@ -79,7 +79,7 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscCall(work_->take("loads on rigid bodies", grid_->dimension(), &rate));
   PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, pressure, *phases, none, rate.fields()));
   add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
-  if (viscosity) PetscCall(add_viscous_force(*grid_, *viscosity, 1, now_.velocity, rate.fields()));
+  if (viscosity) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
   PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, pressure,
                                 rate.fields(), force, loads));
   if (!travel) PetscFunctionReturn(0);

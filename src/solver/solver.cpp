@@ -89,7 +89,7 @@ PetscErrorCode Solver::prepare() {
   PetscCall(work_->reserve(
       work_fields(spec_, grid_->dimension(),
                   {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
-  if (contrast({}).exists()) viscosity_ = FieldBlock(*grid_, viscosity_fields(grid_->dimension()));
+  if (contrast({}).exists()) viscosity_ = LocalViscosity(*grid_);
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
     next_tensor_ = tensor_at_rest(*grid_);
@@ -244,7 +244,7 @@ PetscErrorCode Solver::project(double dt) {
                                now_.pressure));
   respect_rigid(now_.time + dt, dt, increment.fields(), velocity_star_);
   if (loads_) PetscCall(settle_loads(dt, divergence, increment.fields()));
-  if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_, rotate.local, divergence, now_.pressure));
+  if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_.fields, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }

@@ -172,7 +172,7 @@ private:
   FieldBlock slope_;  ///< of the elastic force in time
   std::unique_ptr<Feeders> feeders_;    ///< null where no side has one
   std::unique_ptr<OutletLoads> loads_;  ///< null where no side has one
-  FieldBlock viscosity_;                ///< of the step, where bodies have their own; else empty
+  LocalViscosity viscosity_;            ///< of the step, where bodies have their own; else empty
   ExteriorLayers layers_;
   SurfaceCorrection surface_;
   std::unique_ptr<InterfaceTransport> interface_;

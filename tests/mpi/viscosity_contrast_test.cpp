@@ -25,7 +25,8 @@ struct Box {
   BoxSides sides{};
   Fluid fluid;
   std::vector<Phase> phases{1};
-  FieldBlock velocity, viscosity;
+  FieldBlock velocity;
+  LocalViscosity viscosity;
 
   Box(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
     GridSpec spec;
@@ -42,7 +43,7 @@ struct Box {
     fluid.viscosity = 0.2;
     phases[0].material.viscosity = contrast * fluid.viscosity;
     velocity = FieldBlock(grid, dim);
-    viscosity = FieldBlock(grid, viscosity_fields(dim));
+    viscosity = LocalViscosity(grid);
     for (int c = 0; c < dim; ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
     GhostExchange exchange(grid);
     EXPECT_EQ(exchange.update(velocity, 2), 0);
@@ -54,7 +55,7 @@ struct Box {
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
     fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-    EXPECT_EQ(compute_viscosity(grid, fluid, phases, viscosity), 0);
+    EXPECT_EQ(compute_viscosity(grid, fluid, phases, &viscosity), 0);
   }
 
   // Sum of v . div tau over all faces but those on sides, where v = 0.
@@ -71,17 +72,19 @@ struct Box {
   }
   FlowMeasures flow() const {
     FlowMeasures measures;
-    EXPECT_EQ(measure_flow(grid, velocity, phases, {fluid.density, fluid.viscosity, 0, 0, &viscosity}, &measures), 0);
+    EXPECT_EQ(
+        measure_flow(grid, velocity, phases, {fluid.density, fluid.viscosity, 0, 0, &viscosity.fields}, &measures), 0);
     return measures;
   }
   EnergyRates rates() const {
     EnergyRates rates;
-    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, {0.5}, &viscosity};
+    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, {0.5}, &viscosity.fields};
     EXPECT_EQ(measure_energy_rates(grid, velocity, phases, numbers, &rates), 0);
     return rates;
   }
   std::vector<WallStress> stresses() const {
-    return wall_shear_stress(grid, sides, 0, {grid, fluid.viscosity, fluid.density, &viscosity}, velocity, phases);
+    return wall_shear_stress(grid, sides, 0, {grid, fluid.viscosity, fluid.density, &viscosity.fields}, velocity,
+                             phases);
   }
 };
 

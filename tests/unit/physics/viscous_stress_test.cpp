@@ -11,21 +11,23 @@ namespace {
 
 struct Flow {
   Grid grid;
-  FieldBlock velocity, viscosity, force;
+  FieldBlock velocity, force;
+  LocalViscosity viscosity;
 
   explicit Flow(bool flat, const Int3 &cells = {11, 6, 5}) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat, cells)), 0);
     velocity = FieldBlock(grid, grid.dimension());
     force = FieldBlock(grid, grid.dimension());
-    viscosity = FieldBlock(grid, viscosity_fields(grid.dimension()));
+    viscosity = LocalViscosity(grid);
   }
   template <class Value>
   void set_viscosity(const Value &value) {
     const int dim = grid.dimension();
-    fill_everywhere(grid, viscosity[0], at_centre, value);
+    fill_everywhere(grid, viscosity.fields[0], at_centre, value);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b)
-        fill_everywhere(grid, viscosity[viscosity_of_edge(dim, a, b)], TensorComponent{a, b}.staggering(), value);
+        fill_everywhere(grid, viscosity.fields[viscosity_of_edge(dim, a, b)], TensorComponent{a, b}.staggering(),
+                        value);
   }
   void find_force() {
     force.clear();
@@ -102,7 +104,7 @@ double stiffest(Flow &flow) {
     eigenvalue = product / square;
     EXPECT_GE(eigenvalue, 0);
     each([&](double &v, const double &f) { v = -f / (eigenvalue * std::sqrt(square)); });
-    EXPECT_EQ(exchange.update(flow.velocity, 1), 0);
+    EXPECT_EQ(exchange.update(flow.velocity, 2), 0);
   }
   return eigenvalue;
 }
@@ -117,12 +119,18 @@ TEST(ViscousStress, SpectrumEndsWhereTheTimeStepLimitSays) {
     flow.set_viscosity([&](const Point &) { return most; });
     EXPECT_NEAR(stiffest(flow), limit, 1e-3 * limit);
     Random random(8);
-    const Layout &layout = flow.grid.layout();
-    for (int f = 0; f < flow.viscosity.count(); ++f)
-      for (std::ptrdiff_t at = 0; at < layout.size; ++at)
-        flow.viscosity.data()[f * layout.size + at] = random() > 0 ? most : 0.01 * most;
     GhostExchange exchange(flow.grid);
-    EXPECT_EQ(exchange.update(flow.viscosity, 1), 0);
+    std::vector<Phase> phases(1);
+    phases[0].fraction = FieldBlock(flow.grid, 1);
+    phases[0].material.viscosity = most;
+    for_points(flow.grid, phases[0].fraction[0], at_centre,
+               [&](double &phi, double, double, double) { phi = std::clamp(0.5 + random(), 0.0, 1.0); });
+    EXPECT_EQ(exchange.update(phases[0].fraction, 2), 0);
+    EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);
+    Fluid thin;
+    thin.viscosity = 0.01 * most;
+    EXPECT_EQ(compute_viscosity(flow.grid, thin, phases, &flow.viscosity), 0);
+    EXPECT_FALSE(flow.viscosity.cut.all().empty());
     EXPECT_LT(stiffest(flow), limit);
     EXPECT_GT(stiffest(flow), 0.3 * limit);
 
@@ -163,16 +171,56 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
         for (int j = -1; j < n[1] + 1; ++j)
           for (int i = -1; i < n[0] + 1; ++i) phases[p].fraction[0](i, j, k) = part[odd(i)][p];
     for (Phase &phase : phases) EXPECT_EQ(phase.rows.find(flow.grid, phase.fraction[0]), 0);
-    EXPECT_EQ(compute_viscosity(flow.grid, fluid, phases, flow.viscosity), 0);
+    EXPECT_EQ(compute_viscosity(flow.grid, fluid, phases, &flow.viscosity), 0);
     // 1/nu: 2/.8 in the fluid and the second phase, 2/4 in the first, which shares overfull cells.
     const double even = 0.75 * 2.5 + 0.25 * 0.5, full = 0.5 * 2.5 + 0.5 * 0.5;
     for (int k = 0; k < n[2]; ++k)
       for (int j = -1; j < n[1] + 1; ++j)
-        for (int i = -1; i < n[0] + 1; ++i) EXPECT_NEAR(flow.viscosity[0](i, j, k), 1 / (odd(i) ? full : even), 1e-14);
+        for (int i = -1; i < n[0] + 1; ++i)
+          EXPECT_NEAR(flow.viscosity.fields[0](i, j, k), 1 / (odd(i) ? full : even), 1e-14);
     for (int i = 0; i < n[0] + 1; ++i) {
-      EXPECT_NEAR(flow.viscosity[viscosity_of_edge(dim, 0, 1)](i, n[1], 0), 2 / (full + even), 1e-14);
+      EXPECT_NEAR(flow.viscosity.fields[viscosity_of_edge(dim, 0, 1)](i, n[1], 0), 2 / (full + even), 1e-14);
       if (flat) continue;
-      EXPECT_NEAR(flow.viscosity[viscosity_of_edge(dim, 1, 2)](i, 0, n[2]), 1 / (odd(i) ? full : even), 1e-14);
+      EXPECT_NEAR(flow.viscosity.fields[viscosity_of_edge(dim, 1, 2)](i, 0, n[2]), 1 / (odd(i) ? full : even), 1e-14);
+    }
+  }
+}
+
+// A surface in the middle of a layer of cells: strain along it is felt by what the arithmetic means have more than the
+// harmonic ones, shear across it by nothing.
+TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
+  for (const bool flat : {false, true}) {
+    Flow flow(flat);
+    const int dim = flow.grid.dimension();
+    const double thin = 0.5, thick = 4, h = flow.grid.spacing()[1];
+    Fluid fluid;
+    fluid.density = 2;
+    fluid.viscosity = thin * fluid.density;
+    std::vector<Phase> phases(1);
+    phases[0].material.viscosity = thick * fluid.density;
+    phases[0].fraction = FieldBlock(flow.grid, 1);
+    fill_everywhere(flow.grid, phases[0].fraction[0], at_centre,
+                    [h](const Point &x) { return std::clamp(x[1] / h - 2, 0.0, 1.0); });  // 1/2 where j = 2
+    EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);
+    EXPECT_EQ(compute_viscosity(flow.grid, fluid, phases, &flow.viscosity), 0);
+    const auto more = [&](double phi) { return thin + phi * (thick - thin) - 1 / ((1 - phi) / thin + phi / thick); };
+    const double beside = (more(0.25) + more(0.75)) / 2, here = more(0.5);  // edges across, and along, the surface
+    const double excess = flat ? (here + beside) / 2 : (3 * here + 2 * here + 4 * beside) / 9;
+    const int along = viscosity_along_surface(dim), at = flow.grid.owned()[0] / 2;
+    EXPECT_NEAR(flow.viscosity.fields[along](at, 2, 0), excess, 1e-14);
+    EXPECT_NEAR(flow.viscosity.fields[along + 2](at, 2, 0), 1, 1e-14);
+    for (const int j : {1, 3}) EXPECT_EQ(flow.viscosity.fields[along](at, j, 0), 0);
+
+    fill_everywhere(flow.grid, flow.velocity[0], at_face[0], [](const Point &x) { return x[0] + 7 * x[1]; });
+    fill_everywhere(flow.grid, flow.velocity[1], at_face[1], [&](const Point &x) { return flat ? -x[1] : 0; });
+    if (!flat) fill_everywhere(flow.grid, flow.velocity[2], at_face[2], [](const Point &x) { return 5 * x[1] - x[2]; });
+    flow.find_force();
+    for (const TensorComponent &component : tensor_components(dim)) {
+      const bool diagonal = component.a == component.b;
+      const double rate = !diagonal ? 0 : component.a == 0 ? 2 : component.a == dim - 1 ? -2 : 0;
+      const int c = dim == 2 && !diagonal ? 2 : diagonal ? component.a : 6 - component.a - component.b;
+      EXPECT_NEAR(flow.viscosity.stress[c](at, 2, 0), rate * excess, 1e-13) << flat << c;
+      EXPECT_EQ(flow.viscosity.stress[c](at, 3, 0), 0);
     }
   }
 }
