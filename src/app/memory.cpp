@@ -73,6 +73,7 @@ double fields(const Config &config) {
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + (dimension == 2 ? 3 : 6);
+  if (contrast.settles() && method.staggered() && method.viscous == ViscousScheme::rkl) sum += 1;  // pressure before
   return sum;
 }
 

@@ -13,6 +13,7 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   for (int d = 0; d < state.velocity.count(); ++d)
     fields.push_back({std::string("velocity_") + "xyz"[d], at_face[d], state.velocity[d]});
   fields.push_back({"pressure", at_centre, state.pressure[0]});
+  if (state.pressure_before) fields.push_back({"pressure_before", at_centre, state.pressure_before[0]});
   for (int d = 0; d < state.advection.count(); ++d)
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   const auto &components = tensor_components(solver.grid().dimension());
@@ -54,6 +55,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const 
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
   if (OutletLoads *loads = solver.loads()) reals["outlet_loads"] = loads->numbers();
+  if (s.pressure_before) reals["pressure_interval"] = {s.pressure_interval};
   if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
@@ -98,6 +100,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   position->energy = {reals["guarded_energy"][0], reals["guarded_energy"][1]};
   o.mach_max = reals["mach_max"][0];
   if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
+  if (s.pressure_before) s.pressure_interval = reals["pressure_interval"][0];
   s.step = integers["step"][0];
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];

@@ -28,6 +28,10 @@ struct ViscosityContrast {
   /// A body, with the largest rho c^2 in it.
   void add(const Material &material, double stiffness);
   bool exists() const { return least < most; }
+  /// Whether all viscosities lie within that factor of the fluid's.
+  bool within(double factor) const { return most <= factor * fluid && fluid <= factor * least; }
+  /// Up to this the pressure of the next step can be foreseen; beyond, it would swing for a hundred steps and more.
+  bool settles() const { return exists() && within(20); }
 };
 
 /// Viscosity where it varies, of the phases of some moment.

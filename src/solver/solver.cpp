@@ -90,6 +90,7 @@ PetscErrorCode Solver::prepare() {
       work_fields(spec_, grid_->dimension(),
                   {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
   if (contrast({}).exists()) viscosity_ = LocalViscosity(*grid_);
+  if (expects_pressure()) now_.pressure_before = FieldBlock(*grid_, 1);
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
     next_tensor_ = tensor_at_rest(*grid_);
@@ -122,6 +123,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   if (feeders_) PetscCall(feeders_->recall_velocity(now_.velocity, &spec_.sides));
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
+  if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
@@ -166,10 +168,11 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 }
 
 std::size_t Solver::bytes() const {
-  std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + velocity_star_.bytes() + next_fraction_.bytes() +
-                    next_tensor_.bytes() + now_.advection.bytes() + work_->bytes() + flow_.bytes() +
-                    viscosity_.bytes() + pressure_solver_->bytes() + (rigid_ ? rigid_->bytes() : 0) +
-                    (loads_ ? loads_->bytes() : 0) + (membranes_ ? membranes_->bytes() : 0);
+  std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + now_.pressure_before.bytes() +
+                    velocity_star_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
+                    work_->bytes() + flow_.bytes() + viscosity_.bytes() + pressure_solver_->bytes() +
+                    (rigid_ ? rigid_->bytes() : 0) + (loads_ ? loads_->bytes() : 0) +
+                    (membranes_ ? membranes_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
@@ -182,7 +185,8 @@ PetscErrorCode Solver::step(double dt) {
   PetscFunctionBeginUser;
   PetscCall(move_rigid(now_.time + dt, dt));
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
-  PetscCall(predict(dt));                                                       // (7)
+  if (now_.pressure_before) expect_pressure(dt);
+  PetscCall(predict(dt));  // (7)
   if (feeders_) {
     PetscCall(exchange_->update(velocity_star_, Grid::stencil_width));
     PetscCall(feeders_->feed_velocity(now_.time + dt, velocity_star_, &spec_.sides));

@@ -124,6 +124,9 @@ private:
     double uniform = 0, local = 0;
   };
   Rotation rotation() const;
+  /// Whether a step begins with the pressure expected in its middle, rather than with that of the last one.
+  bool expects_pressure() const;
+  void expect_pressure(double dt);
   EvolveRule evolve_rule(const Phase &phase) const;
   bool drifts() const;  ///< no wall holds the fluid
   PetscErrorCode transport_to_middle(double dt);

@@ -18,6 +18,8 @@ struct State {
   double travel = 0;           ///< cells the interface may have moved since the labels were carried
   FieldBlock velocity;         ///< u, v (, w) on faces, three ghosts valid
   FieldBlock pressure;         ///< at centres, one ghost valid; half a step behind when staggered
+  FieldBlock pressure_before;  ///< that of the step before, where it is needed; else empty
+  double pressure_interval = 0;  ///< between both, 0: there are not two yet
   FieldBlock advection;        ///< v.grad v of the last step, for Adams-Bashforth; empty with Euler
   std::vector<Phase> phases;   ///< three ghosts valid; half a step behind when staggered
 };

@@ -59,17 +59,38 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   PetscFunctionReturn(0);
 }
 
-// Half of what the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3
-// of it. With the viscosity of the place p turns into noise where bodies are 20 or 100 times as viscous; with the least
-// one it does not at any contrast.
+bool Solver::expects_pressure() const {
+  return spec_.staggered() && spec_.viscous == ViscousScheme::rkl && contrast({}).settles();
+}
+
+// What of the pressure is wrong makes a flow only where viscosity varies, and there it takes steps to settle: that of
+// the last step would leave the velocity behind by a few (docs/method.md, section 16).
+void Solver::expect_pressure(double dt) {
+  const double interval = now_.dt > 0 ? 0.5 * (now_.dt + dt) : 0;
+  const double ratio = now_.pressure_interval > 0 ? interval / now_.pressure_interval : 0;
+  double *now = now_.pressure.data(), *before = now_.pressure_before.data();
+  const std::size_t size = now_.pressure.layout().size;
+#pragma omp simd
+  for (std::size_t i = 0; i < size; ++i) {
+    const double p = now[i];
+    now[i] = p + ratio * (p - before[i]);
+    before[i] = p;
+  }
+  now_.pressure_interval = interval;
+}
+
+// What the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3 of it;
+// half of it where each step begins with the last pressure. Of a body much more viscous than the fluid nothing but the
+// fluid resists a dilation, so that the viscosity of the place turns p into noise there; the least one does not at any
+// contrast.
 Solver::Rotation Solver::rotation() const {
   if (!spec_.staggered()) return {};
   if (!viscosity_) return {0.5 * spec_.fluid.kinematic_viscosity(), 0};
-  constexpr double moderate = 5;
   const ViscosityContrast range = contrast({});
-  const double share = grid_->dimension() == 3 ? 2. / 3 : 0.5;
-  if (range.most <= moderate * range.fluid && range.fluid <= moderate * range.least) return {0, share};
-  return {share * range.least / spec_.fluid.density, 0};
+  const double whole = grid_->dimension() == 3 ? 4. / 3 : 1;
+  if (expects_pressure()) return {whole * range.least / spec_.fluid.density, 0};
+  if (range.within(5)) return {0, whole / 2};
+  return {whole / 2 * range.least / spec_.fluid.density, 0};
 }
 
 }  // namespace eulastic
