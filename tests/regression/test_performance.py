@@ -24,7 +24,16 @@ class Performance(WithFolder):
             performance_runs.write_tables({"z": ""})
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
-                                 "cost_of_bodies", "small_body", "memory", "crowd"})
+                                 "cost_of_bodies", "small_body", "memory", "crowd", "time_steps"})
+
+    def test_error_in_time(self):
+        steps = load("studies/performance/time_steps")
+        curve = lambda run: run
+        fine = (numpy.arange(5.), numpy.array([0, 1, 2, 3, 4.]))
+        self.assertEqual(steps.error(curve, fine, fine), 0)
+        self.assertAlmostEqual(steps.error(curve, (numpy.array([0, 1.5, 4]), numpy.array([7, 1.7, 3.9])), fine), .05)
+        for case in steps.CASES:
+            self.assertEqual(steps.options(case)["-time_step"], "0")
 
     def test_table_of_verbs(self):
         table1 = load("studies/paper/paper_table1")
