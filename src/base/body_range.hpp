@@ -15,6 +15,10 @@ struct BodyRange {
     const auto bound = [&](int r) { return static_cast<int>(std::int64_t(bodies) * r / ranks); };
     return {bound(rank), bound(rank + 1)};
   }
+  /// The rank whose range has `body`.
+  static int owner(int body, int bodies, int ranks) {
+    return static_cast<int>(((std::int64_t(body) + 1) * ranks - 1) / bodies);
+  }
 };
 
 }  // namespace eulastic
