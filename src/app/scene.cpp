@@ -16,11 +16,7 @@ namespace {
 PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *bodies) {
   PetscFunctionBeginUser;
   for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(grid, state.phases));
-  std::vector<Int3> references;
-  PetscCall(bodies->all_references(grid.comm(), &references));
-  for (Int3 &cell : references)
-    for (int d = 0; d < 3; ++d) cell[d] = (cell[d] % grid.cells()[d] + grid.cells()[d]) % grid.cells()[d];
-  bodies->set_references(references);
+  bodies->wrap(grid);
   PetscFunctionReturn(0);
 }
 
