@@ -63,7 +63,7 @@ public:
 
   /// Moves reference cells into the box, where it is new.
   void wrap(const Grid &grid);
-  /// Volumes at t = 0 of the bodies that this rank owns; empty before set_first_volumes().
+  /// Volumes at t = 0 of the bodies that this rank owns; empty before set_first_volumes(), which comes after measure().
   const std::vector<double> &first_volumes() const { return first_volumes_; }
   void set_first_volumes(std::vector<double> owned) { first_volumes_ = std::move(owned); }
   /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
