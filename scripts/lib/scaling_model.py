@@ -26,6 +26,7 @@ COUNTS = ROOT / "tools/step_counts.csv"
 CASE = ROOT / "options/channel_rbc.opts"
 COUNTED_BOX, COUNTED_SPLIT = 32, 3
 LEVEL_GATHERED = 4096  # cells: what the V-cycle gathers on every rank
+LEVEL_MESSAGES = 3     # to a neighbour in a sweep, of each coarse level that is not gathered
 SPACING = 21.12 / 96   # of CASE as counted
 # What stands on the command line of scripts/count_communication beside CASE, for the counts and for -check_only.
 SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
@@ -35,7 +36,7 @@ ASSUMPTIONS = [
     "an exchange of a block of fields is a message to each neighbour and waits for one latency",
     "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
     "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
-    "levels of the V-cycle beyond those counted send five messages to a neighbour in a sweep, as the counted do; their "
+    "levels of the V-cycle beyond those counted send three messages to a neighbour in a sweep, as the counted do; their "
     "bytes are left out",
     "all ranks compute as long as the largest box takes; bodies are spread evenly, output and snapshots left out",
     "fast: two sweeps and about twenty viscous stages in a step, as counted; its arithmetic over that of classic is as "
@@ -185,21 +186,27 @@ def shared_levels(cells):
     return max(0, math.ceil(math.log(math.prod(cells) / LEVEL_GATHERED, 8) - 1e-9))
 
 
+def more_messages(step, split):
+    """To a neighbour, of levels of the V-cycle beyond those counted."""
+    return LEVEL_MESSAGES * step.sweeps * (shared_levels(split.cells) - shared_levels([COUNTED_BOX * COUNTED_SPLIT] * 3))
+
+
+def exchanges(machine, split, messages, size):
+    """{part: seconds} of so many messages to each neighbour, of `size` bytes in all."""
+    return {"latency": messages * (machine.latency + 2 * machine.overhead * split.neighbours),
+            "exchange": size / machine.bandwidth, "pack": 4 * size / machine.memory_bandwidth}
+
+
 def model(machine, step, split):
     """{part of a step: seconds}; their sum is the step."""
     parts = {"compute": math.prod(split.box) * machine.classic_seconds_per_cell * step.relative}
     if split.count == 1:
         return parts
-    levels = shared_levels(split.cells)
-    more = 5 * step.sweeps * (levels - shared_levels([COUNTED_BOX * COUNTED_SPLIT] * 3))
-    messages = step.plain.messages + step.cycle.messages + more
-    size = split.bytes(step.plain.w) + split.bytes(step.cycle.w)
+    messages = step.plain.messages + step.cycle.messages + more_messages(step, split)
     rounds = math.ceil(math.log2(split.count))
     hop = machine.latency + 2 * machine.overhead
-    gathered = 8 * math.prod(split.cells) / 8 ** levels
-    parts["latency"] = messages * (machine.latency + 2 * machine.overhead * split.neighbours)
-    parts["exchange"] = size / machine.bandwidth
-    parts["pack"] = 4 * size / machine.memory_bandwidth
+    gathered = 8 * math.prod(split.cells) / 8 ** shared_levels(split.cells)
+    parts.update(exchanges(machine, split, messages, split.bytes(step.plain.w) + split.bytes(step.cycle.w)))
     parts["reductions"] = sum(calls * rounds * (hop + bytes / machine.bandwidth) for calls, bytes in step.reductions)
     parts["gather"] = step.sweeps * (rounds * hop + gathered / machine.bandwidth)
     return parts

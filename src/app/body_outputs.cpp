@@ -16,8 +16,10 @@ PetscErrorCode Outputs::measure_drift() {
   } resolved_one;  // MPI_DOUBLE_INT; of equal ones the first
   PetscFunctionBeginUser;
   m.volume_drift = 0;
-  for (const BodyMeasure &body : m.bodies) {
-    const double first = first_volume_[body.label - 1];
+  const std::vector<double> &first_volumes = solver_->bodies().first_volumes();
+  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+    const BodyMeasure &body = m.bodies[b];
+    const double first = first_volumes[b];
     const bool left = body.volume == 0 && grid_->any_open();
     const double drift = first > 0 && !left ? std::fabs(body.volume / first - 1) : 0;
     m.volume_drift = std::max(m.volume_drift, drift);
@@ -34,13 +36,16 @@ PetscErrorCode Outputs::measure_drift() {
   PetscFunctionReturn(0);
 }
 
-std::string Outputs::unresolved_bodies() const {
-  const auto small = std::count_if(first_volume_.begin(), first_volume_.end(), [&](double v) { return !resolved(v); });
-  if (small == 0) return {};
-  return "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) + " of " +
-         std::to_string(first_volume_.size()) +
-         "; hardly resolved, and -guard_volume_drift does not look at them; more "
-         "-grid_cells";
+PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
+  long small = 0;
+  PetscFunctionBeginUser;
+  for (const double volume : solver_->bodies().first_volumes()) small += !resolved(volume);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &small, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  *line = small == 0 ? ""
+                     : "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) +
+                           " of " + std::to_string(solver_->bodies().bodies()) +
+                           "; hardly resolved, and -guard_volume_drift does not look at them; more -grid_cells";
+  PetscFunctionReturn(0);
 }
 
 std::vector<BodyRecord> Outputs::records(const std::vector<BodyMeasure> &bodies,
@@ -87,7 +92,7 @@ std::vector<BodyRecord> Outputs::records(const std::vector<BodyMeasure> &bodies,
   return records;
 }
 
-// The first of all bodies.
+// The first of all bodies, on rank 0.
 PetscErrorCode Outputs::list_bodies(Summary *summary) const {
   std::vector<BodyMeasure> bodies;
   std::vector<SurfaceMeasure> surfaces;

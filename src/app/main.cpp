@@ -49,6 +49,10 @@ int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
+  if (parsed.error.empty() && parsed.config.check_only && parsed.config.balance && ranks > 1)
+    parsed.error =
+        "-balance: -check_only on more than one rank speaks of equal parts only, a run cuts by what its fields hold; "
+        "accepted: -balance false with it";
   if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
   if (!parsed.error.empty()) {
     print_error(parsed.error);

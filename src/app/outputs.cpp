@@ -19,7 +19,6 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
   membranes_ = std::any_of(config.species.begin(), config.species.end(),
                            [](const SpeciesSpec &spec) { return spec.is_membrane(); });
-  first_volume_ = position.first_volume;
   energy_ = position.energy;
   mach_max_ = position.mach_max;
 }
@@ -71,13 +70,11 @@ PetscErrorCode Outputs::measure() {
       {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
-  if (first_volume_.empty()) {
+  if (solver_->bodies().first_volumes().empty()) {
     std::vector<double> volumes;
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
-    PetscCall(
-        gather_bodies(grid_->comm(), solver_->bodies().bodies(), solver_->bodies().bodies(), volumes, &first_volume_));
+    solver_->bodies().set_first_volumes(std::move(volumes));
   }
-  solver_->bodies().complete(&first_volume_);
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
   PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
@@ -199,7 +196,6 @@ PetscErrorCode Outputs::write_due(bool last) {
 
 PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionBeginUser;
-  solver_->bodies().complete(&first_volume_);
   PetscCall(series_.sync());
   PetscCall(samples_.sync());
   if (bodies_file_) PetscCall(bodies_file_->flush());
@@ -209,7 +205,6 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   position->series_time = series_due_.last_time;
   position->snapshot_time = snapshot_due_.last_time;
   position->profile_time = samples_.profile_time();
-  position->first_volume = first_volume_;
   position->energy = energy_;
   position->mach_max = mach_max_;
   PetscFunctionReturn(0);

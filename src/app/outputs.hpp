@@ -22,7 +22,6 @@ namespace eulastic {
 struct OutputsPosition {
   long series_rows = 0, bodies_rows = 0, snapshots = 0;
   double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
-  std::vector<double> first_volume;                                ///< of every body, at t = 0
   EnergyBudget energy;
   double mach_max = 0;
 };
@@ -44,8 +43,8 @@ public:
   PetscErrorCode measure();
   /// As of the last measure(), which every row of series.csv makes.
   const Measured &measured() const { return measured_; }
-  /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing.
-  std::string unresolved_bodies() const;
+  /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing. Collective, after measure().
+  PetscErrorCode unresolved_bodies(std::string *line) const;
   /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
   PetscErrorCode write_summary(Summary summary);
 
@@ -74,7 +73,6 @@ private:
   Measured measured_;
   std::vector<SideFlow> sides_;  ///< as of the last measure_energy()
   EnergyBudget energy_;
-  std::vector<double> first_volume_;
   long bodies_rows_ = 0, snapshots_before_ = 0;
   double mach_max_ = 0;
 };

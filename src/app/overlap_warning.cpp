@@ -1,6 +1,7 @@
 #include "app/overlap_warning.hpp"
 
 #include "app/voxels.hpp"
+#include "base/deliver.hpp"
 #include "bodies/overlap.hpp"
 #include "bodies/shapes.hpp"
 #include "io/fail_together.hpp"
@@ -60,65 +61,71 @@ std::string describe(const Config &config, const Overlap &first, long count) {
   return text + remedy(moves_two ? two : one);
 }
 
-// Bodies and those of a species from a file, which each rank reads some layers of.
-PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, std::size_t file, std::vector<char> *overlaps,
-                                 Overlap *first) {
+// Bodies and those of a species from a file, which each rank reads some layers of. `overlaps`: of the own bodies.
+PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, std::size_t file, int rank, int ranks,
+                                 std::vector<char> *overlaps, Overlap *first) {
   PetscFunctionBeginUser;
+  struct Record {
+    int label;
+    SharedVolume shared;
+  };
   const SpeciesSpec &solid = config.species[file];
-  std::vector<std::size_t> others;
-  std::vector<SharedVolumes> shared;
-  for (std::size_t s = 0; s < config.species.size(); ++s) {
-    const SpeciesSpec &spec = config.species[s];
-    if (spec.shape == Shape::voxels || spec.placement == Placement::random) continue;
-    if (spec.material().attached && solid.material().attached) continue;
-    others.push_back(s);
-    shared.push_back({std::vector<std::int64_t>(config.places[s].size()), std::vector<char>(config.places[s].size())});
-  }
-  if (others.empty()) PetscFunctionReturn(0);
-  int rank, ranks;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  const std::vector<int> label = first_labels(config);
   const std::int64_t layers = config.grid.cells[2];
   const auto limit = [&](int r) { return static_cast<int>(layers * r / ranks); };
+  const BodyRange own = BodyRange::of(label.back() - 1, rank, ranks);
+  std::vector<std::map<int, SharedVolume>> shared(config.species.size());
+  std::vector<Record> records;
+  std::vector<int> owners;
   PetscCall(fail_together(comm, read_voxels(solid, config.grid, limit(rank), limit(rank + 1),
                                             [&](const CellWindow &window, ConstView fraction) {
-                                              for (std::size_t n = 0; n < others.size(); ++n)
-                                                add_shared(config.species[others[n]], config.places[others[n]],
-                                                           config.grid, window, fraction, &shared[n]);
+                                              for (std::size_t s = 0; s < config.species.size(); ++s) {
+                                                const SpeciesSpec &spec = config.species[s];
+                                                if (spec.shape == Shape::voxels || spec.placement == Placement::random)
+                                                  continue;
+                                                if (spec.material().attached && solid.material().attached) continue;
+                                                add_shared(spec, config.places[s], config.grid, window, fraction,
+                                                           &shared[s]);
+                                              }
                                             })));
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    for (const auto &[body, with] : shared[s]) {
+      records.push_back({label[s] + body, with});
+      owners.push_back(BodyRange::owner(label[s] + body - 1, label.back() - 1, ranks));
+    }
+  PetscCall(deliver(comm, owners, &records));
   double cell = std::ldexp(1.0, -30);
   for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d) cell *= config.grid.length[d] / config.grid.cells[d];
-  const std::vector<int> label = first_labels(config);
-  for (std::size_t n = 0; n < others.size(); ++n) {
-    const int count = static_cast<int>(shared[n].overlaps.size());
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shared[n].overlaps.data(), count, MPI_SIGNED_CHAR, MPI_MAX, comm));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shared[n].volume.data(), count, MPI_INT64_T, MPI_SUM, comm));
-    for (int b = 0; b < count; ++b) {
-      if (!shared[n].overlaps[b]) continue;
-      const auto [one, two] = std::minmax({label[others[n]] + b, label[file]});
-      (*overlaps)[one - 1] = (*overlaps)[two - 1] = 1;
-      const Overlap pair{one, two, cell * double(shared[n].volume[b])};
-      if (is_before(pair, *first)) *first = pair;
-    }
+  std::map<int, SharedVolume> sums;
+  for (const Record &record : records) {
+    SharedVolume &sum = sums[record.label];
+    sum.volume += record.shared.volume;
+    sum.overlaps = sum.overlaps || record.shared.overlaps;
   }
+  int any = 0;
+  for (const auto &[body, sum] : sums) {
+    if (!sum.overlaps) continue;
+    any = 1;
+    (*overlaps)[body - 1 - own.begin] = 1;
+    const auto [one, two] = std::minmax({body, label[file]});
+    const Overlap pair{one, two, cell * double(sum.volume)};
+    if (is_before(pair, *first)) *first = pair;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm));
+  if (any > 0 && own.has(label[file] - 1)) (*overlaps)[label[file] - 1 - own.begin] = 1;
   PetscFunctionReturn(0);
 }
 
-// Bodies of shapes.
-PetscErrorCode compare_shapes(MPI_Comm comm, const Config &config, std::vector<char> *overlaps, Overlap *first) {
+// The first of the pairs that ranks have found.
+PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
   PetscFunctionBeginUser;
-  int rank, ranks;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  std::vector<char> found = find_overlaps(config.species, config.places, config.grid, rank, ranks, first);
-  if (found.empty()) PetscFunctionReturn(0);  // on all ranks
-  overlaps->swap(found);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, overlaps->data(), static_cast<int>(overlaps->size()), MPI_SIGNED_CHAR,
-                             MPI_MAX, comm));
-  std::vector<Overlap> firsts(ranks);
-  PetscCallMPI(MPI_Allgather(first, sizeof *first, MPI_BYTE, firsts.data(), sizeof *first, MPI_BYTE, comm));
-  for (const Overlap &other : firsts)
-    if (other.body > 0 && is_before(other, *first)) *first = other;
+  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t mine = first->body > 0 ? (std::int64_t{first->body} << 32) + first->other : none;
+  std::int64_t pair = mine;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pair, 1, MPI_INT64_T, MPI_MIN, comm));
+  double volume = mine == pair ? first->volume : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
+  if (pair < none) *first = {static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), volume};
   PetscFunctionReturn(0);
 }
 
@@ -128,12 +135,19 @@ PetscErrorCode find_overlap_warning(MPI_Comm comm, const Config &config, std::st
   PetscFunctionBeginUser;
   warning->clear();
   if (!config.initial_state.empty()) PetscFunctionReturn(0);
+  int rank, ranks;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
   Overlap first;
-  std::vector<char> overlaps(first_labels(config).back() - 1, 0);
-  PetscCall(compare_shapes(comm, config, &overlaps, &first));
+  const BodyRange own = BodyRange::of(first_labels(config).back() - 1, rank, ranks);
+  std::vector<char> overlaps = find_overlaps(config.species, config.places, config.grid, own, &first);
   for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (config.species[s].shape == Shape::voxels) PetscCall(compare_with_file(comm, config, s, &overlaps, &first));
-  if (first.body > 0) *warning = describe(config, first, std::count(overlaps.begin(), overlaps.end(), 1));
+    if (config.species[s].shape == Shape::voxels)
+      PetscCall(compare_with_file(comm, config, s, rank, ranks, &overlaps, &first));
+  PetscCall(agree(comm, &first));
+  long count = std::count(overlaps.begin(), overlaps.end(), 1);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_LONG, MPI_SUM, comm));
+  if (first.body > 0) *warning = describe(config, first, count);
   PetscFunctionReturn(0);
 }
 

@@ -68,10 +68,11 @@ std::string thread_warning(int threads) {
 PetscErrorCode print_warnings(const Config &config, const Run &run) {
   PetscFunctionBeginUser;
   const MPI_Comm comm = run.solver.grid().comm();
-  std::string overlap;
+  std::string overlap, unresolved;
   PetscCall(find_overlap_warning(comm, config, &overlap));
   print_warning(comm, overlap);
-  print_warning(comm, run.outputs.unresolved_bodies());
+  PetscCall(run.outputs.unresolved_bodies(&unresolved));
+  print_warning(comm, unresolved);
   for (const std::string &warning : attachment_warnings(config)) print_warning(comm, warning);
   for (const std::string &warning : coarse_surface_warnings(config)) print_warning(comm, warning);
   PetscFunctionReturn(0);

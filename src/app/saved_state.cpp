@@ -35,9 +35,9 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   return fields;
 }
 
-// Everything else; the arrays of bodies only where there are some, `references` those of the bodies.
+// Everything else; the arrays of bodies, `references` and `first_volumes`, only where there are some.
 CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const std::vector<Int3> &references,
-                             std::uint64_t hash) {
+                             const std::vector<double> &first_volumes, std::uint64_t hash) {
   const State &s = solver.state();
   const OutputsPosition &o = position.outputs;
   CheckpointNumbers numbers;
@@ -60,14 +60,14 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const 
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   if (solver.bodies().bodies() == 0) return numbers;
-  reals["body_first_volumes"] = o.first_volume;
+  reals["body_first_volumes"] = first_volumes;
   if (Feeders *feeders = solver.feeders()) {
     integers["bodies_in_feeders"].assign(feeders->inside().begin(), feeders->inside().end());
     const std::vector<int> &like = solver.bodies().like();
     if (!like.empty()) integers["bodies_like"].assign(like.begin(), like.end());
   }
-  for (const Int3 &cell : references)
-    integers["body_references"].insert(integers["body_references"].end(), cell.begin(), cell.end());
+  std::vector<long> &cells = integers["body_references"];
+  for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
   return numbers;
 }
 
@@ -106,7 +106,6 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.bodies_rows = integers["output_rows"][1];
   o.snapshots = integers["output_rows"][2];
   if (solver->bodies().bodies() == 0) return;
-  o.first_volume = reals["body_first_volumes"];
   if (Feeders *feeders = solver->feeders()) {
     const std::vector<long> &inside = integers["bodies_in_feeders"];
     feeders->set_inside({inside.begin(), inside.end()});
@@ -114,7 +113,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   std::vector<Int3> cells(static_cast<std::size_t>(solver->bodies().bodies()));
   for (std::size_t n = 0; n < 3 * cells.size(); ++n)
     cells[n / 3][n % 3] = static_cast<int>(integers["body_references"][n]);
-  solver->bodies().set_references(std::move(cells));
+  solver->bodies().set_known(std::move(cells), reals["body_first_volumes"]);
 }
 
 }  // namespace
@@ -123,11 +122,12 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
                           const std::string &path) {
   std::uint64_t hash = 0;
   std::vector<Int3> references;
+  std::vector<double> first_volumes;
   PetscFunctionBeginUser;
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
-  PetscCall(solver->bodies().all_references(solver->grid().comm(), &references));
-  PetscCall(write_checkpoint(solver->grid(), path, options, numbers_of(*solver, position, references, hash),
-                             fields_of(*solver)));
+  PetscCall(solver->bodies().known(solver->grid().comm(), &references, &first_volumes));
+  PetscCall(write_checkpoint(solver->grid(), path, options,
+                             numbers_of(*solver, position, references, first_volumes, hash), fields_of(*solver)));
   PetscFunctionReturn(0);
 }
 
@@ -143,11 +143,11 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
     solver->bodies().set_like(like);
     feeders->set_inside(std::vector<int>(solver->bodies().bodies(), 0));
   }
-  position->outputs.first_volume.assign(solver->bodies().bodies(), 0);
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
-  const std::vector<Int3> places(static_cast<std::size_t>(solver->bodies().bodies()));
-  const CheckpointNumbers expected = numbers_of(*solver, *position, places, 0);
+  const auto bodies = static_cast<std::size_t>(solver->bodies().bodies());
+  const CheckpointNumbers expected =
+      numbers_of(*solver, *position, std::vector<Int3>(bodies), std::vector<double>(bodies), 0);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);

@@ -16,11 +16,7 @@ namespace {
 PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *bodies) {
   PetscFunctionBeginUser;
   for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(grid, state.phases));
-  std::vector<Int3> references;
-  PetscCall(bodies->all_references(grid.comm(), &references));
-  for (Int3 &cell : references)
-    for (int d = 0; d < 3; ++d) cell[d] = (cell[d] % grid.cells()[d] + grid.cells()[d]) % grid.cells()[d];
-  bodies->set_references(references);
+  bodies->wrap(grid);
   PetscFunctionReturn(0);
 }
 
@@ -31,15 +27,17 @@ PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const 
                                std::vector<Phase> *colours) {
   PetscFunctionBeginUser;
   std::vector<int> colour(places.size(), 0);
-  std::vector<BodyMove> moves;
-  std::string crowded;
+  std::vector<int> also;  // of a body that is nowhere the fullest one no cell here has the label
+  if (refill)
+    for (const std::size_t b : bodies_of_rank(grid, species, places)) also.push_back(first_label + static_cast<int>(b));
+  Separation result;
   for (int round = 0; round < most_colours; ++round) {
     if (refill)  // B of a file may differ from I anywhere
       for (Phase &phase : *colours) PetscCall(phase.rows.find(grid, phase.fraction[0]));
-    PetscCall(separate_bodies(grid, exchange, colours, &moves, &crowded));
-    PetscCall(fail_together(grid.comm(), crowded));
-    if (moves.empty() || !refill) PetscFunctionReturn(0);
-    for (const BodyMove &move : moves) colour[move.label - first_label] = move.to;
+    PetscCall(separate_bodies(grid, exchange, also, colours, &result));
+    PetscCall(fail_together(grid.comm(), result.crowded));
+    if (result.changed.empty() || !refill) PetscFunctionReturn(0);
+    for (const BodyMove &move : result.moves) colour[move.label - first_label] = move.to;
     refill_phases(grid, species, places, first_label, colour, colours);  // whole bodies may be near others
   }
   PetscFunctionReturn(0);

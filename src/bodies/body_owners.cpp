@@ -35,11 +35,9 @@ PetscErrorCode BodyOwners::connect(MPI_Comm comm, int bodies, std::vector<int> h
   here_ = std::move(here);
   slots_.assign(static_cast<std::size_t>(bodies), -1);
   std::vector<PetscSFNode> owners;
-  BodyRange range;
-  int owner = -1;
   for (std::size_t slot = 0; slot < here_.size(); ++slot) {
-    while (!range.has(here_[slot])) range = BodyRange::of(bodies, ++owner, ranks);  // both ascend
-    owners.push_back({owner, here_[slot] - range.begin});
+    const int owner = BodyRange::owner(here_[slot], bodies, ranks);
+    owners.push_back({owner, here_[slot] - BodyRange::of(bodies, owner, ranks).begin});
     slots_[static_cast<std::size_t>(here_[slot])] = static_cast<int>(slot);
   }
   PetscCall(PetscSFCreate(comm, &sf_));

@@ -39,25 +39,30 @@ private:
   PetscSF sf_ = nullptr;
 };
 
-/// The first `limit` of `bodies` values in the order of the bodies, on every rank, from those of the owners.
-/// Collective.
+/// The first `limit` of `bodies` values in the order of the bodies, on rank 0 alone, from those of the owners, at most
+/// BodyRange::piece at a time. Collective.
 template <class T>
 PetscErrorCode gather_bodies(MPI_Comm comm, int bodies, int limit, const std::vector<T> &owned, std::vector<T> *all) {
   int rank, ranks;
+  MPI_Datatype one;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  std::vector<int> counts, begins;
-  for (int r = 0; r < ranks; ++r) {
-    const BodyRange range = BodyRange::of(bodies, r, ranks);
-    begins.push_back(std::min(limit, range.begin));
-    counts.push_back(std::min(limit, range.end) - begins.back());
-  }
-  all->resize(static_cast<std::size_t>(std::min(limit, bodies)));
-  MPI_Datatype one;
   PetscCallMPI(MPI_Type_contiguous(sizeof(T), MPI_BYTE, &one));
   PetscCallMPI(MPI_Type_commit(&one));
-  PetscCallMPI(MPI_Allgatherv(owned.data(), counts[rank], one, all->data(), counts.data(), begins.data(), one, comm));
+  const int first = BodyRange::of(bodies, rank, ranks).begin, count = std::min(limit, bodies);
+  if (rank == 0) all->resize(static_cast<std::size_t>(count));
+  for (int begin = 0; begin < count; begin += BodyRange::piece) {
+    const int end = std::min(begin + BodyRange::piece, count);
+    std::vector<int> counts, begins;
+    for (int r = 0; r < ranks; ++r) {
+      const BodyRange share = BodyRange::of(bodies, r, ranks).within(begin, end);
+      counts.push_back(share.size());
+      begins.push_back(share.begin);
+    }
+    PetscCallMPI(MPI_Gatherv(owned.data() + (begins[rank] - first), counts[rank], one, all->data(), counts.data(),
+                             begins.data(), one, 0, comm));
+  }
   PetscCallMPI(MPI_Type_free(&one));
   PetscFunctionReturn(0);
 }

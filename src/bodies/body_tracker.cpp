@@ -1,4 +1,5 @@
 // BodyTracker: which bodies there are, and the cells that follow them.
+#include "base/deliver.hpp"
 #include "bodies/measures.hpp"
 #include "bodies/unwrap.hpp"
 
@@ -20,23 +21,40 @@ void BodyTracker::add_phase(const Grid &grid, const std::vector<BodyPlace> &plac
   ++phases_;
 }
 
+// Who owns which bodies changes with their number.
 PetscErrorCode BodyTracker::add_like(const Grid &grid, int label, const Int3 &shift) {
-  std::vector<Int3> all;
+  struct Known {
+    int body;
+    Int3 reference;
+    double first_volume;
+  };
   PetscFunctionBeginUser;
-  PetscCall(all_references(grid.comm(), &all));
-  Int3 cell = all[label - 1];
-  for (int d = 0; d < 3; ++d) cell[d] += shift[d];
-  all.push_back(within_box(grid, {cell})[0]);
-  set_references(std::move(all));
+  share(grid);
+  const BodyRange own = BodyRange::of(bodies(), grid.rank(), grid.ranks());
+  std::vector<Known> known;
+  std::vector<int> owners;
+  first_volumes_.resize(references_.size());
+  for (int b = own.begin; b < own.end; ++b)
+    known.push_back({b, references_[b - own.begin], first_volumes_[b - own.begin]});
+  if (own.has(label - 1)) {
+    Known copy = known[label - 1 - own.begin];
+    copy.body = bodies();
+    for (int d = 0; d < 3; ++d) copy.reference[d] += shift[d];
+    copy.reference = within_box(grid, {copy.reference})[0];
+    known.push_back(copy);
+  }
   species_.push_back(species_[label - 1]);
   like_.push_back(label);
+  for (const Known &one : known) owners.push_back(BodyRange::owner(one.body, bodies(), grid.ranks()));
+  PetscCall(deliver(grid.comm(), owners, &known));
+  std::sort(known.begin(), known.end(), [](const Known &a, const Known &b) { return a.body < b.body; });
+  references_.clear();
+  first_volumes_.clear();
+  for (const Known &one : known) {
+    references_.push_back(one.reference);
+    first_volumes_.push_back(one.first_volume);
+  }
   PetscFunctionReturn(0);
-}
-
-void BodyTracker::complete(std::vector<double> *known) const {
-  const std::size_t scene = species_.size() - like_.size();
-  for (std::size_t b = known->size(); b >= scene && b < species_.size(); ++b)
-    known->push_back((*known)[like_[b - scene] - 1]);
 }
 
 void BodyTracker::set_like(const std::vector<long> &like) {
@@ -66,11 +84,7 @@ PetscErrorCode BodyTracker::connect(const Grid &grid, const std::vector<Phase> &
   for (int b = 0; b < bodies(); ++b)
     if (seen[static_cast<std::size_t>(b)]) here.push_back(b);
   PetscCall(owners->connect(grid.comm(), bodies(), std::move(here)));
-  if (!shared_) {
-    const BodyRange &own = owners->owned();
-    references_ = {references_.begin() + own.begin, references_.begin() + own.end};
-    shared_ = true;
-  }
+  share(grid);
   std::vector<double> owned, brought(3 * owners->here().size());
   for (const Int3 &cell : within_box(grid, references_)) owned.insert(owned.end(), cell.begin(), cell.end());
   PetscCall(owners->bring(3, owned, &brought));
@@ -79,13 +93,36 @@ PetscErrorCode BodyTracker::connect(const Grid &grid, const std::vector<Phase> &
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyTracker::all_references(MPI_Comm comm, std::vector<Int3> *all) const {
+void BodyTracker::share(const Grid &grid) {
+  const BodyRange own = BodyRange::of(bodies(), grid.rank(), grid.ranks());
+  if (!shared_) references_ = {references_.begin() + own.begin, references_.begin() + own.end};
+  if (!shared_ && !first_volumes_.empty())
+    first_volumes_ = {first_volumes_.begin() + own.begin, first_volumes_.begin() + own.end};
+  shared_ = true;
+}
+
+void BodyTracker::wrap(const Grid &grid) {
+  for (Int3 &cell : references_)
+    for (int d = 0; d < 3; ++d) cell[d] = (cell[d] % grid.cells()[d] + grid.cells()[d]) % grid.cells()[d];
+}
+
+PetscErrorCode BodyTracker::known(MPI_Comm comm, std::vector<Int3> *references,
+                                  std::vector<double> *first_volumes) const {
   PetscFunctionBeginUser;
-  if (shared_)
-    PetscCall(gather_bodies(comm, bodies(), bodies(), references_, all));
-  else
-    *all = references_;
+  std::vector<double> volumes = first_volumes_;
+  volumes.resize(references_.size());
+  *references = references_;
+  *first_volumes = volumes;
+  if (!shared_) PetscFunctionReturn(0);
+  PetscCall(gather_bodies(comm, bodies(), bodies(), references_, references));
+  PetscCall(gather_bodies(comm, bodies(), bodies(), volumes, first_volumes));
   PetscFunctionReturn(0);
+}
+
+void BodyTracker::set_known(std::vector<Int3> references, std::vector<double> first_volumes) {
+  references_ = std::move(references);
+  first_volumes_ = std::move(first_volumes);
+  shared_ = false;
 }
 
 }  // namespace eulastic

@@ -3,7 +3,7 @@
 #include "base/events.hpp"
 #include "bodies/colouring.hpp"
 #include "bodies/colours.hpp"
-#include "bodies/near_bodies.hpp"
+#include "bodies/near_groups.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -38,16 +38,18 @@ PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vect
   PetscFunctionReturn(0);
 }
 
-// The phase of every body in `colours`, of all ranks.
+// The phases of the bodies in `colours` that this rank sees, as moves without an end.
 PetscErrorCode find_homes(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
-                          std::map<int, int> *homes) {
+                          const NearGroups &groups, std::vector<BodyMove> *moves) {
   PetscFunctionBeginUser;
   std::vector<NearBodies> found;
   for (const int p : colours)
     for (const int label : labels_in(grid, phases[p].label[0])) found.push_back({label, 0, p});
-  PetscCall(gather_near(grid.comm(), &found));
-  homes->clear();
-  for (const NearBodies &home : found) homes->emplace(home.body, home.phase);
+  PetscCall(groups.gather(&found));
+  moves->clear();
+  for (const NearBodies &home : found)
+    if (moves->empty() || moves->back().label != home.body) moves->push_back({home.body, home.phase, -1});
+  PetscCall(groups.spread(moves));
   PetscFunctionReturn(0);
 }
 
@@ -103,25 +105,32 @@ std::vector<BodyMove> choose_bodies(const std::vector<NearBodies> &pairs) {
   return moves;
 }
 
-// All that is near the bodies that move, in the other phases of their species.
+// Adds to the pairs that this rank has found all that is near the bodies that move, in the other phases of their
+// species; `moves` of those that it sees. Then both are those of the groups that it decides on.
 PetscErrorCode find_neighbours(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
-                               const std::vector<BodyMove> &moves, int reach, std::vector<NearBodies> *pairs) {
+                               const NearGroups &groups, int reach, std::vector<BodyMove> *moves,
+                               std::vector<NearBodies> *pairs) {
   PetscFunctionBeginUser;
   for (const int p : colours) {
     std::vector<int> labels;
-    for (const BodyMove &move : moves)
+    for (const BodyMove &move : *moves)
       if (move.from == p) labels.push_back(move.label);
     for (const int q : colours)
       if (q != p && !labels.empty())
         find_near_others(grid, cells_of(phases[p]), labels, cells_of(phases[q]), q, reach, pairs);
   }
-  PetscCall(gather_near(grid.comm(), pairs));
+  for (const BodyMove &move : *moves) pairs->push_back({move.label, 0, move.from});
+  PetscCall(groups.gather(pairs));
+  moves->clear();
+  for (const NearBodies &pair : *pairs)
+    if (pair.other == 0) moves->push_back({pair.body, pair.phase, -1});
+  const auto is_move = [](const NearBodies &pair) { return pair.other == 0; };
+  pairs->erase(std::remove_if(pairs->begin(), pairs->end(), is_move), pairs->end());
   PetscFunctionReturn(0);
 }
 
 // The first phase of the species that nobody near a body is in, before the moves or after them. False if one has none.
-bool choose_colours(const std::vector<int> &colours, const std::vector<NearBodies> &pairs,
-                    std::vector<BodyMove> *moves) {
+bool choose_own(const std::vector<int> &colours, const std::vector<NearBodies> &pairs, std::vector<BodyMove> *moves) {
   for (BodyMove &move : *moves) {
     std::set<int> taken{move.from};
     const auto first = std::lower_bound(pairs.begin(), pairs.end(), NearBodies{move.label, 0, 0});
@@ -138,23 +147,29 @@ bool choose_colours(const std::vector<int> &colours, const std::vector<NearBodie
   return true;
 }
 
-// Colours for all bodies of a species anew, in place of `moves`.
-PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, std::vector<Phase> *phases,
-                        std::vector<BodyMove> *moves, std::string *crowded) {
+// The same, and false if one of any rank has none.
+PetscErrorCode choose_colours(const Grid &grid, const std::vector<int> &colours, const std::vector<NearBodies> &pairs,
+                              std::vector<BodyMove> *moves, bool *all) {
   PetscFunctionBeginUser;
-  std::map<int, int> homes;
-  PetscCall(find_homes(grid, *phases, colours, &homes));
-  std::vector<NearBodies> pairs;
+  int chosen = choose_own(colours, pairs, moves);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chosen, 1, MPI_INT, MPI_MIN, grid.comm()));
+  *all = chosen > 0;
+  PetscFunctionReturn(0);
+}
+
+// Colours for all bodies of a species anew, in place of `moves`.
+PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, const NearGroups &groups,
+                        std::vector<NearBodies> pairs, std::vector<Phase> *phases, std::vector<BodyMove> *moves,
+                        std::string *crowded) {
+  PetscFunctionBeginUser;
+  PetscCall(find_homes(grid, *phases, colours, groups, moves));
+  PetscCall(find_neighbours(grid, *phases, colours, groups, contact_reach, moves, &pairs));
   std::vector<int> bodies;
-  moves->clear();
-  for (const auto &[label, phase] : homes) {
-    bodies.push_back(label);
-    moves->push_back({label, phase, -1});
-  }
-  for (const int p : colours) find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
-  PetscCall(find_neighbours(grid, *phases, colours, *moves, contact_reach, &pairs));
+  for (const BodyMove &move : *moves) bodies.push_back(move.label);
   const std::vector<int> chosen = colour_bodies(bodies, pairs);
-  const int needed = 1 + *std::max_element(chosen.begin(), chosen.end());
+  int needed = 0;
+  for (const int colour : chosen) needed = std::max(needed, colour + 1);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &needed, 1, MPI_INT, MPI_MAX, grid.comm()));
   if (needed > most_colours) {
     char text[200];
     std::snprintf(text, sizeof text,
@@ -175,51 +190,77 @@ PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, std::vector<
 
 // Moves of all bodies of the last phase of a species to others, none if one cannot. From one cell further than the
 // distance that would send them away again.
-PetscErrorCode empty_last_colour(const Grid &grid, GhostExchange &exchange, const std::vector<int> &colours,
-                                 std::vector<Phase> *phases, std::vector<BodyMove> *moves) {
+PetscErrorCode empty_last_colour(const Grid &grid, const std::vector<int> &colours, const NearGroups &groups, int reach,
+                                 const std::vector<Phase> &phases, std::vector<BodyMove> *moves) {
   PetscFunctionBeginUser;
-  moves->clear();
-  if (colours.size() == 1) PetscFunctionReturn(0);
-  const std::vector<int> last{colours.back()}, others(colours.begin(), colours.end() - 1);
-  std::map<int, int> homes;
-  PetscCall(find_homes(grid, *phases, last, &homes));
-  for (const auto &[label, phase] : homes) moves->push_back({label, phase, -1});
-  PetscCall(update_ghosts(exchange, contact_reach + 1, colours, phases));
+  bool all = false;
+  const int last = colours.back();
+  for (const int label : labels_in(grid, phases[last].label[0])) moves->push_back({label, last, -1});
   std::vector<NearBodies> pairs;
-  PetscCall(find_neighbours(grid, *phases, colours, *moves, contact_reach + 1, &pairs));
-  if (!choose_colours(others, pairs, moves)) moves->clear();
+  PetscCall(find_neighbours(grid, phases, colours, groups, reach, moves, &pairs));
+  PetscCall(choose_colours(grid, {colours.begin(), colours.end() - 1}, pairs, moves, &all));
+  if (!all) moves->clear();
+  PetscFunctionReturn(0);
+}
+
+// Of every two near bodies the higher label to the first phase that is free for it, or all bodies to other phases.
+PetscErrorCode part_near_bodies(const Grid &grid, const std::vector<int> &colours, const NearGroups &groups,
+                                const std::vector<NearBodies> &found, std::vector<Phase> *phases,
+                                std::vector<BodyMove> *moves, std::string *crowded) {
+  PetscFunctionBeginUser;
+  bool all = false;
+  std::vector<NearBodies> pairs = found;
+  PetscCall(groups.gather(&pairs));
+  *moves = choose_bodies(pairs);
+  PetscCall(groups.spread(moves));
+  pairs = found;
+  PetscCall(find_neighbours(grid, *phases, colours, groups, contact_reach, moves, &pairs));
+  PetscCall(choose_colours(grid, colours, pairs, moves, &all));
+  if (!all) PetscCall(recolour(grid, colours, groups, found, phases, moves, crowded));
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
-                               std::vector<BodyMove> *moves, std::string *crowded) {
+PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &also,
+                               std::vector<Phase> *phases, Separation *result) {
   PetscFunctionBeginUser;
-  moves->clear();
-  crowded->clear();
+  *result = {};
   VerbScope scope(Verb::contact);
   ContactSurvey survey;
   do PetscCall(survey_contacts(grid, exchange, phases, &survey));
   while (remove_empty_colours(survey, phases));  // positions have changed
+  std::vector<BodyMove> &moves = result->moves;
   for (const auto &[first, colours] : survey.colours) {
+    const bool near = survey.near[first];
+    if (!near && colours.size() == 1) continue;
+    const int reach = near ? contact_reach : contact_reach + 1;
+    if (!near) PetscCall(update_ghosts(exchange, reach, colours, phases));
+    std::set<int> seen(also.begin(), also.end());
+    for (const int p : colours)
+      for (const int label : labels_in(grid, (*phases)[p].label[0], reach)) seen.insert(label);
+    NearGroups groups;
+    PetscCall(groups.connect(grid.comm(), {seen.begin(), seen.end()}));
     std::vector<BodyMove> own;
-    if (!survey.near[first]) {
-      PetscCall(empty_last_colour(grid, exchange, colours, phases, &own));
-    } else {
-      std::vector<NearBodies> &pairs = survey.pairs[first];
-      PetscCall(gather_near(grid.comm(), &pairs));
-      own = choose_bodies(pairs);
-      PetscCall(find_neighbours(grid, *phases, colours, own, contact_reach, &pairs));
-      if (!choose_colours(colours, pairs, &own)) PetscCall(recolour(grid, colours, phases, &own, crowded));
-    }
-    moves->insert(moves->end(), own.begin(), own.end());
-    if (crowded->empty()) continue;
-    moves->clear();
-    break;
+    if (near)
+      PetscCall(part_near_bodies(grid, colours, groups, survey.pairs[first], phases, &own, &result->crowded));
+    else
+      PetscCall(empty_last_colour(grid, colours, groups, reach, *phases, &own));
+    PetscCall(groups.spread(&own));
+    moves.insert(moves.end(), own.begin(), own.end());
+    if (result->crowded.empty()) continue;
+    moves.clear();
+    PetscFunctionReturn(0);
   }
-  std::sort(moves->begin(), moves->end(), [](const BodyMove &a, const BodyMove &b) { return a.label < b.label; });
-  if (!moves->empty()) move_bodies(grid, *moves, phases);
+  if (survey.colours.empty()) PetscFunctionReturn(0);
+  std::vector<int> changed(phases->size(), 0);
+  for (const BodyMove &move : moves) changed[move.from] = changed[move.to] = 1;
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, changed.data(), static_cast<int>(changed.size()), MPI_INT, MPI_MAX, grid.comm()));
+  for (std::size_t p = 0; p < changed.size(); ++p)
+    if (changed[p]) result->changed.insert(static_cast<int>(p));
+  std::sort(moves.begin(), moves.end(), [](const BodyMove &a, const BodyMove &b) { return a.label < b.label; });
+  if (!moves.empty()) move_bodies(grid, moves, phases);
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,8 @@
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 
+#include <set>
+
 namespace eulastic {
 
 /// Two bodies are near if a cell of one lies within so many cells of one of the other in every direction
@@ -21,14 +23,20 @@ struct BodyMove {
   int label, from, to;
 };
 
+struct Separation {
+  std::vector<BodyMove> moves;  ///< by label, of bodies in this rank's box and around it
+  std::set<int> changed;        ///< phases that bodies have left or come to, the same on all ranks
+  std::string crowded;          ///< one line if most_colours are too few; then nothing moves
+};
+
 /// Collective. Of every two near bodies in a phase with `separate` the one with the higher label moves to the first
 /// phase of its species without a body near it. If there is none, all bodies of the species get colours anew, as few
 /// as colour_bodies() needs, and phases are appended if they are more than there are. If no two are near, the bodies of
 /// a species' last phase move to others if all of them can; one that is empty is removed, before anything else.
-/// Every rank gets the same `moves`, by label. phi, B and label of a body go as they are, edges of B with them; points
-/// of B around it and all ghosts are the caller's. Needs owned labels and phi. `crowded`: one line if most_colours are
-/// too few; then nothing moves.
-PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
-                               std::vector<BodyMove> *moves, std::string *crowded);
+/// phi, B and label of a body go as they are, edges of B with them; points of B around it and all ghosts are the
+/// caller's. Needs owned labels and phi. `also`: ascending labels whose moves are wanted here, although there may be no
+/// cell of theirs.
+PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &also,
+                               std::vector<Phase> *phases, Separation *result);
 
 }  // namespace eulastic

@@ -17,6 +17,8 @@ Crowd::Crowd(const GridSpec &grid, double diameter, std::size_t expected)
     for (int d = 0; d < dimension_; ++d)
       bins_[d] = std::max(1, static_cast<int>(bins_[d] * most / std::pow(count, 1.0 / dimension_)));
   first_.assign(std::size_t(bins_[0]) * bins_[1] * bins_[2], -1);
+  bodies_.reserve(expected);
+  links_.reserve(expected);
 }
 
 std::size_t Crowd::bin(const Real3 &x) const {
@@ -105,9 +107,9 @@ bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
   return !any_touching(body, except, [](int) { return true; });
 }
 
-std::vector<int> Crowd::touching(std::size_t b) const {
+std::vector<int> Crowd::touching(const PlacedConvex &body, std::size_t except) const {
   std::vector<int> found;
-  any_touching(bodies_[b], b, [&](int other) {
+  any_touching(body, except, [&](int other) {
     found.push_back(other);
     return false;
   });

@@ -17,7 +17,9 @@ public:
   void add(const PlacedConvex &body);
   void move(std::size_t b, const PlacedConvex &to);
   /// Those that touch body b, periodic images included.
-  std::vector<int> touching(std::size_t b) const;
+  std::vector<int> touching(std::size_t b) const { return touching(bodies_[b], b); }
+  /// Those that touch `body`, its centre in the box, but body `except`.
+  std::vector<int> touching(const PlacedConvex &body, std::size_t except) const;
   /// Whether `body`, its centre in the box, touches none but body `except`, periodic images included.
   bool has_room_for(const PlacedConvex &body, std::size_t except) const;
 

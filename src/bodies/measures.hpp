@@ -24,9 +24,9 @@ struct BodyMeasure {
   double taylor_deformation = 0;  ///< (a - c)/(a + c), longest and shortest of them
   double inclination = 0;         ///< of the long axis in the xy plane (of the xy moments) from x; (-90, 90] degrees
   double elastic_energy = 0;      ///< sum of phi W over the label's cells
-  /// As taylor_deformation, of the shape that is left when the mean of B over full cells (all at rest: I) is undone. Where
-  /// shape and B agree and the strain is uniform it is that of the body at rest, whatever it went through. Not a number
-  /// if B is not positive definite.
+  /// As taylor_deformation, of the shape that is left when the mean of B over full cells (all at rest: I) is undone.
+  /// Where shape and B agree and the strain is uniform it is that of the body at rest, whatever it went through. Not a
+  /// number if B is not positive definite.
   double rest_deformation = 0;
   double trace_max = 0;  ///< largest tr B (with B_zz = 1 in 2-D) at centres with phi >= 1/2, and at least 3
 };
@@ -38,13 +38,11 @@ class BodyTracker {
 public:
   /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
   void add_phase(const Grid &grid, const std::vector<BodyPlace> &places);
-  /// Another body, like the one with this label, as many cells away.
+  /// Another body, like the one with this label, as many cells away. Collective.
   PetscErrorCode add_like(const Grid &grid, int label, const Int3 &shift);
   /// Labels that others were made like; those others come last, in this order.
   const std::vector<int> &like() const { return like_; }
-  /// Adds to what is known of the first bodies, at least all of the scene, the same of those made like them.
-  void complete(std::vector<double> *known) const;
-  /// All of them again, to be followed by set_references().
+  /// All of them again, to be followed by set_known().
   void set_like(const std::vector<long> &like);
   int bodies() const { return static_cast<int>(species_.size()); }
   /// Index of the phase of every body.
@@ -63,15 +61,22 @@ public:
   PetscErrorCode measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
                          const RowEnergy &energy, std::vector<BodyMeasure> *bodies);
 
-  /// Unwrapped reference cells of all bodies: with the fields, all a restart needs. Collective.
-  PetscErrorCode all_references(MPI_Comm comm, std::vector<Int3> *all) const;
-  void set_references(std::vector<Int3> all) {
-    references_ = std::move(all);
-    shared_ = false;
-  }
+  /// Moves reference cells into the box, where it is new.
+  void wrap(const Grid &grid);
+  /// Volumes at t = 0 of the bodies that this rank owns; empty before set_first_volumes(), which comes after measure().
+  const std::vector<double> &first_volumes() const { return first_volumes_; }
+  void set_first_volumes(std::vector<double> owned) { first_volumes_ = std::move(owned); }
+  /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
+  /// Collective.
+  PetscErrorCode known(MPI_Comm comm, std::vector<Int3> *references, std::vector<double> *first_volumes) const;
+  /// The same, of all bodies on every rank.
+  void set_known(std::vector<Int3> references, std::vector<double> first_volumes);
 
 private:
+  void share(const Grid &grid);
+
   std::vector<Int3> references_;  ///< of the bodies that this rank owns; of all while not shared_
+  std::vector<double> first_volumes_;
   bool shared_ = false;
   std::vector<int> species_, like_;
   int phases_ = 0;

@@ -110,7 +110,8 @@ void sort_out(std::vector<NearBodies> *found) {
 
 }  // namespace
 
-std::vector<int> labels_in(const Grid &grid, ConstView label) {
+std::vector<int> labels_in(const Grid &grid, ConstView label, int reach) {
+  const Box box(grid, reach);
   std::vector<int> labels;
   double last = 0;
   std::size_t sorted = 64;
@@ -118,17 +119,18 @@ std::vector<int> labels_in(const Grid &grid, ConstView label) {
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   };
-  for (const Segment &row : grid.rows()) {
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      const double name = label(i, row.j, row.k);
-      if (name > 0 && name != last) labels.push_back(static_cast<int>(name));
-      last = name;
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j) {
+      const double *names = label.row(j, k);
+      for (int i = box.begin[0]; i < box.end[0]; ++i) {
+        if (names[i] > 0 && names[i] != last) labels.push_back(static_cast<int>(names[i]));
+        last = names[i];
+      }
+      if (labels.size() > 2 * sorted) {
+        sort();
+        sorted = std::max(labels.size(), sorted);
+      }
     }
-    if (labels.size() > 2 * sorted) {
-      sort();
-      sorted = std::max(labels.size(), sorted);
-    }
-  }
   sort();
   return labels;
 }
@@ -169,23 +171,6 @@ void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<
     sort_out(&pairs);
   }
   found->insert(found->end(), pairs.begin(), pairs.end());
-}
-
-PetscErrorCode gather_near(MPI_Comm comm, std::vector<NearBodies> *found) {
-  PetscFunctionBeginUser;
-  static_assert(sizeof(NearBodies) == 3 * sizeof(int), "sent as integers");
-  int ranks, mine = 3 * static_cast<int>(found->size()), any = 0;
-  PetscCallMPI(MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, comm));
-  if (any == 0) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  std::vector<int> counts(ranks), begins(ranks + 1);
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
-  for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
-  std::vector<NearBodies> all(begins[ranks] / 3);
-  PetscCallMPI(MPI_Allgatherv(found->data(), mine, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, comm));
-  found->swap(all);
-  sort_out(found);
-  PetscFunctionReturn(0);
 }
 
 }  // namespace eulastic

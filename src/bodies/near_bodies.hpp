@@ -22,8 +22,8 @@ struct BodyCells {
   double operator()(int i, int j, int k) const noexcept { return fraction(i, j, k) > threshold ? label(i, j, k) : 0; }
 };
 
-/// Local: the labels of owned cells, ascending, each once.
-std::vector<int> labels_in(const Grid &grid, ConstView label);
+/// Local: the labels of owned cells and `reach` ghosts, ascending, each once.
+std::vector<int> labels_in(const Grid &grid, ConstView label, int reach = 0);
 
 /// Local: pairs in one phase, body > other, found from owned cells. `reach` ghosts. One pass over the cells, and a
 /// closer look only where blocks of reach^3 cells see several labels.
@@ -33,8 +33,5 @@ void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int
 /// another phase, has. `reach` ghosts of both.
 void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
                       int phase, int reach, std::vector<NearBodies> *found);
-
-/// Collective: the pairs of all ranks, each once, ascending.
-PetscErrorCode gather_near(MPI_Comm comm, std::vector<NearBodies> *found);
 
 }  // namespace eulastic

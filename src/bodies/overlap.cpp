@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <memory>
+#include <utility>
 
 namespace eulastic {
 namespace {
@@ -58,54 +57,33 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
 class Search {
 public:
   Search(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-         const GridSpec &grid)
-      : species_(species), places_(places), grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3) {
-    double spacing = grid.length[0] / grid.cells[0], widest = 0;
+         const GridSpec &grid, const BodyRange &own)
+      : species_(species),
+        places_(places),
+        grid_(grid),
+        dimension_(grid.cells[2] == 1 ? 2 : 3),
+        own_(own),
+        candidates_(own.size()) {
+    double spacing = grid.length[0] / grid.cells[0];
     for (int d = 1; d < dimension_; ++d) spacing = std::min(spacing, grid.length[d] / grid.cells[d]);
     for (std::size_t s = 0; s < species.size(); ++s) {
       surfaces_.emplace_back(species[s], dimension_);
       shapes_.emplace_back(species[s], dimension_, -skin * spacing);
-      if (has_ends(species[s])) widest = std::max(widest, 2 * shapes_[s].outer_radius());
-      first_.push_back(static_cast<int>(whose_.size()));
-      const std::size_t count = species[s].shape == Shape::voxels ? 1 : places[s].size();
-      whose_.insert(whose_.end(), count, static_cast<int>(s));
+      if (has_ends(species[s])) widest_ = std::max(widest_, 2 * shapes_[s].outer_radius());
+      first_.push_back(bodies_);
+      bodies_ += species[s].shape == Shape::voxels ? 1 : static_cast<int>(places[s].size());
     }
-    crowd_ = std::make_unique<Crowd>(grid, widest > 0 ? widest : grid.length[0], whose_.size());
-    for (int b = 0; b < bodies(); ++b) {
-      in_crowd_.push_back(-1);
-      if (!has_ends(spec(b))) {
-        if (has_shape(spec(b))) endless_.push_back(b);
-        continue;
-      }
-      in_crowd_[b] = static_cast<int>(from_crowd_.size());
-      from_crowd_.push_back(b);
-      crowd_->add({&shapes_[whose_[b]], place(b).centre, rotation(place(b).orientation)});
-    }
+    find_candidates();
   }
 
-  int bodies() const { return static_cast<int>(whose_.size()); }
+  int bodies() const { return bodies_; }
 
-  // Bodies before b that may share cells with it, ascending.
-  std::vector<int> candidates(int b) const {
-    std::vector<int> others;
-    const auto add = [&](int other) {
-      if (other < b && is_wanted(spec(other), spec(b))) others.push_back(other);
-    };
-    if (in_crowd_[b] >= 0) {
-      for (const int c : crowd_->touching(in_crowd_[b])) add(from_crowd_[c]);
-      for (const int other : endless_)
-        if (may_meet(other, b)) add(other);
-    } else if (has_shape(spec(b))) {
-      for (int other = 0; other < b; ++other)
-        if (in_crowd_[other] < 0 || may_meet(b, other)) add(other);
-    }
-    std::sort(others.begin(), others.end());
-    return others;
-  }
+  // Bodies that may share cells with body b, one of the rank's own, ascending.
+  const std::vector<int> &candidates(int b) const { return candidates_[b - own_.begin]; }
 
   // What two bodies share, or the first part of it that is found.
   double shared(int one, int two, bool all) const {
-    const PlacedBody a(surfaces_[whose_[one]], grid_, place(one)), b(surfaces_[whose_[two]], grid_, place(two));
+    const PlacedBody a(surfaces_[whose(one)], grid_, place(one)), b(surfaces_[whose(two)], grid_, place(two));
     std::array<std::vector<Common>, 3> common;
     double sum = 0, cell = 1;
     for (int d = 0; d < 3; ++d) {
@@ -122,13 +100,59 @@ public:
   }
 
 private:
-  const SpeciesSpec &spec(int b) const { return species_[whose_[b]]; }
-  const BodyPlace &place(int b) const { return places_[whose_[b]][b - first_[whose_[b]]]; }
+  std::size_t whose(int b) const { return std::upper_bound(first_.begin(), first_.end(), b) - first_.begin() - 1; }
+  const SpeciesSpec &spec(int b) const { return species_[whose(b)]; }
+  const BodyPlace &place(int b) const { return places_[whose(b)][b - first_[whose(b)]]; }
+  PlacedConvex convex(int b) const { return {&shapes_[whose(b)], place(b).centre, rotation(place(b).orientation)}; }
+
+  void find_candidates() {
+    Crowd crowd(grid_, widest_ > 0 ? widest_ : grid_.length[0], own_.size());  // the own ones with ends
+    std::vector<int> in_crowd, endless;
+    Real3 low = grid_.length, high{};  // of their centres
+    for (int b = own_.begin; b < own_.end; ++b) {
+      if (!has_shape(spec(b))) continue;
+      (has_ends(spec(b)) ? in_crowd : endless).push_back(b);
+      if (!has_ends(spec(b))) continue;
+      crowd.add(convex(b));
+      for (int d = 0; d < 3; ++d) {
+        low[d] = std::min(low[d], place(b).centre[d]);
+        high[d] = std::max(high[d], place(b).centre[d]);
+      }
+    }
+    const auto is_far = [&](const Real3 &centre) {
+      for (int d = 0; d < dimension_; ++d) {
+        double away = std::abs(centre[d] - (low[d] + high[d]) / 2);
+        if (grid_.boundary[d] == Boundary::periodic) away = std::min(away, grid_.length[d] - away);
+        if (away > (high[d] - low[d]) / 2 + 1.0001 * widest_) return true;
+      }
+      return in_crowd.empty();
+    };
+    const auto add = [&](int own, int other) {
+      if (is_wanted(spec(std::min(own, other)), spec(std::max(own, other))))
+        candidates_[own - own_.begin].push_back(other);
+    };
+    for (int other = 0; other < bodies_; ++other) {
+      if (!has_shape(spec(other))) continue;
+      if (has_ends(spec(other))) {
+        for (const int b : endless)
+          if (may_meet(b, other)) add(b, other);
+        if (is_far(place(other).centre)) continue;
+        const auto self = std::lower_bound(in_crowd.begin(), in_crowd.end(), other) - in_crowd.begin();
+        const bool is_own = own_.has(other);
+        for (const int c : crowd.touching(convex(other), is_own ? self : in_crowd.size())) add(in_crowd[c], other);
+      } else {
+        for (const int b : in_crowd)
+          if (may_meet(other, b)) add(b, other);
+        for (const int b : endless)
+          if (b != other) add(b, other);
+      }
+    }
+  }
 
   // Whether the sphere around a body may meet a body without ends. Across its axis a tube has no images.
   bool may_meet(int endless, int b) const {
-    const double radius = shapes_[whose_[b]].outer_radius();
-    const Surface &surface = surfaces_[whose_[endless]];
+    const double radius = shapes_[whose(b)].outer_radius();
+    const Surface &surface = surfaces_[whose(endless)];
     Int3 images{};
     for (int d = 0; d < dimension_; ++d)
       images[d] = grid_.boundary[d] == Boundary::periodic && !(is_tube(spec(endless).shape) && d != spec(endless).axis);
@@ -147,40 +171,43 @@ private:
   const std::vector<std::vector<BodyPlace>> &places_;
   GridSpec grid_;
   int dimension_;
-  std::vector<Surface> surfaces_;                     // of species
-  std::vector<ConvexBody> shapes_;                    // of species
-  std::vector<int> first_;                            // body of a species
-  std::vector<int> whose_;                            // species of a body
-  std::vector<int> in_crowd_, from_crowd_, endless_;  // bodies
-  std::unique_ptr<Crowd> crowd_;
+  BodyRange own_;
+  std::vector<Surface> surfaces_;   // of species
+  std::vector<ConvexBody> shapes_;  // of species
+  std::vector<int> first_;          // body of a species
+  int bodies_ = 0;
+  double widest_ = 0;
+  std::vector<std::vector<int>> candidates_;  // of own bodies
 };
 
 }  // namespace
 
 std::vector<char> find_overlaps(const std::vector<SpeciesSpec> &species,
-                                const std::vector<std::vector<BodyPlace>> &places, const GridSpec &grid, int part,
-                                int parts, Overlap *first) {
+                                const std::vector<std::vector<BodyPlace>> &places, const GridSpec &grid,
+                                const BodyRange &own, Overlap *first) {
   *first = {};
+  std::vector<char> overlaps(own.size(), 0);
   bool any = false;
   for (std::size_t t = 0; t < species.size(); ++t)
     for (std::size_t s = 0; s <= t; ++s)
       any = any || (is_wanted(species[s], species[t]) && (s < t || places[s].size() > 1));
-  if (!any) return {};
-  const Search search(species, places, grid);
-  std::vector<char> overlaps(search.bodies(), 0);
-  const auto limit = [&](int p) { return static_cast<int>(std::int64_t{search.bodies()} * p / parts); };
-  for (int b = limit(part); b < limit(part + 1); ++b)
-    for (const int other : search.candidates(b)) {
-      if ((overlaps[b] && overlaps[other]) || search.shared(other, b, false) == 0) continue;
-      overlaps[b] = overlaps[other] = 1;
-      if (first->body == 0 || other + 1 < first->body) *first = {other + 1, b + 1, 0};
+  if (!any) return overlaps;
+  const Search search(species, places, grid, own);
+  for (int b = own.begin; b < own.end; ++b)
+    for (const int candidate : search.candidates(b)) {
+      const auto [one, two] = std::minmax({b, candidate});
+      if (search.shared(one, two, false) == 0) continue;
+      overlaps[b - own.begin] = 1;
+      if (first->body == 0 || std::pair(one + 1, two + 1) < std::pair(first->body, first->other))
+        *first = {one + 1, two + 1, 0};
+      break;
     }
   if (first->body > 0) first->volume = search.shared(first->body - 1, first->other - 1, true);
   return overlaps;
 }
 
 void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, const GridSpec &grid,
-                const CellWindow &layers, ConstView fraction, SharedVolumes *shared) {
+                const CellWindow &layers, ConstView fraction, std::map<int, SharedVolume> *shared) {
   const Surface surface(spec, grid.cells[2] == 1 ? 2 : 3);
   const double radius = surface.bounding_radius(), half = layers.size[2] * layers.spacing(2) / 2;
   const double middle = layers.begin[2] * layers.spacing(2) + half, length = grid.length[2];
@@ -189,6 +216,7 @@ void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, c
     if (grid.boundary[2] == Boundary::periodic) distance = std::min(distance, length - distance);
     if (distance > half + radius) continue;
     const PlacedBody body(surface, grid, places[b]);
+    SharedVolume with;
     for (const PlacedBody::Range &z : body.ranges(2, layers.begin[2], layers.begin[2] + layers.size[2]))
       for (const PlacedBody::Range &y : body.ranges(1, 0, grid.cells[1]))
         for (const PlacedBody::Range &x : body.ranges(0, 0, grid.cells[0]))
@@ -198,9 +226,13 @@ void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, c
                 const double solid = fraction(i, j, k - layers.begin[2]);
                 if (!(solid > 0)) continue;
                 const double more = solid + body.fraction({i + x.shift, j + y.shift, k + z.shift}) - 1;
-                if (more > excess) shared->overlaps[b] = 1;
-                if (more > 0) shared->volume[b] += std::llround(std::ldexp(more, 30));
+                if (more > excess) with.overlaps = true;
+                if (more > 0) with.volume += std::llround(std::ldexp(more, 30));
               }
+    if (with.volume == 0) continue;
+    SharedVolume &all = (*shared)[static_cast<int>(b)];
+    all.volume += with.volume;
+    all.overlaps = all.overlaps || with.overlaps;
   }
 }
 

@@ -17,7 +17,6 @@ namespace eulastic {
 namespace {
 
 constexpr std::size_t waiting_bytes_max = 64u << 20;
-constexpr int block = 1 << 17;  // bodies that rank 0 collects at once
 constexpr hsize_t chunk_bodies = 1 << 13;
 
 // The directory is locked, and not all file systems can.
@@ -248,8 +247,7 @@ PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *valu
   PetscFunctionBeginUser;
   const std::size_t rows = times_.size();
   const auto share = [&](int rank) {
-    const BodyRange range = BodyRange::of(static_cast<int>(known_.of.size()), rank, ranks_);
-    return BodyRange{std::clamp(begin, range.begin, range.end), std::clamp(end, range.begin, range.end)};
+    return BodyRange::of(static_cast<int>(known_.of.size()), rank, ranks_).within(begin, end);
   };
   const BodyRange own = BodyRange::of(static_cast<int>(known_.of.size()), rank_, ranks_), mine = share(rank_);
   std::vector<double> sent;
@@ -319,8 +317,8 @@ PetscErrorCode BodiesFile::write_waiting() {
     }
   }
   std::vector<double> values;
-  for (int begin = 0; begin < static_cast<int>(bodies); begin += block) {
-    const int end = std::min(begin + block, static_cast<int>(bodies));
+  for (int begin = 0; begin < static_cast<int>(bodies); begin += BodyRange::piece) {
+    const int end = std::min(begin + BodyRange::piece, static_cast<int>(bodies));
     PetscCall(collect(begin, end, &values));
     if (rank_ == 0) fine = fine && write_block(file.get(), begin, end, values);
   }

@@ -15,10 +15,15 @@ namespace fs = std::filesystem;
 constexpr const char *kind = "eulastic checkpoint";
 constexpr long format = 2;  // raised whenever a file means something else
 
+// Those of rank 0, which alone knows all bodies.
 template <class T>
-PetscErrorCode write_all(Hdf5File &file, const std::map<std::string, std::vector<T>> &arrays) {
+PetscErrorCode write_all(MPI_Comm comm, Hdf5File &file, const std::map<std::string, std::vector<T>> &arrays) {
   PetscFunctionBeginUser;
-  for (const auto &[name, values] : arrays) PetscCall(file.write_array(name, {hsize_t(values.size())}, values));
+  for (const auto &[name, values] : arrays) {
+    hsize_t count = values.size();
+    PetscCallMPI(MPI_Bcast(&count, 1, MPI_UINT64_T, 0, comm));
+    PetscCall(file.write_array(name, {count}, values));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -58,8 +63,8 @@ PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const
   PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
   const std::vector<unsigned char> text(options.begin(), options.end());
   PetscCall(file.write_array("options", {hsize_t(text.size())}, text));
-  PetscCall(write_all(file, numbers.reals));
-  PetscCall(write_all(file, numbers.integers));
+  PetscCall(write_all(grid.comm(), file, numbers.reals));
+  PetscCall(write_all(grid.comm(), file, numbers.integers));
   for (const CheckpointField &field : fields)
     PetscCall(file.write_field(grid, {field.name, field.staggering, field.stored, true}, {field.view}));
   PetscCall(file.commit());

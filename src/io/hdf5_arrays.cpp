@@ -26,7 +26,9 @@ PetscErrorCode Hdf5File::write_array(const std::string &name, const std::vector<
   const bool written =
       H5Dwrite(dataset.get(), hdf5_type<T>(), space.get(), space.get(), transfer.get(), values.data()) >= 0;
   PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
-  PetscCall(write_attribute(name, "checksum", checksum_text(checksum(values.data(), values.size(), 0))));
+  std::uint64_t sum = mpi_rank_ == 0 ? checksum(values.data(), values.size(), 0) : 0;
+  PetscCallMPI(MPI_Bcast(&sum, 1, MPI_UINT64_T, 0, comm_));
+  PetscCall(write_attribute(name, "checksum", checksum_text(sum)));
   PetscFunctionReturn(0);
 }
 

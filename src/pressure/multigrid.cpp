@@ -194,8 +194,10 @@ PetscErrorCode Multigrid::create(const Grid &grid) {
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
+    // Of coarse levels messages cost more than cells that are computed again.
+    const int least = l > 0 && fine.grid().ranks() > 1 ? 2 : 1;
     if (dim == 3)
-      fine.depth = StagePass::depth(fine.grid(), Sides(fine.grid()), 1, 1 + int(relaxations(fine).after.size()));
+      fine.depth = StagePass::depth(fine.grid(), Sides(fine.grid()), least, 1 + int(relaxations(fine).after.size()));
     next.rhs = FieldBlock(next.grid(), 1);
     next.solution = FieldBlock(next.grid(), 1);
     next.scratch = FieldBlock(next.grid(), 1);

@@ -6,8 +6,6 @@
 #include "physics/unresolved.hpp"
 #include "solver/solver.hpp"
 
-#include <set>
-
 namespace eulastic {
 
 // Ghosts, B outside the bodies and active segments of a phase whose owned cells are set.
@@ -135,11 +133,10 @@ PetscErrorCode Solver::follow_bodies(double dt) {
 
 PetscErrorCode Solver::separate_bodies() {
   PetscFunctionBeginUser;
-  std::vector<BodyMove> moves;
-  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, &now_.phases, &moves, &crowded_));
-  std::set<int> changed;
-  for (const BodyMove &move : moves) changed.insert({move.from, move.to});
-  for (const int p : changed) PetscCall(settle(now_.phases[p]));
+  Separation result;
+  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, {}, &now_.phases, &result));
+  crowded_ = result.crowded;
+  for (const int p : result.changed) PetscCall(settle(now_.phases[p]));
   PetscFunctionReturn(0);
 }
 

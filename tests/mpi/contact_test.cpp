@@ -2,8 +2,21 @@
 #include "bodies/contact.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_bodies.hpp"
+#include "bodies/near_groups.hpp"
 #include "field/sides.hpp"
 #include "support/files.hpp"
+
+#include <random>
+#include <tuple>
+
+namespace eulastic {
+
+inline bool operator<(const BodyMove &a, const BodyMove &b) {
+  return std::tie(a.label, a.from, a.to) < std::tie(b.label, b.from, b.to);
+}
+inline bool operator==(const BodyMove &a, const BodyMove &b) { return !(a < b) && !(b < a); }
+
+}  // namespace eulastic
 
 using namespace eulastic;
 using namespace eulastic::test;
@@ -14,6 +27,21 @@ namespace {
 struct Block {
   Int3 begin, end;
 };
+
+// What the ranks know together, each once.
+template <class T>
+std::vector<T> of_all(MPI_Comm comm, const std::vector<T> &mine) {
+  int ranks = 1, count = static_cast<int>(mine.size() * sizeof(T));
+  MPI_Comm_size(comm, &ranks);
+  std::vector<int> counts(ranks), begins(ranks + 1, 0);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
+  std::vector<T> all(begins[ranks] / sizeof(T));
+  MPI_Allgatherv(mine.data(), count, MPI_BYTE, all.data(), counts.data(), begins.data(), MPI_BYTE, comm);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
 
 struct Marks {
   Grid grid;
@@ -62,13 +90,17 @@ struct Marks {
     EXPECT_EQ(exchange.update(phases[0].fraction, contact_reach), 0);
     std::vector<NearBodies> pairs;
     find_near_in_phase(grid, {phases[0].label[0], phases[0].fraction[0]}, 0, contact_reach, &pairs);
-    EXPECT_EQ(gather_near(grid.comm(), &pairs), 0);
-    return pairs;
+    return of_all(grid.comm(), pairs);
   }
   std::vector<BodyMove> separate() {
     GhostExchange exchange(grid);
-    std::vector<BodyMove> moves;
-    EXPECT_EQ(separate_bodies(grid, exchange, &phases, &moves, &crowded), 0);
+    Separation result;
+    EXPECT_EQ(separate_bodies(grid, exchange, {}, &phases, &result), 0);
+    crowded = result.crowded;
+    const std::vector<BodyMove> moves = of_all(grid.comm(), result.moves);
+    std::set<int> changed;
+    for (const BodyMove &move : moves) changed.insert({move.from, move.to});
+    EXPECT_EQ(result.changed, changed);
     return moves;
   }
 };
@@ -220,6 +252,59 @@ TEST(Contact, LowestFreeColourAndNoMoreThanNeeded) {
   EXPECT_GE(third.separate().size(), 3u);
   EXPECT_EQ(third.phases.size(), 3u);
   EXPECT_TRUE(third.separate().empty());
+}
+
+TEST(NearGroups, OneRankKnowsAllOfAGroup) {
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  // Rank r sees bodies 10 r + 1 ... 10 r + 11 of which the last is the next rank's; the first half of a chain goes
+  // through all ranks, the others are pairs or alone.
+  std::vector<int> seen;
+  for (int n = 1; n <= 11; ++n) seen.push_back(10 * rank + n);
+  std::vector<NearBodies> pairs{{10 * rank + 11, 10 * rank + 1, 0}, {10 * rank + 4, 10 * rank + 3, 1}};
+  for (const int n : {2, 11}) pairs.push_back({10 * rank + n, 0, 5});
+  NearGroups groups;
+  ASSERT_EQ(groups.connect(PETSC_COMM_WORLD, seen), 0);
+  ASSERT_EQ(groups.gather(&pairs), 0);
+  int count = static_cast<int>(pairs.size()), chain = 0;
+  for (const NearBodies &pair : pairs) chain += pair.body % 10 == 1;
+  EXPECT_TRUE(chain == 0 || chain == 2 * ranks);
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  EXPECT_EQ(count, 4 * ranks);
+  EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+  std::vector<BodyMove> moves;
+  for (const NearBodies &pair : pairs)
+    if (pair.other == 0) moves.push_back({pair.body, pair.phase, pair.body % 7});
+  ASSERT_EQ(groups.spread(&moves), 0);
+  std::vector<BodyMove> expected{{10 * rank + 2, 5, (10 * rank + 2) % 7}, {10 * rank + 11, 5, (10 * rank + 11) % 7}};
+  if (rank > 0) expected.insert(expected.begin(), {10 * rank + 1, 5, (10 * rank + 1) % 7});
+  EXPECT_TRUE(moves == expected);
+}
+
+TEST(Contact, AsOnOneRank) {
+  std::mt19937 random(1);
+  for (const Int3 &cells : {Int3{70, 61, 1}, Int3{33, 29, 26}}) {
+    Marks many(PETSC_COMM_WORLD, cells, false), one(PETSC_COMM_SELF, cells, false);
+    for (int phase = 0; phase < 2; ++phase) {
+      std::vector<Block> blocks(phase * 30);  // labels go on
+      for (int b = 0; b < 30; ++b) {
+        Block block;
+        for (int d = 0; d < 3; ++d) {
+          block.begin[d] = static_cast<int>(random() % cells[d]);
+          block.end[d] = block.begin[d] + (cells[d] == 1 ? 1 : 2);
+        }
+        blocks.push_back(block);
+      }
+      many.add(blocks);
+      one.add(blocks);
+    }
+    for (int round = 0; round < 4; ++round) {
+      EXPECT_TRUE(many.separate() == one.separate()) << round;
+      EXPECT_EQ(many.phases.size(), one.phases.size());
+    }
+    EXPECT_GT(one.phases.size(), 2u);
+  }
 }
 
 TEST(Contact, MoreThanTheLimitIsReportedAndNothingMoves) {

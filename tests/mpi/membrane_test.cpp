@@ -1,6 +1,7 @@
 // Capsules that reach across ranks and walls of the split, and that have to be kept apart: the same bits on any number
 // of ranks.
 #include "bodies/fill_phase.hpp"
+#include "support/all_bodies.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +72,7 @@ End run(MPI_Comm comm, const Case &c) {
   EXPECT_EQ(state_hash(scene.grid, scene.solver.state(), &end.hash), 0);
   std::vector<SurfaceMeasure> owned;
   EXPECT_EQ(scene.solver.surface_energy(&end.surface, &owned), 0);
-  EXPECT_EQ(gather_bodies(comm, scene.solver.bodies().bodies(), 2, owned, &end.bodies), 0);
+  EXPECT_EQ(all_bodies(comm, scene.solver.bodies().bodies(), 2, owned, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
   EXPECT_EQ(scene.solver.stretch_power(&end.stretch_power), 0);
   EXPECT_EQ(end.stretch_power > 0, c.stretch_force > 0);

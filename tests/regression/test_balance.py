@@ -86,6 +86,14 @@ class Balance(Restart):
         result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-balance", "-output_dir", "one")
         self.assertIn("\nbalance: one rank has all cells\n", result.stdout)
 
+    def test_check_only_speaks_of_equal_parts(self):
+        case = [*CORNER, *FLOW, "-check_only"]
+        result = self.call(*case, "-balance", "-ranks", 4)
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        self.assertRegex(result.stderr, r"^eulastic: error: -balance: .*; accepted: -balance false with it\n$")
+        for more in (["-balance"], ["-ranks", 4]):
+            self.assertEqual(self.call(*case, *more).returncode, 0)
+
     def test_too_large_a_box(self):
         # Memory for even boxes alone.
         case = [*CORNER, *FLOW, "-time_steps_max", 1]

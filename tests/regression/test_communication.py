@@ -45,18 +45,11 @@ ONCE = {"fast": {("", "Barrier"): (1, 0, 0), ("EulACM", "Barrier"): (4, 0, 0), (
 
 # Bytes for each rank in the largest collective: what the DMDA gathers when it is made.
 GROW_WITH_RANKS = {("Main Stage", "", "Allgather"): 4}
-# The largest with one body, in one phase, and with eight, in two: once in a run 8 B for each body, 128 B for each that
-# summary.json lists, at most 500; what EulContact gathers are bodies close to each other; all others are sums and maxima
-# by phase, and 12 B more for each rank.
+# The largest with one body, in one phase, and with eight, in two: sums and maxima by phase.
 GROW_WITH_BODIES = {
-    ("Main Stage", "", "Allgather"): (32, 128),
     ("Main Stage", "", "Allreduce"): (40, 48),
     ("Output", "", "Allreduce"): (40, 48),
-    ("Output", "", "Allgatherv"): (128, 8 * 128),
     ("Output", "EulSums", "Allreduce"): (4352, 5440),
-    ("Output", "EulWrite", "Allgatherv"): (8, 8 * 8),
-    ("Setup", "EulContact", "Allgather"): (None, 32),
-    ("Setup", "EulContact", "Allgatherv"): (None, 768),
     ("Setup", "EulContact", "Allreduce"): (None, 12),
     ("Setup", "EulContact", "Barrier"): (None, 0),
     ("Step", "", "Allreduce"): (40, 48),

@@ -43,9 +43,9 @@ class Model(unittest.TestCase):
         machine = Machine("m", "r", 1e-6, 1e-5, 1e-6, 1e9, 4e9, [])
         step = Step("fast", Moments(2, (2, 2, 2)), Moments(1, (1, 1, 1)), 2, [(3, 1000)], 2)
         parts = model(machine, step, self.split)
-        # The V-cycle has a level more than counted: five messages in each of two sweeps.
+        # The V-cycle has a level more than counted: three messages in each of two sweeps.
         size, hop = self.split.bytes((3, 3, 3)), 1.2e-5
-        expected = {"compute": 2e-6 * 65536, "latency": (3 + 10) * (1e-5 + 2e-6 * 26), "exchange": size / 1e9,
+        expected = {"compute": 2e-6 * 65536, "latency": (3 + 6) * (1e-5 + 2e-6 * 26), "exchange": size / 1e9,
                     "pack": size / 1e9, "reductions": 3 * 6 * (hop + 1e-6), "gather": 2 * (6 * hop + 8 * 1024 / 1e9)}
         self.assertEqual(set(parts), set(expected))
         for part, seconds in expected.items():

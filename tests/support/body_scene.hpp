@@ -5,6 +5,7 @@
 #include "bodies/measures.hpp"
 #include "bodies/shapes.hpp"
 #include "diagnostics/energy_rates.hpp"
+#include "support/all_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,7 @@ struct BodyScene {
     std::vector<BodyMeasure> owned, all;
     const int bodies = tracker.bodies();
     EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &owned), 0);
-    EXPECT_EQ(gather_bodies(grid.comm(), bodies, bodies, owned, &all), 0);
+    EXPECT_EQ(all_bodies(grid.comm(), bodies, bodies, owned, &all), 0);
     return all;
   }
 };

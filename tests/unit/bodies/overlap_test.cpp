@@ -22,16 +22,17 @@ Found find(const std::string &line, int parts = 1) {
   EXPECT_EQ(result.error, "") << line;
   const Config &config = result.config;
   Found found;
-  std::vector<char> all;
+  int bodies = 0;
+  for (const auto &places : config.places) bodies += static_cast<int>(places.size());
   for (int p = 0; p < parts; ++p) {
     Overlap first;
-    const std::vector<char> own = find_overlaps(config.species, config.places, config.grid, p, parts, &first);
-    all.resize(own.size());
-    for (std::size_t b = 0; b < own.size(); ++b) all[b] = static_cast<char>(all[b] | own[b]);
+    const BodyRange own = BodyRange::of(bodies, p, parts);
+    const std::vector<char> overlaps = find_overlaps(config.species, config.places, config.grid, own, &first);
+    EXPECT_EQ(overlaps.size(), std::size_t(own.size()));
+    found.bodies += std::count(overlaps.begin(), overlaps.end(), 1);
     const auto key = [](const Overlap &o) { return std::make_pair(o.body, o.other); };
     if (first.body > 0 && (found.first.body == 0 || key(first) < key(found.first))) found.first = first;
   }
-  found.bodies = std::count(all.begin(), all.end(), 1);
   return found;
 }
 
@@ -118,10 +119,13 @@ TEST(Overlap, NotAtRandom) {
                  "-b_count 25");
   ASSERT_EQ(result.error, "");
   std::vector<SpeciesSpec> species = result.config.species;
+  const BodyRange all{0, 46};
   Overlap first;
-  EXPECT_TRUE(find_overlaps(species, result.config.places, result.config.grid, 0, 1, &first).empty());
+  std::vector<char> found = find_overlaps(species, result.config.places, result.config.grid, all, &first);
+  EXPECT_EQ(std::count(found.begin(), found.end(), 1), 0);
+  EXPECT_EQ(first.body, 0);
   species[1].placement = species[2].placement = Placement::list;
-  const std::vector<char> found = find_overlaps(species, result.config.places, result.config.grid, 0, 1, &first);
+  found = find_overlaps(species, result.config.places, result.config.grid, all, &first);
   EXPECT_EQ(found.size(), 46u);
   EXPECT_EQ(std::count(found.begin(), found.end(), 1), 0);
 }
