@@ -249,7 +249,8 @@ class Startup:
 
     def shapes(self, halvings, box):
         capsule = Capsule(*sphere(halvings), self.capillary, self.law, self.ratio, self.box if box else None)
-        found = startup(capsule, self.times, .1 * self.capillary)
+        # Stable on a fine membrane, whose short waves relax at a rate of 1/(1 + ratio) and the inverse spacing.
+        found = startup(capsule, self.times, min(.1, .8 / 2**halvings) * self.capillary * (1 + self.ratio) / 2)
         return found, capsule.flux
 
 
