@@ -42,4 +42,6 @@ NOTES = {
           "vorticity (ellipsoids.py). Through three revolutions D falls and the axis across the shear shortens; area and period stay.",
     "V7": "The capsule that is viscous inside turns as a drop that is less viscous would: the harmonic mean of cells of the surface yields "
           "where the flow stretches them along it. The stiff one rounds off while it turns.",
+    "V9": "The references are between the walls and images of the box, to leading order in size over distance; they add some 2 % to D. They agree with that of "
+          "V5, another code, to .1 %, and without a membrane with exact ellipsoids (tests/regression/test_boundary_integral.py).",
 }
