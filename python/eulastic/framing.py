@@ -93,7 +93,7 @@ class Framed:
         from .scene import GREENS
         units, look = self.units, self.look
         width, height = self.window.GetSize()
-        self.add_text(renderer, f"t = {snapshot.time:.4g}{units.after('time')}", (width // 50, height * 95 // 100), self.letters(46))
+        self.add_text(renderer, units.at(snapshot.time), (width // 50, height * 95 // 100), self.letters(46))
         if self.stress > 0:
             self.add_bar(renderer, self.table(0, self.stress, GREENS), units.label("wall shear\nstress", "pressure").replace(" (", "\n("), 0.03, 0.25)
         both = look.behind and look.field

@@ -46,6 +46,10 @@ class Units:
     def after(self, quantity):
         return " " + self.names[quantity] if quantity in self.names else ""
 
+    def at(self, time):
+        """Words for a moment: four digits, and all of those before the point."""
+        return f"t = {time:.4g}{self.after('time')}" if abs(time) < 1e4 else f"t = {time:.0f}{self.after('time')}"
+
     @staticmethod
     def add_option(parser):
         parser.add_argument("--units", type=Units, default="µm,µs", metavar="LENGTH,TIME",

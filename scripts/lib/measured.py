@@ -20,12 +20,17 @@ def machine():
     return f"{os.cpu_count()} cores of {name[1] if name else 'an unknown processor'}{wide}"
 
 
+def git(*words):
+    return subprocess.run(["git", "-C", ROOT, *words], capture_output=True, text=True).stdout.strip()
+
+
 def made_with(program=None):
     """The sentence: with which program, when, where and by which script."""
     program = program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
     says = subprocess.run([program, "-version"], capture_output=True, text=True).stdout
     version = re.search(r"eulastic ([\d.]+)", says)
-    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
+    commit = git("rev-parse", "--short", "HEAD")
+    commit += "-dirty" if commit and git("diff", "--name-only", "HEAD", "--", ":!docs") else ""  # the page itself may be new
     script = pathlib.Path(sys.argv[0]).resolve()
     return (f"Made with eulastic {version[1] if version else '?'}{f' ({commit})' if commit else ''}, {datetime.date.today()}, on "
             f"{machine()}, by `{script.relative_to(ROOT)}`.")

@@ -20,7 +20,7 @@ from read_page import blocks, commands, file_name, is_python  # noqa: E402
 BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
 FLAT = SHORT.replace("16,16,16", "16,16,1")
-OTHERS = {"python.md": FLAT, "sweep.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
+OTHERS = {"python.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
           "long_run.md": "-grid_cells 16,16,1 -checkpoint_interval 30"}
 NO_COMMANDS = "tutorial.md", "gallery.md"  # scripts/dev/tutorial follows the one, a test below looks at the other
 NOT_RUN = {
@@ -36,7 +36,8 @@ NOT_RUN = {
     "scripts/studies/stability/": "many runs", "scripts/dev/": "minutes to hours", "scripts/docs": "it has a test of its own", ".ci/": "scripts/test again",
     "cmake": "compiles, or installs: test_install.py", "git": "a clone is there", "sbatch": "needs SLURM",
 }
-EVIDENCE = ("validation", "accuracy", "dimple", "performance", "scaling", "stability", "robustness", "contact", "capillary")
+EVIDENCE = ("validation", "accuracy", "dimple", "performance", "scaling", "stability", "robustness", "contact", "capillary",
+            "paper_figure2")
 # What a page takes for granted.
 BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_interval 1e-9 -output_dir output",
           "cluster.md": "cp options/channel_rbc.opts case.opts"}

@@ -92,6 +92,7 @@ class Reader(WithFolder):
     def test_units(self):
         self.assertEqual(Units("m,s").label("u", "velocity"), "u (m/s)")
         self.assertEqual(Units("").label("u", "velocity"), "u")
+        self.assertEqual([Units("m,s").at(time) for time in (0, 2.34567, 45000)], ["t = 0 s", "t = 2.346 s", "t = 45000 s"])
 
 
 class Pictures(WithFolder):
