@@ -80,7 +80,7 @@ class References(unittest.TestCase):
 
     def test_walls_and_images_of_a_stresslet(self):
         sphere = 10 / 3 * math.pi  # its stresslet, in shear of rate 1
-        self.assertAlmostEqual(sphere * ellipsoids.images((60, 1, 60))[:2].sum(), 14.249, delta=5e-4)  # as in V4
+        self.assertAlmostEqual(sphere * ellipsoids.images((60, 1, 60))[:2].sum(), 14.249, delta=5e-4)
         for one, other in zip(ellipsoids.images((4, 5, 4)), ellipsoids.images((8, 10, 8))):
             self.assertAlmostEqual(one, 8 * other, delta=1e-6 * abs(one))
 

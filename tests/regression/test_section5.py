@@ -112,7 +112,7 @@ class Small(unittest.TestCase):
         for check in ("wall shear stress", "force on the box", "red cells more or less", "radial rms"):
             self.assertEqual(self.row(check)[-1].strip(), "pass", check)
         self.assertIn("FAIL", self.row("flow rate")[-1])
-        self.assertIn("Not run yet: h05, h15, h20, tube", self.page)
+        self.assertIn("Not run yet: h05, h15, h20, red_cells_h20, tube", self.page)
 
     def test_stress_is_shared(self):
         """Force x r/2 at every r; without the elastic part it is not, within the cells and in the wall."""

@@ -254,7 +254,7 @@ class Startup:
         return found, capsule.flux
 
 
-STARTUPS = (Startup("neo_hookean", .3, 1, 3), Startup("skalak", .3, 1, 3), Startup("skalak", .6, 1, 3),
+STARTUPS = (Startup("neo_hookean", .15, 1, 2), Startup("neo_hookean", .3, 1, 3), Startup("skalak", .3, 1, 3), Startup("skalak", .6, 1, 3),
             Startup("neo_hookean", .15, 5, 4.5), Startup("skalak", .3, 5, 4.5), Startup("neo_hookean", .3, .2, 2.25))
 
 

@@ -41,4 +41,4 @@ def case(start):
                 ("shear x time", f"D, {label}"), (deformation(start.end / 3),), {"time_end": start.end / 3})
 
 
-CASES = tuple(case(start) for start in STARTUPS)
+CASES = tuple(case(start) for start in STARTUPS[1:])  # the first is V5

@@ -100,7 +100,7 @@ def stress(runs, path):
     save(figure, path)
 
 
-def viscosity(runs, path):
+def viscosity(runs, membranes, path):
     """Relative apparent viscosity beside that of blood in glass tubes."""
     plasma = measures.flow_rate(runs["plasma"])[0]
     diameter = 2 * measures.tube(runs["plasma"])[0]
@@ -108,7 +108,10 @@ def viscosity(runs, path):
     cells = {case: run for case, run in runs.items() if case != "plasma"}
     discharge = [measures.hematocrit(run)[1] for run in cells.values()]
     axis.plot([0] + [100 * h for h in discharge], [1] + [plasma / measures.flow_rate(run)[0] for run in cells.values()], "o-",
-              label="here")
+              label="solids")
+    for run in membranes.values():
+        ratio = measures.plasma_rate(runs["plasma"], run) / measures.flow_rate(run)[0]
+        axis.plot(100 * measures.hematocrit(run)[1], ratio, "s", color="C3", label="membranes")
     line = numpy.linspace(0, max([0.25, *discharge]), 50)
     axis.plot(100 * line, measures.pries(diameter, line), "k--", label=f"Pries et al. 1992, {diameter:g} µm")
     axis.set(xlabel="discharge hematocrit (%)", ylabel="relative apparent viscosity", ylim=(0.95, None))

@@ -127,6 +127,11 @@ def poiseuille(run):
     return numpy.pi * tube(run)[0] ** 4 * force(run) / (8 * float(run.options["fluid_viscosity"]))
 
 
+def plasma_rate(plasma, run):
+    """Flow rate of plasma as viscous as that of `run`, by the run of plasma alone."""
+    return flow_rate(plasma)[0] * poiseuille(run) / poiseuille(plasma)
+
+
 def of_species(run, name):
     return numpy.flatnonzero(run.bodies.species == name)
 

@@ -96,6 +96,9 @@ hematocrit is the red cells' share of the volume that flows.*
 |---|---|---|---|---|---|---|---|---|
 {flow}
 
+"Membranes" are red cells as they are (options/capillary_red_cells_h20.opts): a membrane around a fluid five times as viscous as
+plasma, in the same places at the start; the others are solids as viscous as plasma.
+
 Where the gap comes from, by what the runs say themselves:
 
 | hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same places | layer, µm | layer for Pries et al., µm |
@@ -104,7 +107,7 @@ Where the gap comes from, by what the runs say themselves:
 
 Sixths of the run: from the second on. From the profile: the apparent viscosity of a tube with the cells where they are
 at the end and the local viscosity {local}, H the local share of cells; that is a fit to force x r/2 over
-the slope of u at all radii and later snapshots of all runs. Blood in the same places: likewise, with the viscosity that
+the slope of u at all radii and later snapshots of all runs with such cells. Blood in the same places: likewise, with the viscosity that
 Pries et al. give for wide tubes. Layer: how wide a layer without cells at the wall would have to be to give the
 apparent viscosity here, the cells evenly in what is left; then likewise for the one of Pries et al. at the discharge
 hematocrit that results. Such a layer is an equivalent, not what the profile looks like.
@@ -112,9 +115,9 @@ hematocrit that results. Such a layer is an equivalent, not what the profile loo
 1. **Where the cells are.** They were seeded in the whole lumen and have not gathered around the axis as in a long tube:
    the tube hematocrit is too near to that of the discharge, the layer too thin. With the layer of the last column the
    gap would be closed. {strain:.0f} units of shear at the wall are few for that; the sixths say how far it has come.
-2. **What the cells are.** In the same places blood would flow more easily: a cell here is a lump of neo-Hookean solid as
-   viscous as plasma, not a membrane around a fluid, and cannot tank-tread; few grid cells span its thickness
-   ([dimple.md](dimple.md)), less than one the plasma between two of them.
+2. **What the cells are.** In the same places blood would flow more easily: a solid cell is a lump of neo-Hookean material as
+   viscous as plasma that cannot tank-tread; few grid cells span a cell's thickness ([dimple.md](dimple.md)), less than one the
+   plasma between two of them.
 
 It is not the vessel: the flow rate of plasma is right to {plasma}.{coarse}
 The period, two diameters, has not been varied.
@@ -202,49 +205,52 @@ def cells_off(run):
     return count - wanted / volume
 
 
-def flow_rows(runs):
+def name_of(case, run):
+    return percent(float(run.options["rbc_hematocrit"]), 0) + (", membranes" if case.startswith("red_cells") else "")
+
+
+def flow_rows(runs, membranes):
     diameter = 2 * measures.tube(runs["plasma"])[0]
-    plasma = measures.flow_rate(runs["plasma"])[0]
-    for case, run in runs.items():
+    for case, run in (runs | membranes).items():
         rate, spread = measures.flow_rate(run)
         text = f"{1e3 * rate:.0f} ± {1e3 * spread:.0f}"
         if case == "plasma":
             yield f"| 0 | 0 | 0 | 0 | 0 | {text} | 1 | 1 | |"
             continue
         seeded, discharge = measures.hematocrit(run)
-        here, there = plasma / rate, measures.pries(diameter, discharge)
+        here, there = measures.plasma_rate(runs["plasma"], run) / rate, measures.pries(diameter, discharge)
         count = len(measures.of_species(run, "rbc"))
         asked = float(run.options["rbc_hematocrit"])
-        yield (f"| {percent(asked, 0)} | {count} | {percent(asked)} | {percent(seeded)} | {percent(discharge)} | {text} | "
+        yield (f"| {name_of(case, run)} | {count} | {percent(asked)} | {percent(seeded)} | {percent(discharge)} | {text} | "
                f"{here:.3f} | {there:.3f} | {percent(here / there - 1, 0)} |")
 
 
 def local_fit(runs):
-    cells = [run for case, run in runs.items() if case != "plasma"]
-    a, b = measures.local_viscosity(cells)
+    a, b = measures.local_viscosity([run for case, run in runs.items() if case != "plasma"])
     return f"1 {'-+'[a > 0]} {abs(a):.2f} H {'-+'[b > 0]} {abs(b):.1f} H²", lambda h: 1 + a * h + b * h ** 2
 
 
-def layer_rows(runs):
-    plasma, viscosity = runs["plasma"], local_fit(runs)[1]
-    for case, run in runs.items():
-        if case == "plasma":
-            continue
-        radius = measures.tube(run)[0]
-        seeded, discharge = measures.hematocrit(run)
-        r, share, _ = measures.profiles(run, run.snapshots[-1])
-        at = lambda x: numpy.interp(x, r, share, right=0)  # noqa: E731
-        here = measures.flow_rate(plasma)[0] / measures.flow_rate(run)[0]
-        ends = [n / 6 * run.series.time[-1] for n in range(1, 7)]
-        rate = [run.series.bulk_velocity_x[(run.series.time >= t0) & (run.series.time <= t1)].mean()
-                for t0, t1 in zip(ends[:-1], ends[1:])]
-        steady = plasma.series.bulk_velocity_x[-1]
-        there = measures.cell_free_layer(radius, seeded, viscosity, lambda h: measures.pries(2 * radius, h))
-        yield (f"| {percent(float(run.options['rbc_hematocrit']), 0)} | {seeded / discharge:.2f} | "
-               f"{measures.pries_ratio(2 * radius, discharge):.2f} | " + ", ".join(f"{steady / q:.3f}" for q in rate)
-               + f" | {measures.tube_flow(radius, at, viscosity)[0]:.3f} | "
-               f"{measures.tube_flow(radius, at, measures.pries_bulk)[0]:.3f} | "
-               f"{measures.cell_free_layer(radius, seeded, viscosity, lambda h: here):.1f} | {there:.1f} |")
+def layer_rows(runs, membranes):
+    for group in (runs, membranes) if membranes else (runs,):
+        viscosity = local_fit(group)[1]
+        for case, run in group.items():
+            if case == "plasma":
+                continue
+            radius = measures.tube(run)[0]
+            seeded, discharge = measures.hematocrit(run)
+            r, share, _ = measures.profiles(run, run.snapshots[-1])
+            at = lambda x: numpy.interp(x, r, share, right=0)  # noqa: E731
+            here = measures.plasma_rate(runs["plasma"], run) / measures.flow_rate(run)[0]
+            ends = [n / 6 * run.series.time[-1] for n in range(1, 7)]
+            rate = [run.series.bulk_velocity_x[(run.series.time >= t0) & (run.series.time <= t1)].mean()
+                    for t0, t1 in zip(ends[:-1], ends[1:])]
+            steady = runs["plasma"].series.bulk_velocity_x[-1] * measures.poiseuille(run) / measures.poiseuille(runs["plasma"])
+            there = measures.cell_free_layer(radius, seeded, viscosity, lambda h: measures.pries(2 * radius, h))
+            yield (f"| {name_of(case, run)} | {seeded / discharge:.2f} | "
+                   f"{measures.pries_ratio(2 * radius, discharge):.2f} | " + ", ".join(f"{steady / q:.3f}" for q in rate)
+                   + f" | {measures.tube_flow(radius, at, viscosity)[0]:.3f} | "
+                   f"{measures.tube_flow(radius, at, measures.pries_bulk)[0]:.3f} | "
+                   f"{measures.cell_free_layer(radius, seeded, viscosity, lambda h: here):.1f} | {there:.1f} |")
 
 
 def grid_effect(runs, coarse):
@@ -262,9 +268,10 @@ def grid_effect(runs, coarse):
             f"{viscosity(fine.values())} here.")
 
 
-def flow(runs, coarse, strain):
+def flow(runs, membranes, coarse, strain):
     error = abs(measures.flow_rate(runs["plasma"])[0] / measures.poiseuille(runs["plasma"]) - 1)
-    return FLOW.format(flow="\n".join(flow_rows(runs)), layers="\n".join(layer_rows(runs)), local=local_fit(runs)[0],
+    local = local_fit(runs)[0] + (f" (membranes {local_fit(membranes)[0]})" if membranes else "")
+    return FLOW.format(flow="\n".join(flow_rows(runs, membranes)), layers="\n".join(layer_rows(runs, membranes)), local=local,
                        strain=strain, plasma=percent(error, 1), coarse=grid_effect(runs, coarse))
 
 
@@ -314,7 +321,7 @@ def other_options(run):
     return f"**The runs of this page were made with `{' '.join(changed)}`, other than in options/.**\n\n" if changed else ""
 
 
-def write(runs, tubes, coarse, missing, path):
+def write(runs, membranes, tubes, coarse, missing, path):
     """Returns whether no check failed."""
     run = list(runs.values())[0]
     rows = list(checks(runs))
@@ -322,7 +329,7 @@ def write(runs, tubes, coarse, missing, path):
     wall_stress = measures.force(run) * radius / 2
     strain = wall_stress / float(run.options["fluid_viscosity"]) * run.bodies.time[-1]
     text = PAGE.format(
-        cases="plasma, h05, h10, h15, h20, tube, coarse", diameter=2 * radius, length=run.length[0],
+        cases="plasma, h05, h10, h15, h20, red_cells_h20, tube, coarse", diameter=2 * radius, length=run.length[0],
         end=run.bodies.time[-1], cells=" x ".join(map(str, run.cells)), spacing=run.spacing[0], force=measures.force(run),
         viscosity=float(run.options["fluid_viscosity"]), platelets=len(measures.of_species(run, "platelet")),
         capillary=wall_stress / measures.shear_modulus(run, "platelet"),
@@ -335,6 +342,6 @@ def write(runs, tubes, coarse, missing, path):
         checks="\n".join(f"| {name} | {' | '.join(values.get(case, '') for case in runs)} | {wanted} | {WORDS[passed]} |"
                          for name, values, wanted, passed in rows),
         tube=TUBE.format(rows="\n".join(tube_rows(tubes))) if tubes else "",
-        flow=flow(runs, coarse, strain) if "plasma" in runs and len(runs) > 1 else "")
+        flow=flow(runs, membranes, coarse, strain) if "plasma" in runs and len(runs) > 1 else "")
     path.write_text(text)
     return not any(passed is False for *_, passed in rows)
