@@ -1,8 +1,8 @@
 // eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
-#include "app/attachment_warning.hpp"
 #include "app/check_only.hpp"
 #include "app/overlap_warning.hpp"
 #include "app/run.hpp"
+#include "app/scene_warnings.hpp"
 #include "app/signals.hpp"
 #include "base/events.hpp"
 #include "io/hdf5_file.hpp"
@@ -39,7 +39,7 @@ PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
     text = check_report(parsed.config, ranks);
     PetscCall(find_overlap_warning(PETSC_COMM_WORLD, parsed.config, &overlap));
     if (!overlap.empty()) text += "warning: " + overlap + "\n";
-    for (const std::string &warning : attachment_warnings(parsed.config)) text += "warning: " + warning + "\n";
+    for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
   }
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str()));
   PetscFunctionReturn(0);

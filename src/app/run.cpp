@@ -1,6 +1,5 @@
 #include "app/run.hpp"
 
-#include "app/attachment_warning.hpp"
 #include "app/balance.hpp"
 #include "app/checkpoints.hpp"
 #include "app/last_word.hpp"
@@ -9,6 +8,7 @@
 #include "app/petsc_options.hpp"
 #include "app/red_cell.hpp"
 #include "app/scene.hpp"
+#include "app/scene_warnings.hpp"
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
 #include "base/events.hpp"
@@ -73,8 +73,7 @@ PetscErrorCode print_warnings(const Config &config, const Run &run) {
   print_warning(comm, overlap);
   PetscCall(run.outputs.unresolved_bodies(&unresolved));
   print_warning(comm, unresolved);
-  for (const std::string &warning : attachment_warnings(config)) print_warning(comm, warning);
-  for (const std::string &warning : coarse_surface_warnings(config)) print_warning(comm, warning);
+  for (const std::string &warning : scene_warnings(config)) print_warning(comm, warning);
   PetscFunctionReturn(0);
 }
 

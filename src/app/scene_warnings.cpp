@@ -1,0 +1,60 @@
+#include "app/scene_warnings.hpp"
+
+#include "app/red_cell.hpp"
+#include "physics/exterior.hpp"
+#include "physics/viscosity.hpp"
+
+#include <cstdio>
+
+namespace eulastic {
+
+namespace {
+
+void add_attachment_warnings(const Config &config, std::vector<std::string> *warnings) {
+  if (config.method.exterior != SolidExterior::extrapolate) return;
+  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
+  Real3 spacing;
+  for (int d = 0; d < 3; ++d) spacing[d] = config.grid.length[d] / config.grid.cells[d];
+  for (const SpeciesSpec &spec : config.species) {
+    const Material material = spec.material();
+    if (!material.attached || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
+                  "viscosity %g, so that its strain at the surface is first order, as of a free body; a spacing of at "
+                  "most %.3g would do",
+                  spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
+                  damping_spacing(config.fluid, material));
+    warnings->emplace_back(text);
+  }
+}
+
+// Of a drop: docs/method.md, section 16, "Pressure".
+void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) {
+  if (!config.method.staggered() || config.method.viscous != ViscousScheme::rkl) return;
+  ViscosityContrast all(config.fluid);
+  for (const SpeciesSpec &spec : config.species) all.add(spec.material(), 0);
+  for (const SpeciesSpec &spec : config.species) {
+    ViscosityContrast alone(config.fluid);
+    alone.add(spec.material(), 0);
+    if (!alone.exists() || alone.settles()) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity is late by some %.0f "
+                  "steps; shorter ones, -time_step, are late by less",
+                  spec.name.c_str(), viscosity_of(spec.material(), config.fluid) / config.fluid.viscosity,
+                  4 * all.most / all.least);
+    warnings->emplace_back(text);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Config &config) {
+  std::vector<std::string> warnings = coarse_surface_warnings(config);
+  add_attachment_warnings(config, &warnings);
+  add_lag_warnings(config, &warnings);
+  return warnings;
+}
+
+}  // namespace eulastic
