@@ -151,8 +151,8 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(done.stderr.startswith(f"eulastic: warning: {warning}"), bool(warning), done.stderr)
 
     def test_viscosities_far_from_the_fluids_are_a_warning(self):
-        scene = ("-grid_cells 16,16,1 -grid_length 1,1,1 -boundary_y periodic -fluid_viscosity .5 -time_end 1 -time_steps_max 1 -output_overwrite "
-                 "-species a -a_shape ellipsoid -a_semi_axes .3,.3,1 -a_shear_modulus 1 -a_viscosity").split()
+        scene = ("-grid_cells 16,16,1 -grid_length 1,1,1 -boundary_y periodic -fluid_viscosity .5 -time_end 1 "
+                 "-time_steps_max 1 -output_overwrite -species a -a_shape ellipsoid -a_semi_axes .3,.3,1 -a_shear_modulus 1 -a_viscosity").split()
         for viscosity, times, steps in (("9", None, None), (".02", "0.04", "100"), ("20", "40", "160")):
             for words in ([], ["-check_only"]):
                 done = self.run_program(*scene, viscosity, *words)
