@@ -1,7 +1,6 @@
 #include "physics/viscosity.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/interface_normal.hpp"
@@ -121,12 +120,12 @@ EULASTIC_CLONES void along_surface_3d(const Segment &row, const Mixture &mixture
   along_surface<3>(row, mixture, h, fields);
 }
 
-// Beside sides of the box nothing: no edge on a side feels it.
-void clear_beside_sides(const Grid &grid, const Segment &row, double *values) {
+// Beside sides of the box nothing: no edge on a side feels it. Behind planes of symmetry all is mirrored.
+void clear_beside_sides(const Grid &grid, const BoxSides &sides, const Segment &row, double *values) {
   const int place[3] = {0, row.j, row.k};
   for (int d = 0; d < grid.dimension(); ++d)
     for (const bool high : {false, true}) {
-      if (!grid.is_wall(d) || !(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
+      if (!(high ? grid.touches_high(d) : grid.touches_low(d)) || sides[d][high].kind == SideKind::symmetry) continue;
       const int first = grid.owned()[d] - 1;
       if (d > 0 && (high ? place[d] >= first : place[d] <= 0)) std::fill(values + row.i_begin, values + row.i_end, 0.0);
       if (d > 0) continue;
@@ -183,8 +182,8 @@ LocalViscosity::LocalViscosity(const Grid &grid)
     : fields(grid, viscosity_fields(grid.dimension())),
       stress(grid, static_cast<int>(tensor_components(grid.dimension()).size())) {}
 
-PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const std::vector<Phase> &phases,
-                                 LocalViscosity *viscosity) {
+PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
+                                 const std::vector<Phase> &phases, LocalViscosity *viscosity) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const int dim = grid.dimension(), end = grid.owned()[0] + 1;
@@ -208,7 +207,7 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const std
     const Piece piece(cut.size(), part, parts);
     for (std::size_t s = piece.begin; s < piece.end; ++s) {
       (dim == 2 ? along_surface_2d : along_surface_3d)(cut[s], mixture, grid.spacing(), surface);
-      clear_beside_sides(grid, cut[s], surface[0].row(cut[s].j, cut[s].k));
+      clear_beside_sides(grid, sides, cut[s], surface[0].row(cut[s].j, cut[s].k));
     }
   });
   viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);

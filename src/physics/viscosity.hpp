@@ -3,6 +3,7 @@
 
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
+#include "field/sides.hpp"
 #include "grid/active_segments.hpp"
 #include "physics/fluid.hpp"
 
@@ -48,9 +49,9 @@ struct LocalViscosity {
 };
 
 /// Harmonic means, weighted by the solid fractions at centres and of four centres on edges; along surfaces what
-/// arithmetic means have more, but for cells beside sides of the box. Centres with one layer of ghosts, edges of owned
-/// cells on both sides; two ghosts of phi.
-PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const std::vector<Phase> &phases,
-                                 LocalViscosity *viscosity);
+/// arithmetic means have more, but for cells beside sides of the box that are no planes of symmetry. Centres with one
+/// layer of ghosts, edges of owned cells on both sides; two ghosts of phi.
+PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
+                                 const std::vector<Phase> &phases, LocalViscosity *viscosity);
 
 }  // namespace eulastic

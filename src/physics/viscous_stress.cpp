@@ -291,7 +291,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
-    fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 1);
+    fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 2);
     find_tangential_stress(grid, viscosity, work.now);
     const StageTerms stage{&viscosity.fields,
                            &work.rate,

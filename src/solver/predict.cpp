@@ -12,7 +12,7 @@ PetscErrorCode Solver::predict(double dt) {
   Fluid fluid = spec_.fluid;
   const double nu = fluid.kinematic_viscosity();
   if (viscosity_) {
-    PetscCall(compute_viscosity(*grid_, fluid, now_.phases, &viscosity_));
+    PetscCall(compute_viscosity(*grid_, fluid, spec_.sides, now_.phases, &viscosity_));
     fluid.viscosity = 0;  // the stress of the varying one is added
   }
   MomentumStep step{now_.time, dt, speed_scale(dt), {}};

@@ -27,7 +27,7 @@ PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
   if (!viscosity_) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
-  PetscCall(compute_viscosity(*grid_, spec_.fluid, *phases, &viscosity_));
+  PetscCall(compute_viscosity(*grid_, spec_.fluid, spec_.sides, *phases, &viscosity_));
   *viscosity = &viscosity_.fields;
   PetscFunctionReturn(0);
 }

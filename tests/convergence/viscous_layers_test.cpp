@@ -130,7 +130,7 @@ ShearErrors shear_errors_across(double lambda, int cells) {
   LocalViscosity viscosity(grid);
   FieldBlock linear(grid, 2), v(grid, 2), star(grid, 2), pressure(grid, 1);
   FieldBlock divergence(grid, 1), increment(grid, 1);
-  EXPECT_EQ(compute_viscosity(grid, {}, phases, &viscosity), 0);
+  EXPECT_EQ(compute_viscosity(grid, {}, {}, phases, &viscosity), 0);
   fill_everywhere(grid, linear[0], at_face[0], [=](const Point &x) { return 0.4 * (x[0] + 2 * x[1]); });
   fill_everywhere(grid, linear[1], at_face[1], [=](const Point &x) { return -0.2 * (x[0] + 2 * x[1]); });
   SuperTimeStepping work{FieldBlock(grid, 2), {}, FieldBlock(grid, 2), FieldBlock(grid, 2)};

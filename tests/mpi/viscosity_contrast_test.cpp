@@ -55,7 +55,7 @@ struct Box {
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
     fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-    EXPECT_EQ(compute_viscosity(grid, fluid, phases, &viscosity), 0);
+    EXPECT_EQ(compute_viscosity(grid, fluid, sides, phases, &viscosity), 0);
   }
 
   // Sum of v . div tau over all faces but those on sides, where v = 0.

@@ -80,7 +80,8 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   const Config soft = parse_line(without + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(merged, {1, 1, 1}), bytes_per_rank(soft, {1, 1, 1}) + 8 * 12 * std::pow(42, 3));
   EXPECT_GT(bytes_per_rank(soft, {1, 1, 1}), fluid);
-  // Viscosities of the place, at centres and on edges, and the pressure of the step before.
+  // Viscosities of the place, at centres, on edges and along surfaces, three of the normal, six of the stress there,
+  // and the pressure of the step before.
   const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;
-  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(apart, {1, 1, 1}) + 8 * 5 * std::pow(42, 3));
+  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(apart, {1, 1, 1}) + 8 * 15 * std::pow(42, 3));
 }

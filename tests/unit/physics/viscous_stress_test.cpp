@@ -129,7 +129,7 @@ TEST(ViscousStress, SpectrumEndsWhereTheTimeStepLimitSays) {
     EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);
     Fluid thin;
     thin.viscosity = 0.01 * most;
-    EXPECT_EQ(compute_viscosity(flow.grid, thin, phases, &flow.viscosity), 0);
+    EXPECT_EQ(compute_viscosity(flow.grid, thin, {}, phases, &flow.viscosity), 0);
     EXPECT_FALSE(flow.viscosity.cut.all().empty());
     EXPECT_LT(stiffest(flow), limit);
     EXPECT_GT(stiffest(flow), 0.3 * limit);
@@ -171,7 +171,7 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
         for (int j = -1; j < n[1] + 1; ++j)
           for (int i = -1; i < n[0] + 1; ++i) phases[p].fraction[0](i, j, k) = part[odd(i)][p];
     for (Phase &phase : phases) EXPECT_EQ(phase.rows.find(flow.grid, phase.fraction[0]), 0);
-    EXPECT_EQ(compute_viscosity(flow.grid, fluid, phases, &flow.viscosity), 0);
+    EXPECT_EQ(compute_viscosity(flow.grid, fluid, {}, phases, &flow.viscosity), 0);
     // 1/nu: 2/.8 in the fluid and the second phase, 2/4 in the first, which shares overfull cells.
     const double even = 0.75 * 2.5 + 0.25 * 0.5, full = 0.5 * 2.5 + 0.5 * 0.5;
     for (int k = 0; k < n[2]; ++k)
@@ -202,7 +202,7 @@ TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
     fill_everywhere(flow.grid, phases[0].fraction[0], at_centre,
                     [h](const Point &x) { return std::clamp(x[1] / h - 2, 0.0, 1.0); });  // 1/2 where j = 2
     EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);
-    EXPECT_EQ(compute_viscosity(flow.grid, fluid, phases, &flow.viscosity), 0);
+    EXPECT_EQ(compute_viscosity(flow.grid, fluid, {}, phases, &flow.viscosity), 0);
     const auto more = [&](double phi) { return thin + phi * (thick - thin) - 1 / ((1 - phi) / thin + phi / thick); };
     const double beside = (more(0.25) + more(0.75)) / 2, here = more(0.5);  // edges across, and along, the surface
     const double excess = flat ? (here + beside) / 2 : (3 * here + 2 * here + 4 * beside) / 9;
