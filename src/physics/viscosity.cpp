@@ -135,6 +135,23 @@ void clear_beside_sides(const Grid &grid, const BoxSides &sides, const Segment &
     }
 }
 
+// Beside rigid bodies neither: what faces inside of them hold is nobody's.
+void clear_beside_rigid(const Grid &grid, const std::vector<Phase> &phases, const Segment &row, double *values) {
+  const int deep = grid.dimension() == 3 ? 1 : 0;
+  for (const Phase &phase : phases) {
+    if (!phase.material.is_rigid()) continue;
+    const ConstView phi = phase.fraction[0];
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      if (values[i] == 0) continue;
+      double solid = 0;
+      for (int k = row.k - deep; k <= row.k + deep; ++k)
+        for (int j = row.j - 1; j <= row.j + 1; ++j)
+          for (int x = i - 1; x <= i + 1; ++x) solid = std::max(solid, phi(x, j, k));
+      if (solid > 0) values[i] = 0;
+    }
+  }
+}
+
 void clear(const ActiveSegments &cells, View field) {
   for (const Segment &s : cells.all()) {
     double *row = field.row(s.j, s.k);
@@ -208,6 +225,7 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
     for (std::size_t s = piece.begin; s < piece.end; ++s) {
       (dim == 2 ? along_surface_2d : along_surface_3d)(cut[s], mixture, grid.spacing(), surface);
       clear_beside_sides(grid, sides, cut[s], surface[0].row(cut[s].j, cut[s].k));
+      clear_beside_rigid(grid, phases, cut[s], surface[0].row(cut[s].j, cut[s].k));
     }
   });
   viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);

@@ -73,7 +73,7 @@ EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosit
   for (int i = row.i_begin; i < row.i_end; ++i) {
     double rate[components];
     stress.rate(i, rate);
-    for (int c = 0; c < components; ++c) T[c][i] = stress.excess[i] * rate[c];
+    for (int c = 0; c < components; ++c) T[c][i] = stress.excess[i] != 0 ? stress.excess[i] * rate[c] : 0;
   }
 }
 
