@@ -228,6 +228,13 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
       clear_beside_rigid(grid, phases, cut[s], surface[0].row(cut[s].j, cut[s].k));
     }
   });
+  viscosity->stressed.clear();
+  for (Segment piece : cut) {
+    const double *more = surface[0].row(piece.j, piece.k);
+    while (piece.i_begin < piece.i_end && more[piece.i_begin] == 0) ++piece.i_begin;
+    while (piece.i_begin < piece.i_end && more[piece.i_end - 1] == 0) --piece.i_end;
+    if (piece.size() > 0) viscosity->stressed.push_back(piece);
+  }
   viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);
   for_rows_with_ghosts(grid, 1, [&](int j, int k, double *) {
     if (j < 0 || k < 0) return;

@@ -37,10 +37,11 @@ struct ViscosityContrast {
 
 /// Viscosity where it varies, of the phases of some moment.
 struct LocalViscosity {
-  FieldBlock fields;      ///< field/local_viscosity.hpp
-  ActiveSegments cut;     ///< cells, a layer of ghosts included, of which some have a viscosity along the surface
-  ActiveSegments beside;  ///< points whose faces feel them
-  FieldBlock stress;      ///< symmetric, at centres: work space of the force; 0 but for `cut`
+  FieldBlock fields;   ///< field/local_viscosity.hpp
+  ActiveSegments cut;  ///< cells, a layer of ghosts included, of which some have a viscosity along the surface
+  std::vector<Segment> stressed;  ///< pieces of `cut` that begin and end with such a cell
+  ActiveSegments beside;          ///< points whose faces feel them
+  FieldBlock stress;              ///< symmetric, at centres: work space of the force; 0 but for `cut`
 
   LocalViscosity() = default;
   explicit LocalViscosity(const Grid &grid);

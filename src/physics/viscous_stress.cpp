@@ -88,7 +88,7 @@ EULASTIC_CLONES void tangential_row_3d(const Grid &grid, const FieldBlock &visco
 
 // The stress along surfaces at all centres whose faces feel it.
 void find_tangential_stress(const Grid &grid, LocalViscosity &viscosity, const FieldBlock &velocity) {
-  const std::vector<Segment> &cut = viscosity.cut.all();
+  const std::vector<Segment> &cut = viscosity.stressed;
   const int parts = row_parts(grid);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(cut.size(), part, parts);
@@ -136,7 +136,9 @@ void add_tangential_force(const Grid &grid, const LocalViscosity &viscosity, dou
 // Flops of both.
 double tangential_flops(const Grid &grid, const LocalViscosity &viscosity) {
   const bool flat = grid.dimension() == 2;
-  return viscosity.cut.points() * (flat ? kernels::tangential_stress_flops_2d : kernels::tangential_stress_flops_3d) +
+  double points = 0;
+  for (const Segment &piece : viscosity.stressed) points += piece.size();
+  return points * (flat ? kernels::tangential_stress_flops_2d : kernels::tangential_stress_flops_3d) +
          viscosity.beside.points() * grid.dimension() *
              (2 + (flat ? kernels::centred_divergence_flops_2d : kernels::centred_divergence_flops_3d));
 }
