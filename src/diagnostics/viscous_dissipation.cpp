@@ -33,10 +33,9 @@ template <int Dim>
 double along_surface(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Int3 &cell) {
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, cell[1], cell[2]);
   if (stress.excess[cell[0]] == 0) return 0;
-  constexpr int components = Dim == 2 ? 3 : 6;
-  double rate[components], sum = 0;
-  stress.rate(cell[0], rate);
-  for (int c = 0; c < components; ++c) sum += (c < Dim ? 0.5 : 1) * square(rate[c]);
+  const typename kernels::TangentialStress<Dim>::Rate D = stress.rate(cell[0]);
+  const double sum =
+      0.5 * square(D.xx) + 0.5 * square(D.yy) + 0.5 * square(D.zz) + square(D.yz) + square(D.xz) + square(D.xy);
   return stress.excess[cell[0]] * sum;
 }
 

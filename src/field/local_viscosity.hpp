@@ -33,17 +33,23 @@ struct EdgeViscosity {
 template <int Dim>
 EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Grid &grid, const FieldBlock &viscosity,
                                                                  const FieldBlock &velocity, int j, int k) {
-  kernels::TangentialStress<Dim> stress{};
-  const int along = viscosity_along_surface(Dim);
+  const int along = viscosity_along_surface(Dim), last = Dim - 1;
   const ConstView q = velocity[0];
-  stress.excess = viscosity[along].row(j, k);
-  for (int d = 0; d < Dim; ++d) {
-    stress.velocity[d] = velocity[d].row(j, k);
-    stress.normal[d] = viscosity[along + 1 + d].row(j, k);
-    stress.stride[d] = q.stride(d);
-    stress.inverse[d] = 1 / grid.spacing()[d];
-  }
-  return stress;
+  const Real3 &h = grid.spacing();
+  const auto of_block = [j, k](const FieldBlock &block, int f) { return block[f].row(j, k); };
+  return {of_block(velocity, 0),
+          of_block(velocity, 1),
+          of_block(velocity, last),
+          of_block(viscosity, along),
+          of_block(viscosity, along + 1),
+          of_block(viscosity, along + 2),
+          of_block(viscosity, along + 1 + last),
+          q.stride(0),
+          q.stride(1),
+          q.stride(last),
+          1 / h[0],
+          1 / h[1],
+          1 / h[last]};
 }
 
 }  // namespace eulastic

@@ -7,45 +7,63 @@
 namespace eulastic::kernels {
 
 /// Around centres: velocity on faces, strides and inverse spacings of the directions, excess of the viscosity and unit
-/// normal of the surface. Differences along a are compact, across it over two cells: means of the four edges.
+/// normal of the surface; 2-D: nothing of z. Differences along a are compact, across it over two cells: means of the
+/// four edges.
 template <int Dim>
 struct TangentialStress {
-  const double *velocity[3], *excess, *normal[3];
-  std::ptrdiff_t stride[3];
-  double inverse[3];
+  const double *u, *v, *w, *excess, *nx, *ny, *nz;
+  std::ptrdiff_t x, y, z;
+  double ix, iy, iz;
 
-  /// Twice the rate of strain of the centre at offset i, its deviator, without shear between normal and tangents;
-  /// components in the order of their block.
-  EULASTIC_BODY void rate(std::ptrdiff_t i, double *out) const noexcept {
-    double D[3][3], n[3], along[3];
-    for (int a = 0; a < Dim; ++a) {
-      const double *v = velocity[a] + i;
-      n[a] = normal[a][i];
-      D[a][a] = 2 * inverse[a] * (v[stride[a]] - v[0]);
+  /// A symmetric tensor; 2-D: nothing of z.
+  struct Rate {
+    double xx, yy, zz, yz, xz, xy;
+  };
+
+  /// Twice the rate of strain of the centre at offset i, its deviator, without shear between normal and tangents.
+  EULASTIC_BODY Rate rate(std::ptrdiff_t i) const noexcept {
+    Rate D{2 * ix * (u[i + x] - u[i]),
+           2 * iy * (v[i + y] - v[i]),
+           0,
+           0,
+           0,
+           fma(iy, across(u + i, x, y), ix * across(v + i, y, x))};
+    double third = D.xx + D.yy;
+    if constexpr (Dim == 3) {
+      D.zz = 2 * iz * (w[i + z] - w[i]);
+      D.xz = fma(iz, across(u + i, x, z), ix * across(w + i, z, x));
+      D.yz = fma(iz, across(v + i, y, z), iy * across(w + i, z, y));
+      third += D.zz;
     }
-    for (int a = 0; a < Dim; ++a)
-      for (int b = a + 1; b < Dim; ++b)
-        D[a][b] = D[b][a] = fma(inverse[b], across(i, a, b), inverse[a] * across(i, b, a));
-    const double third = Dim == 2 ? 0.5 * (D[0][0] + D[1][1]) : (1. / 3) * ((D[0][0] + D[1][1]) + D[Dim - 1][Dim - 1]);
-    for (int a = 0; a < Dim; ++a) D[a][a] -= third;
-    for (int a = 0; a < Dim; ++a) {
-      along[a] = fma(D[a][1], n[1], D[a][0] * n[0]);
-      if (Dim == 3) along[a] = fma(D[a][Dim - 1], n[Dim - 1], along[a]);
+    third *= Dim == 2 ? 0.5 : 1. / 3;
+    D.xx -= third;
+    D.yy -= third;
+    D.zz -= third;
+    const double a = nx[i], b = ny[i], c = Dim == 3 ? nz[i] : 0;  // the normal; p, q, r: D times it
+    double p = fma(D.xy, b, D.xx * a), q = fma(D.yy, b, D.xy * a), r = 0;
+    if constexpr (Dim == 3) {
+      p = fma(D.xz, c, p);
+      q = fma(D.yz, c, q);
+      r = fma(D.zz, c, fma(D.yz, b, D.xz * a));
     }
-    double twice = fma(n[1], along[1], n[0] * along[0]);
-    if (Dim == 3) twice = fma(n[Dim - 1], along[Dim - 1], twice);
+    double twice = fma(b, q, a * p);
+    if constexpr (Dim == 3) twice = fma(c, r, twice);
     twice *= 2;
-    for (int a = 0; a < Dim; ++a)
-      for (int b = a; b < Dim; ++b)
-        out[position<Dim>(a, b)] = fma(n[a], fma(twice, n[b], -along[b]), fma(-along[a], n[b], D[a][b]));
+    const auto less = [twice](double d, double n, double Dn, double m, double Dm)
+                          EULASTIC_BODY { return fma(n, fma(twice, m, -Dm), fma(-Dn, m, d)); };
+    Rate out{less(D.xx, a, p, a, p), less(D.yy, b, q, b, q), 0, 0, 0, less(D.xy, a, p, b, q)};
+    if constexpr (Dim == 3) {
+      out.zz = less(D.zz, c, r, c, r);
+      out.yz = less(D.yz, b, q, c, r);
+      out.xz = less(D.xz, a, p, c, r);
+    }
+    return out;
   }
 
 private:
-  // Half the difference of component a over two cells along b.
-  EULASTIC_BODY double across(std::ptrdiff_t i, int a, int b) const noexcept {
-    const double *v = velocity[a] + i;
-    const std::ptrdiff_t A = stride[a], B = stride[b];
-    return 0.25 * ((v[B] + v[A + B]) - (v[-B] + v[A - B]));
+  // Half the difference over two cells along b of a component of the velocity along a.
+  EULASTIC_BODY static double across(const double *v, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
+    return 0.25 * ((v[b] + v[a + b]) - (v[-b] + v[a - b]));
   }
 };
 

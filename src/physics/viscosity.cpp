@@ -159,6 +159,21 @@ void clear(const ActiveSegments &cells, View field) {
   }
 }
 
+// Adds the runs of whole vectors of a piece in which a value is not 0.
+void append_vectors(const Segment &piece, const double *values, std::vector<Segment> *runs) {
+  constexpr int vector_length = 8;
+  bool before = false;
+  for (int i = piece.i_begin; i < piece.i_end; i += vector_length) {
+    const int end = std::min(i + vector_length, piece.i_end);
+    const bool any = std::any_of(values + i, values + end, [](double value) { return value != 0; });
+    if (any && before)
+      runs->back().i_end = end;
+    else if (any)
+      runs->push_back({i, end, piece.j, piece.k});
+    before = any;
+  }
+}
+
 // visit(j, k, scratch) for all rows, those of `layers` of ghosts too.
 template <class Row>
 void for_rows_with_ghosts(const Grid &grid, int layers, const Row &visit) {
@@ -229,12 +244,7 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
     }
   });
   viscosity->stressed.clear();
-  for (Segment piece : cut) {
-    const double *more = surface[0].row(piece.j, piece.k);
-    while (piece.i_begin < piece.i_end && more[piece.i_begin] == 0) ++piece.i_begin;
-    while (piece.i_begin < piece.i_end && more[piece.i_end - 1] == 0) --piece.i_end;
-    if (piece.size() > 0) viscosity->stressed.push_back(piece);
-  }
+  for (const Segment &piece : cut) append_vectors(piece, surface[0].row(piece.j, piece.k), &viscosity->stressed);
   viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);
   for_rows_with_ghosts(grid, 1, [&](int j, int k, double *) {
     if (j < 0 || k < 0) return;

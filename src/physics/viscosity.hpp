@@ -39,7 +39,7 @@ struct ViscosityContrast {
 struct LocalViscosity {
   FieldBlock fields;   ///< field/local_viscosity.hpp
   ActiveSegments cut;  ///< cells, a layer of ghosts included, of which some have a viscosity along the surface
-  std::vector<Segment> stressed;  ///< pieces of `cut` that begin and end with such a cell
+  std::vector<Segment> stressed;  ///< pieces of `cut` where there are such cells
   ActiveSegments beside;          ///< points whose faces feel them
   FieldBlock stress;              ///< symmetric, at centres: work space of the force; 0 but for `cut`
 

@@ -9,6 +9,7 @@
 #include "physics/viscosity.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace eulastic {
 namespace {
@@ -65,15 +66,28 @@ EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity,
 template <int Dim>
 EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
                                     FieldBlock &out, const Segment &row) {
-  constexpr int components = Dim == 2 ? 3 : 6;
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, row.j, row.k);
-  double *T[components];
-  for (int c = 0; c < components; ++c) T[c] = out[c].row(row.j, row.k);
+  const auto component = [&](int x, int y) { return out[kernels::position<Dim>(x, y)].row(row.j, row.k); };
+  constexpr int z = Dim - 1;
+  double *xx = component(0, 0), *yy = component(1, 1), *zz = component(z, z);
+  double *yz = component(1, z), *xz = component(0, z), *xy = component(0, 1);
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) {
-    double rate[components];
-    stress.rate(i, rate);
-    for (int c = 0; c < components; ++c) T[c][i] = stress.excess[i] != 0 ? stress.excess[i] * rate[c] : 0;
+    const typename kernels::TangentialStress<Dim>::Rate rate = stress.rate(i);
+    const double excess = stress.excess[i];
+    // Where there is none the rate may be anything. As a condition of the result it would keep the loop scalar.
+    const std::uint64_t some = excess != 0 ? ~std::uint64_t{0} : 0;
+    const auto times = [some, excess](double r) EULASTIC_BODY {
+      return excess * __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, r) & some);
+    };
+    xx[i] = times(rate.xx);
+    yy[i] = times(rate.yy);
+    xy[i] = times(rate.xy);
+    if constexpr (Dim == 3) {
+      zz[i] = times(rate.zz);
+      yz[i] = times(rate.yz);
+      xz[i] = times(rate.xz);
+    }
   }
 }
 
@@ -124,7 +138,7 @@ EULASTIC_CLONES void add_tangential_force_3d(const Grid &grid, const FieldBlock 
 // Its force on faces of a row; bodies do not come to open sides.
 void add_tangential_force(const Grid &grid, const LocalViscosity &viscosity, double scale, int a, const Faces &row,
                           double *out) {
-  if (row.side != 0 || viscosity.cut.all().empty()) return;
+  if (row.side != 0 || viscosity.stressed.empty()) return;
   for (Segment s : viscosity.beside.row(row.j, row.k)) {
     s.i_begin = std::max(s.i_begin, row.i_begin);
     s.i_end = std::min(s.i_end, row.i_end);
@@ -218,7 +232,7 @@ void for_velocity_rows(const Grid &grid, const Visit &visit) {
 }
 
 // What a stage reads of the row that comes RowAhead::rows later: of what its stencil reads, the row ahead of it.
-void prefetch_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) {
+void prefetch_ahead(const Grid &grid, const LocalViscosity &viscosity, const StageTerms &s, int a, int j, int k) {
   if (grid.dimension() == 2) return;
   const int n = grid.owned()[0], begin = j / block_rows * block_rows,
             end = std::min(begin + block_rows, grid.owned()[1]);
@@ -229,6 +243,9 @@ void prefetch_ahead(const Grid &grid, const StageTerms &s, int a, int j, int k) 
   if (s.slope) prefetch((*s.slope)[a].row(next.j, next.k), n);
   prefetch((*s.viscosity)[a + 1].row(next.j, next.k + 1), n);
   if (a == 0) prefetch((*s.viscosity)[0].row(next.j, next.k), n);
+  if (viscosity.stressed.empty() || next.k >= grid.owned()[2]) return;
+  for (const Segment &piece : viscosity.beside.row(next.j, next.k))
+    for (const int c : {a, a + 3}) prefetch(viscosity.stress[c].row(next.j, next.k + 1) + piece.i_begin, piece.size());
 }
 
 // Walls move, and more comes in, by that from one time to another.
@@ -305,7 +322,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     std::unique_ptr<RigidStage> beside;
     if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached);
     for_velocity_rows(grid, [&](int a, const Faces &row) {
-      if (row.j < grid.owned()[1] && row.k < grid.owned()[2]) prefetch_ahead(grid, stage, a, row.j, row.k);
+      if (row.j < grid.owned()[1] && row.k < grid.owned()[2]) prefetch_ahead(grid, viscosity, stage, a, row.j, row.k);
       const RigidFaces::Row faces = rigid ? rigid->row(a, row.j, row.k) : RigidFaces::Row{};
       if (faces.all) return;
       thread_local std::vector<double> held;
