@@ -62,8 +62,8 @@ void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::
   return;
 #endif
   const std::size_t row_begin = segments->size();
-  for (int i = 0; marked && i < points_x_; i += vector_length) {
-    const int count = std::min(vector_length, points_x_ - i);
+  for (int i = 0, count; marked && i < points_x_; i += count) {
+    count = std::min(vector_length - ((begin_[0] + i) & (vector_length - 1)), points_x_ - i);
     if (!any_set(marked + i, count)) continue;
     const int begin = begin_[0] + i, end = begin + count;
     if (segments->size() > row_begin && segments->back().i_end == begin)
@@ -165,6 +165,18 @@ void ActiveSegments::build_band(const Grid &grid, ConstView value, const Occupie
   start({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
   build_rows(
       grid, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
+}
+
+void ActiveSegments::build_within(const Grid &grid, const ActiveSegments &cells, ConstView value) {
+  const Int3 begin = cells.begin_;
+  start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
+  append_rows(row_parts(grid), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
+    const double *values = value.row(begin[1] + j, begin[2] + k) + begin[0];
+    std::fill_n(mask, points_x_, 0);
+    for (const Segment &s : cells.row(begin[1] + j, begin[2] + k))
+      for (int i = s.i_begin - begin[0]; i < s.i_end - begin[0]; ++i) mask[i] = values[i] != 0;
+    append_row(mask, begin[1] + j, begin[2] + k, segments);
+  });
 }
 
 void ActiveSegments::build_faces(const Grid &grid, const ActiveSegments &cells) {

@@ -24,6 +24,8 @@ public:
   /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
   /// and some more. `value` needs margin + 1 ghosts.
   void build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin);
+  /// Those of `cells` whose value is not 0, and some more.
+  void build_within(const Grid &grid, const ActiveSegments &cells, ConstView value);
   /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
   void build_faces(const Grid &grid, const ActiveSegments &cells);
   /// Everything.

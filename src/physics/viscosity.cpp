@@ -159,21 +159,6 @@ void clear(const ActiveSegments &cells, View field) {
   }
 }
 
-// Adds the runs of whole vectors of a piece in which a value is not 0.
-void append_vectors(const Segment &piece, const double *values, std::vector<Segment> *runs) {
-  constexpr int vector_length = 8;
-  bool before = false;
-  for (int i = piece.i_begin; i < piece.i_end; i += vector_length) {
-    const int end = std::min(i + vector_length, piece.i_end);
-    const bool any = std::any_of(values + i, values + end, [](double value) { return value != 0; });
-    if (any && before)
-      runs->back().i_end = end;
-    else if (any)
-      runs->push_back({i, end, piece.j, piece.k});
-    before = any;
-  }
-}
-
 // visit(j, k, scratch) for all rows, those of `layers` of ghosts too.
 template <class Row>
 void for_rows_with_ghosts(const Grid &grid, int layers, const Row &visit) {
@@ -224,7 +209,7 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
   const Mixture mixture(fluid, phases, fluidity, difference);
   const View centre = fields[0], mixed = viscosity->stress[0];
   const int along = viscosity_along_surface(dim);
-  for (int c = 0; c < viscosity->stress.count(); ++c) clear(viscosity->cut, viscosity->stress[c]);
+  for (int c = 0; c < viscosity->stress.count(); ++c) clear(viscosity->stressed, viscosity->stress[c]);
   clear(viscosity->cut, fields[along]);
   for_rows_with_ghosts(grid, ghosts, [&](int j, int k, double *solid) {
     fill_row(grid, phases, mixture, j, k, solid, centre.row(j, k), mixed.row(j, k));
@@ -243,8 +228,7 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
       clear_beside_rigid(grid, phases, cut[s], surface[0].row(cut[s].j, cut[s].k));
     }
   });
-  viscosity->stressed.clear();
-  for (const Segment &piece : cut) append_vectors(piece, surface[0].row(piece.j, piece.k), &viscosity->stressed);
+  viscosity->stressed.build_within(grid, viscosity->cut, surface[0]);
   viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);
   for_rows_with_ghosts(grid, 1, [&](int j, int k, double *) {
     if (j < 0 || k < 0) return;

@@ -3,13 +3,12 @@
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/deviatoric_stress.hpp"
-#include "kernels/tangential_stress.hpp"
 #include "physics/rigid.hpp"
 #include "physics/rkl_coefficients.hpp"
+#include "physics/tangential_stress.hpp"
 #include "physics/viscosity.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace eulastic {
 namespace {
@@ -61,100 +60,6 @@ EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity,
 EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity, double scale,
                                   const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
   add_force<3>(grid, viscosity, scale, velocity, out, a, row);
-}
-
-template <int Dim>
-EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                    FieldBlock &out, const Segment &row) {
-  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, row.j, row.k);
-  const auto component = [&](int x, int y) { return out[kernels::position<Dim>(x, y)].row(row.j, row.k); };
-  constexpr int z = Dim - 1;
-  double *xx = component(0, 0), *yy = component(1, 1), *zz = component(z, z);
-  double *yz = component(1, z), *xz = component(0, z), *xy = component(0, 1);
-#pragma omp simd
-  for (int i = row.i_begin; i < row.i_end; ++i) {
-    const typename kernels::TangentialStress<Dim>::Rate rate = stress.rate(i);
-    const double excess = stress.excess[i];
-    // Where there is none the rate may be anything. As a condition of the result it would keep the loop scalar.
-    const std::uint64_t some = excess != 0 ? ~std::uint64_t{0} : 0;
-    const auto times = [some, excess](double r) EULASTIC_BODY {
-      return excess * __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, r) & some);
-    };
-    xx[i] = times(rate.xx);
-    yy[i] = times(rate.yy);
-    xy[i] = times(rate.xy);
-    if constexpr (Dim == 3) {
-      zz[i] = times(rate.zz);
-      yz[i] = times(rate.yz);
-      xz[i] = times(rate.xz);
-    }
-  }
-}
-
-EULASTIC_CLONES void tangential_row_2d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                       FieldBlock &out, const Segment &row) {
-  tangential_row<2>(grid, viscosity, velocity, out, row);
-}
-EULASTIC_CLONES void tangential_row_3d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                       FieldBlock &out, const Segment &row) {
-  tangential_row<3>(grid, viscosity, velocity, out, row);
-}
-
-// The stress along surfaces at all centres whose faces feel it.
-void find_tangential_stress(const Grid &grid, LocalViscosity &viscosity, const FieldBlock &velocity) {
-  const std::vector<Segment> &cut = viscosity.stressed;
-  const int parts = row_parts(grid);
-  in_parallel(parts, parts, [&](int part) {
-    const Piece piece(cut.size(), part, parts);
-    for (std::size_t s = piece.begin; s < piece.end; ++s)
-      (grid.dimension() == 2 ? tangential_row_2d : tangential_row_3d)(grid, viscosity.fields, velocity,
-                                                                      viscosity.stress, cut[s]);
-  });
-}
-
-template <int Dim>
-EULASTIC_INLINE void add_tangential_force(const Grid &grid, const FieldBlock &stress, double scale, int a,
-                                          const Segment &row, double *out) {
-  const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
-  const auto component = [&](int x, int y) { return stress[kernels::position<Dim>(x, y)].row(row.j, row.k); };
-  const ConstView q = stress[0];
-  const Real3 &h = grid.spacing();
-  const kernels::DivergenceFromCentres<Dim> force{component(a, a), component(a, b), component(a, c),
-                                                  q.stride(a),     q.stride(b),     q.stride(c),
-                                                  1 / h[a],        1 / h[b],        1 / h[c]};
-#pragma omp simd
-  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(scale, force.at(i), out[i]);
-}
-
-EULASTIC_CLONES void add_tangential_force_2d(const Grid &grid, const FieldBlock &stress, double scale, int a,
-                                             const Segment &row, double *out) {
-  add_tangential_force<2>(grid, stress, scale, a, row, out);
-}
-EULASTIC_CLONES void add_tangential_force_3d(const Grid &grid, const FieldBlock &stress, double scale, int a,
-                                             const Segment &row, double *out) {
-  add_tangential_force<3>(grid, stress, scale, a, row, out);
-}
-
-// Its force on faces of a row; bodies do not come to open sides.
-void add_tangential_force(const Grid &grid, const LocalViscosity &viscosity, double scale, int a, const Faces &row,
-                          double *out) {
-  if (row.side != 0 || viscosity.stressed.empty()) return;
-  for (Segment s : viscosity.beside.row(row.j, row.k)) {
-    s.i_begin = std::max(s.i_begin, row.i_begin);
-    s.i_end = std::min(s.i_end, row.i_end);
-    (grid.dimension() == 2 ? add_tangential_force_2d : add_tangential_force_3d)(grid, viscosity.stress, scale, a, s,
-                                                                                out);
-  }
-}
-
-// Flops of both.
-double tangential_flops(const Grid &grid, const LocalViscosity &viscosity) {
-  const bool flat = grid.dimension() == 2;
-  double points = 0;
-  for (const Segment &piece : viscosity.stressed) points += piece.size();
-  return points * (flat ? kernels::tangential_stress_flops_2d : kernels::tangential_stress_flops_3d) +
-         viscosity.beside.points() * grid.dimension() *
-             (2 + (flat ? kernels::centred_divergence_flops_2d : kernels::centred_divergence_flops_3d));
 }
 
 struct StageTerms {
@@ -243,7 +148,7 @@ void prefetch_ahead(const Grid &grid, const LocalViscosity &viscosity, const Sta
   if (s.slope) prefetch((*s.slope)[a].row(next.j, next.k), n);
   prefetch((*s.viscosity)[a + 1].row(next.j, next.k + 1), n);
   if (a == 0) prefetch((*s.viscosity)[0].row(next.j, next.k), n);
-  if (viscosity.stressed.empty() || next.k >= grid.owned()[2]) return;
+  if (viscosity.stressed.all().empty() || next.k >= grid.owned()[2]) return;
   for (const Segment &piece : viscosity.beside.row(next.j, next.k))
     for (const int c : {a, a + 3}) prefetch(viscosity.stress[c].row(next.j, next.k + 1) + piece.i_begin, piece.size());
 }
@@ -281,12 +186,13 @@ PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, do
                                  FieldBlock &out) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  find_tangential_stress(grid, viscosity, velocity);
+  find_tangential_stress(grid, velocity, &viscosity);
   for_velocity_rows(grid, [&](int a, const Faces &row) {
     (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity.fields, scale, velocity, out, a, row);
-    add_tangential_force(grid, viscosity, scale, a, row, out[a].row(row.j, row.k));
+    if (row.side == 0) add_tangential_force(grid, viscosity, scale, a, row, out[a].row(row.j, row.k));
   });
-  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2) + tangential_flops(grid, viscosity));
+  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2) +
+              tangential_stress_flops(grid, viscosity));
   PetscFunctionReturn(0);
 }
 
@@ -311,7 +217,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     PetscCall(exchange.update(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
     fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 2);
-    find_tangential_stress(grid, viscosity, work.now);
+    find_tangential_stress(grid, work.now, &viscosity);
     const StageTerms stage{&viscosity.fields,
                            &work.rate,
                            slope,
@@ -334,7 +240,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                      work.rate[a].row(row.j, row.k), slope ? (*slope)[a].row(row.j, row.k) : nullptr, out, &held);
       }
       (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row);
-      add_tangential_force(grid, viscosity, stage.c.viscous, a, row, out);
+      if (row.side == 0)
+        add_tangential_force(grid, viscosity, stage.c.viscous, a, row, out);  // bodies do not come to open sides
       if (!faces.empty()) RigidStage::release(faces, row.i_begin, row.i_end, held, out);
     });
     work.now.swap(work.before);
@@ -344,7 +251,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     end_row(row, work.now[a].row(row.j, row.k), velocity[a].row(row.j, row.k), velocity_star[a].row(row.j, row.k));
   });
   scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3) +
-              (stages - 1) * tangential_flops(grid, viscosity));
+              (stages - 1) * tangential_stress_flops(grid, viscosity));
   PetscFunctionReturn(0);
 }
 
