@@ -28,6 +28,7 @@ NOT_RUN = {
     "scripts/test": "this very test is part of it",
     "scripts/install": "packages", "scripts/build": "compiles", "scripts/benchmark": "compiles and takes its time",
     "scripts/studies/paper/paper_figure2": "test_scripts.py runs it", "scripts/studies/performance/work_precision": "many long runs",
+    "scripts/studies/performance/membranes": "test_performance.py runs it",
     "scripts/count_communication": "it has a test of its own", "scripts/studies/scaling/scaling_tables": "it has a test of its own",
     "scripts/studies/paper/paper_figure5": "it has a test of its own", "scripts/studies/paper/paper_figure6": "it has a test of its own",
     "scripts/studies/paper/paper_section5": "an hour; it has a test of its own",
@@ -38,6 +39,15 @@ NOT_RUN = {
 }
 EVIDENCE = ("validation", "accuracy", "dimple", "performance", "scaling", "stability", "robustness", "contact", "capillary",
             "paper_figure2")
+# The only numbers in the prose of such pages: set-ups, bounds and what others say; results stand where scripts write them.
+GIVEN = {
+    "performance": "1 5 8 16 32 56 60 64 100 145 150 200 640 .005 2e-4 4e-3 64^3 128^3 256^2",
+    "scaling": "0 1 4 8 12 16 18 20 26 27 32 33 48 64 96 1.1 160 192 256 504 0.33 0.73 1024 16^3 32^3 4096 8.39 91.6 "
+               "82,944 131,072",
+    "stability": "0 1 3 4 7 .1 .5 10 .01 1.2 1e-3 1e-9",
+    "robustness": "1 4 16 32 100 2-D 3-D 500",
+    "contact": "1 5 6 8 15 16 2-D 3-D 0.22",
+}
 # What a page takes for granted.
 BEFORE = {"reliability.md": "eulastic options/channel_rbc.opts -checkpoint_interval 1e-9 -output_dir output",
           "cluster.md": "cp options/channel_rbc.opts case.opts"}
@@ -51,6 +61,13 @@ def tables_by_hand(text):
     """Rows of tables outside of the marks of scripts."""
     rest = re.sub(r"<!-- table\b.*?<!-- end( of table)? -->", "", text, flags=re.DOTALL)
     return [line for line in rest.splitlines() if line.startswith("|")]
+
+
+def numbers_by_hand(text):
+    """Outside of tables, code, links and the line that says with which program a page was made."""
+    for span in r"<!-- table\b.*?<!-- end( of table)? -->", r"```.*?```", r"^( {4}|>).*?$", r"`[^`]*`", r"\]\([^)]*\)":
+        text = re.sub(span, "", text, flags=re.DOTALL | re.MULTILINE)
+    return {number.rstrip(".,-") for number in re.findall(r"(?<![\w^/.-])\.?\d[\w.,^-]*", text)}
 
 
 def reason_not_to_run(command):
@@ -164,6 +181,7 @@ class Docs(unittest.TestCase):
                 self.assertEqual(script[1], stamps[0])
             else:
                 self.assertEqual(tables_by_hand(text), [], name)
+                self.assertEqual(numbers_by_hand(text) - set(GIVEN[name].split()), set(), f"{name}.md: is it measured?")
 
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""

@@ -24,7 +24,8 @@ class Performance(WithFolder):
             performance_runs.write_tables({"z": ""})
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
-                                 "cost_of_bodies", "small_body", "memory", "crowd", "time_steps"})
+                                 "cost_of_bodies", "small_body", "memory", "crowd", "time_steps", "capsules",
+                                 "kinds_of_cells"})
 
     def test_error_in_time(self):
         steps = load("studies/performance/time_steps")
@@ -34,6 +35,15 @@ class Performance(WithFolder):
         self.assertAlmostEqual(steps.error(curve, (numpy.array([0, 1.5, 4]), numpy.array([7, 1.7, 3.9])), fine), .05)
         for case in steps.CASES:
             self.assertEqual(steps.options(case)["-time_step"], "0")
+
+    def test_membranes(self):
+        made = start(SCRIPTS / "studies/performance/membranes", "--quick", "--output", self.folder).stdout
+        self.assertEqual(re.findall(r"\| (solid|membranes|[\w-]+, Ca = [.\d]+, viscosity ratio [.\d]+) \|", made),
+                         ["solid", "membranes", "neo-Hookean, Ca = 0.15, viscosity ratio 1", "Skalak, Ca = 0.3, viscosity ratio 5",
+                          "neo-Hookean, Ca = 0.3, viscosity ratio 0.2"])
+        off = [float(percent) for percent in re.findall(r"\| 4 \| ([.\d]+) % \| - \|", made)]
+        self.assertEqual(len(off), 3)
+        self.assertLess(max(off), 8)  # 2.4, 6.2, 5.5 at 4 cells per radius
 
     def test_table_of_verbs(self):
         table1 = load("studies/paper/paper_table1")
