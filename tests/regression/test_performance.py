@@ -25,7 +25,7 @@ class Performance(WithFolder):
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
                                  "cost_of_bodies", "small_body", "memory", "crowd", "time_steps", "capsules",
-                                 "kinds_of_cells"})
+                                 "kinds_of_cells", "race"})
 
     def test_error_in_time(self):
         steps = load("studies/performance/time_steps")
@@ -44,6 +44,16 @@ class Performance(WithFolder):
         off = [float(percent) for percent in re.findall(r"\| 4 \| ([.\d]+) % \| - \|", made)]
         self.assertEqual(len(off), 3)
         self.assertLess(max(off), 8)  # 2.4, 6.2, 5.5 at 4 cells per radius
+
+    def test_race(self):
+        done = start(SCRIPTS / "studies/performance/race", "--quick", "--output", self.folder)
+        rows = [line.split("  ") for line in done.stdout.splitlines()]
+        self.assertEqual([row[1] for row in rows], ["fast", "fast, loose", "classic"], done.stderr)
+        self.assertTrue(all(0 < float(row[3]) < .01 for row in rows), done.stdout)  # um, after 2 us
+        self.assertTrue((self.folder / "race.png").exists())
+        race = load("studies/performance/race")
+        place = lambda x: {"bodies": [{"id": 1, "species": "rbc", "centroid": [x, 3, 0]}, {"id": 2, "species": "platelet", "centroid": [0, 0, 0]}]}
+        self.assertAlmostEqual(race.distance(place(1), place(20.5), 21), 1.5)  # the shorter way
 
     def test_table_of_verbs(self):
         table1 = load("studies/paper/paper_table1")
