@@ -21,10 +21,11 @@ constexpr double many_steps = 1e9;
 // The numbers of such a body mean little.
 std::string unresolved(const State &state) {
   char text[200];
-  std::snprintf(text, sizeof text,
-                "t = %.9g: the grid does not resolve the strain of a body (det B > %g), part of which is lost there; more "
-                "-grid_cells",
-                state.time, largest_determinant);
+  std::snprintf(
+      text, sizeof text,
+      "t = %.9g: the grid does not resolve the strain of a body (det B > %g, or half of a membrane's area gone), "
+      "part of which is lost there; more -grid_cells",
+      state.time, largest_determinant);
   return text;
 }
 

@@ -119,6 +119,28 @@ EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
   return {sum, 0.5 * twice > least ? 0.5 * twice : least};
 }
 
+/// Of a strain in the plane normal to n whose area squared is below `least`: both principal values as far apart as that
+/// leaves, about a mean that it bounds too. Returns whether it was.
+template <int Dim>
+EULASTIC_INLINE bool keep_area(const Vector<Dim> &n, double least, Tensor<Dim> *B) noexcept {
+  constexpr int values = Dim - 1;
+  double square = 0;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) square = fma((*B)[a][b], (*B)[a][b], square);
+  const double trace = trace_of<Dim>(*B), mean = trace / values;
+  const double area_squared = Dim == 2 ? trace : 0.5 * fma(trace, trace, -square);
+  if (!(area_squared < least)) return false;  // not a number either: guards look for it
+  const double root = Dim == 2 ? least : __builtin_sqrt(least), raised = mean > root ? mean : root;
+  const double apart = mean * mean - area_squared, left = raised * raised - least;
+  const double share = Dim == 3 && apart > left ? __builtin_sqrt(left / apart) : 0;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) {
+      const double plane = (a == b) - n[a] * n[b];
+      (*B)[a][b] = fma(share, (*B)[a][b] - mean * plane, raised * plane);
+    }
+  return true;
+}
+
 /// B turned by the smallest rotation from its own plane into that normal to n, by 45 degrees at most. What a mean of
 /// planes has along its normal is given back to all directions alike: such a mean keeps the trace, and J would grow.
 template <int Dim>

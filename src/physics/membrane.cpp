@@ -6,6 +6,7 @@
 #include "physics/membrane_tensor.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -137,14 +138,18 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
-// First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same.
+// First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same. Areas stay above half of
+// those at the start.
 template <int Dim>
 PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next) {
   PetscFunctionBeginUser;
+  const double stretch = phase->material.membrane.initial_area_stretch;
+  const double least = 0.25 * std::min(1.0, stretch * stretch);
+  std::vector<long> kept(row_parts(*grid_));
   const Local<Dim> local(*grid_, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
   FieldBlock &tensor = phase->tensor;
-  const auto stage = [&](bool second, std::size_t c) {
+  const auto stage = [&](bool second, std::size_t c, long *lost) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) return;
     const Vector<Dim> n = normal_of<Dim>(cell.normal);
@@ -159,6 +164,7 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
       for (int a = 0; a < Dim; ++a)
         for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
       value = kernels::project_surface<Dim>(value, n);
+      *lost += kernels::keep_area<Dim>(n, least, &value);
     }
     set_tensor<Dim>(second ? tensor : next, cell.at, value);
   };
@@ -168,18 +174,20 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
       VerbScope scope(Verb::membrane);
       in_parallel(parts, parts, [&](int part) {
         const Piece piece(surface_.nearest(), part, parts);
-        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c);
+        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c, &kept[part]);
       });
       scope.flops(double(surface_.nearest()) * (Dim == 2 ? 250 : 1300));
     }
     PetscCall(surface_.extend(*phase, second ? tensor : next));
   }
+  unresolved_ = std::accumulate(kept.begin(), kept.end(), unresolved_);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, bool keeps_force,
-                                          std::vector<Phase> *phases) {
+                                          std::vector<Phase> *phases, long *unresolved) {
   PetscFunctionBeginUser;
+  unresolved_ = 0;
   NetForce net(*grid_, keeps_force && drives_all(*phases));
   if (keeps_force) begin_force();
   for (Phase &phase : *phases) {
@@ -198,6 +206,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
     if (keeps_force) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
   }
   if (keeps_force) PetscCall(end_force(&net));
+  PetscCallMPI(MPI_Allreduce(&unresolved_, unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
   PetscFunctionReturn(0);
 }
 

@@ -43,8 +43,10 @@ public:
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase);
   /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `keeps_force`:
-  /// it is this state whose force add_force() adds.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, bool keeps_force, std::vector<Phase> *phases);
+  /// it is this state whose force add_force() adds. `unresolved`: cells of all ranks in which the area would have
+  /// fallen below half of that at the start, where the rest of the strain is lost. Collective.
+  PetscErrorCode advance(double dt, const FieldBlock &velocity, bool keeps_force, std::vector<Phase> *phases,
+                         long *unresolved);
   /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
   /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
   /// divergence of a stress adds up to nothing.
@@ -78,6 +80,7 @@ private:
   SurfaceCells surface_;     ///< of the phase that is worked on
   MembraneBending bending_;  ///< the same
   bool drifts_;
+  long unresolved_ = 0;
   FieldBlock force_;   ///< at faces, if it is known
   Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
   bool force_known_ = false;

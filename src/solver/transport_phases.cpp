@@ -70,7 +70,12 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
     tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined, true, true});
   }
-  if (membranes_) PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases, &phases));
+  if (membranes_) {
+    const bool moves = &phases == &now_.phases;
+    long unresolved = 0;
+    PetscCall(membranes_->advance(dt, now_.velocity, moves, &phases, &unresolved));
+    if (moves) now_.forgotten += unresolved;
+  }
   PetscCall(exchange_->update(tensors));
   for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);
   PetscFunctionReturn(0);

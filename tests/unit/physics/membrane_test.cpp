@@ -57,6 +57,31 @@ TEST(Membrane, SmallStrainsHaveTheModuliOfTheLaw) {
   }
 }
 
+TEST(Membrane, AreaIsKeptAboveABoundByBringingStretchesTogether) {
+  constexpr double least = 0.25;
+  const auto principal = [](double one, double two) {  // of B_s; may be negative, as of a mean that is no strain
+    kernels::Tensor<3> B = strained(1, 0, normal, along), C = strained(0, 1, normal, along);
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y) B[x][y] = one * B[x][y] + two * C[x][y];
+    return B;
+  };
+  kernels::Tensor<3> fine = principal(4, 0.0626);
+  const kernels::Tensor<3> same = fine;
+  EXPECT_FALSE(kernels::keep_area<3>(normal, least, &fine));
+  EXPECT_EQ(fine, same);
+  for (const auto &[one, two] : {std::pair{4.0, 0.05}, {2.0, -1.0}, {0.9, 0.2}, {0.1, 0.1}, {-3.0, 1.0}, {0.0, 0.0}}) {
+    kernels::Tensor<3> B = principal(one, two);
+    EXPECT_TRUE(kernels::keep_area<3>(normal, least, &B));
+    const double mean = std::max(0.5 * (one + two), std::sqrt(least));
+    const double apart = std::copysign(std::sqrt(mean * mean - least), one - two);
+    const kernels::Tensor<3> expected = principal(mean + apart, mean - apart);
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y) EXPECT_NEAR(B[x][y], expected[x][y], 1e-14) << one << " " << two;
+  }
+  kernels::Tensor<3> none = principal(std::nan(""), 1);
+  EXPECT_FALSE(kernels::keep_area<3>(normal, least, &none));
+}
+
 // F P_0 F^T, n_0 the normal that F turns into n.
 TEST(Membrane, TakesItsPartOfTheStretchOfABody) {
   const double F[3][3] = {{1.2, 0.3, -0.1}, {0.1, 0.8, 0.2}, {-0.2, 0.05, 1.1}};
