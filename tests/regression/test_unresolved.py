@@ -62,6 +62,25 @@ class Unresolved(unittest.TestCase):
                     self.assertEqual(other["state_hash"], one["state_hash"])
                     self.assertEqual(other["strain_forgotten"], one["strain_forgotten"])
 
+    def test_membranes(self):
+        """Cells with both sides less than a cell apart."""
+        options = [ROOT / "options/channel_red_cells.opts", "-grid_cells", "20,20,20", "-body_force", "4e-3,0,0",
+                   "-series_interval", "75", "-snapshot_interval", "0"]
+        last = ["-time_steps_max", "45"]
+        one, said = self.run_scene(*options, *last)
+        self.assertGreater(one["strain_forgotten"], 0)
+        self.assertRegex(said, r"\neulastic: warning: t = [^\n]*half of a membrane's area gone[^\n]*\n\Z")
+        for more in {"ranks": 2}, {"ranks": 3}, {"program": "EULASTIC_WHOLE"}:
+            with self.subTest(**more):
+                other, _ = self.run_scene(*options, *last, "-output_overwrite", **more)
+                for key in "state_hash", "strain_forgotten":
+                    self.assertEqual(other[key], one[key])
+        half, _ = self.run_scene(*options, "-time_steps_max", "42", directory="half")
+        self.assertGreater(half["strain_forgotten"], 0)
+        again, _ = self.run_scene(*options, *last, "-restart", self.room / "half", directory="half")
+        for key in "state_hash", "strain_forgotten":
+            self.assertEqual(again[key], one[key])
+
     def test_a_step_that_forgets_is_repeated_by_a_restart(self):
         # The checkpoint of a run's end is that of the state before its last step, in which strain is forgotten.
         for name, scene in (("cavity", CAVITY + ["-a_shear_modulus", "1"]), ("shear", SHEAR + ["-a_shear_modulus", ".01"])):
