@@ -206,7 +206,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
     if (keeps_force) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
   }
   if (keeps_force) PetscCall(end_force(&net));
-  PetscCallMPI(MPI_Allreduce(&unresolved_, unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  if (keeps_force) PetscCallMPI(MPI_Allreduce(&unresolved_, unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
   PetscFunctionReturn(0);
 }
 

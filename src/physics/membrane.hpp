@@ -43,8 +43,8 @@ public:
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase);
   /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `keeps_force`:
-  /// it is this state whose force add_force() adds. `unresolved`: cells of all ranks in which the area would have
-  /// fallen below half of that at the start, where the rest of the strain is lost. Collective.
+  /// it is this state whose force add_force() adds. `unresolved`, of such a state alone: cells of all ranks in which
+  /// the area would have fallen below half of that at the start, where the rest of the strain is lost. Collective.
   PetscErrorCode advance(double dt, const FieldBlock &velocity, bool keeps_force, std::vector<Phase> *phases,
                          long *unresolved);
   /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
