@@ -35,6 +35,15 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   return fields;
 }
 
+CheckpointRecords markers_of(const State &state) {
+  CheckpointRecords records{"membrane_markers", SurfaceMarker::numbers, {}};
+  for (const SurfaceMarker &marker : state.markers) {
+    const auto values = marker.packed();
+    records.values.insert(records.values.end(), values.begin(), values.end());
+  }
+  return records;
+}
+
 // Everything else; the arrays of bodies, `references` and `first_volumes`, only where there are some.
 CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const std::vector<Int3> &references,
                              const std::vector<double> &first_volumes, std::uint64_t hash) {
@@ -127,7 +136,8 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
   PetscCall(solver->bodies().known(solver->grid().comm(), &references, &first_volumes));
   PetscCall(write_checkpoint(solver->grid(), path, options,
-                             numbers_of(*solver, position, references, first_volumes, hash), fields_of(*solver)));
+                             numbers_of(*solver, position, references, first_volumes, hash), fields_of(*solver),
+                             {markers_of(solver->state())}));
   PetscFunctionReturn(0);
 }
 
@@ -156,12 +166,19 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));
   take_numbers(numbers, solver, position);
+  CheckpointRecords records = markers_of({});
+  PetscCall(file->read_records(&records));
+  std::vector<SurfaceMarker> markers;
+  for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
+    markers.push_back(SurfaceMarker::unpacked(&records.values[n]));
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
+  PetscCall(solver->set_markers(markers));
   PetscCall(state_hash(grid, solver->state(), &hash));
   PetscCall(fail_together(grid.comm(), hash == static_cast<std::uint64_t>(numbers.integers["state_hash"][0])
                                            ? ""
                                            : path + ": damaged (the hash of its state differs)"));
   PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
+  if (!file->has(records.name)) PetscCall(solver->place_markers());
   PetscFunctionReturn(0);
 }
 

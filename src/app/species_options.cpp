@@ -9,6 +9,7 @@ const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "
                         "tube",   "constricted_tube", "voxels",    "state"};
 const Names law_names{"neo_hookean", "mooney_rivlin", "membrane", "red_cell", "rigid"};
 const Names membrane_names{"neo_hookean", "skalak"};
+const Names membrane_scheme_names{"grid", "markers"};
 const Names placement_names{"one", "list", "lattice", "random"};
 const Names contact_names{"separate", "merge"};
 
@@ -66,6 +67,10 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
   for_law(3, {Law::mooney_rivlin});
   rows.choice("membrane", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
+  rows.choice(
+      "membrane_scheme", spec.membrane.scheme, membrane_scheme_names,
+      "what remembers the shape of a membrane at rest: material points on its surface, or its strain on the grid "
+      "alone, which fades");
   rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
             "shear modulus G_s of a membrane")
       .required = true;

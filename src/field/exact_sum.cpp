@@ -191,4 +191,10 @@ std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bo
   return hash;
 }
 
+std::uint64_t hash_values(const double *values, std::size_t count) {
+  std::uint64_t hash = 0;
+  for (std::size_t n = 0; n < count; ++n) hash = mix(hash ^ mix(bits_of(values[n])));
+  return hash;
+}
+
 }  // namespace eulastic

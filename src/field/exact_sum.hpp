@@ -88,5 +88,7 @@ PetscErrorCode sum_row_parts(const Grid &grid, int count, const Add &add, double
 /// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks
 /// (MPI_SUM on uint64). `salt` tells fields apart.
 std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
+/// The same of one record.
+std::uint64_t hash_values(const double *values, std::size_t count);
 
 }  // namespace eulastic

@@ -53,7 +53,8 @@ std::vector<std::string> list_checkpoints(const std::string &directory) {
 }
 
 PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const std::string &options,
-                                const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields) {
+                                const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
+                                const std::vector<CheckpointRecords> &records) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::write);
   Hdf5File file;
@@ -67,6 +68,11 @@ PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const
   PetscCall(write_all(grid.comm(), file, numbers.integers));
   for (const CheckpointField &field : fields)
     PetscCall(file.write_field(grid, {field.name, field.staggering, field.stored, true}, {field.view}));
+  for (const CheckpointRecords &some : records) {
+    int any = some.values.empty() ? 0 : 1;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));
+    if (any > 0) PetscCall(file.write_records(some.name, some.numbers, some.values));
+  }
   PetscCall(file.commit());
   PetscFunctionReturn(0);
 }
@@ -122,6 +128,15 @@ PetscErrorCode CheckpointFile::read_if_there(const std::string &name, std::vecto
   PetscFunctionBeginUser;
   integers->clear();
   if (file_.has(name)) PetscCall(read(name, integers));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointFile::read_records(CheckpointRecords *records) {
+  PetscFunctionBeginUser;
+  records->values.clear();
+  if (!file_.has(records->name)) PetscFunctionReturn(0);
+  PetscCall(require_checksum(records->name));
+  PetscCall(file_.read_records(records->name, records->numbers, &records->values));
   PetscFunctionReturn(0);
 }
 

@@ -21,6 +21,13 @@ struct CheckpointNumbers {
   std::map<std::string, std::vector<long>> integers;
 };
 
+/// Records that ranks have some of each; nothing is written of none at all.
+struct CheckpointRecords {
+  std::string name;
+  std::size_t numbers;  ///< of each
+  std::vector<double> values;
+};
+
 /// Checkpoints are numbered by their step.
 std::string checkpoint_name(long step);
 /// Local. Paths of the checkpoints in a directory, newest first.
@@ -30,7 +37,8 @@ long checkpoint_step(const std::string &path);
 
 /// Collective. Fields with the high wall where they are staggered towards one.
 PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const std::string &options,
-                                const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields);
+                                const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
+                                const std::vector<CheckpointRecords> &records);
 
 /// Reads one. Every dataset must have its checksum and match it. All members are collective and fail alike on all
 /// ranks, with one line that begins with the path.
@@ -45,6 +53,9 @@ public:
   PetscErrorCode read_numbers(CheckpointNumbers *numbers);
   /// Integers that not every checkpoint has: empty if this one has not.
   PetscErrorCode read_if_there(const std::string &name, std::vector<long> *integers);
+  bool has(const std::string &name) const { return file_.has(name); }
+  /// Each rank gets some; none if there are none.
+  PetscErrorCode read_records(CheckpointRecords *records);
   /// Owned points, the high wall included.
   PetscErrorCode read_fields(const Grid &grid, const std::vector<CheckpointField> &fields);
 

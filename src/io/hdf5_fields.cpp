@@ -140,18 +140,26 @@ PetscErrorCode Hdf5File::write_field(const Grid &grid, const FieldFormat &format
 }
 
 template <class T>
-PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, const Box &box, View field) {
+PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Box &box, std::vector<T> *values) {
   PetscFunctionBeginUser;
   const Hdf5Space file_space(H5Dget_space(dataset)), memory_space(H5Screate_simple(box.rank, box.count, nullptr));
   const Hdf5Property transfer = hdf5_collective();
-  std::vector<T> values(box.count[0] * box.count[1] * box.count[2]);
+  values->resize(box.count[0] * box.count[1] * box.count[2]);
   const bool read =
       H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, box.begin, nullptr, box.count, nullptr) >= 0 &&
-      H5Dread(dataset, hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values.data()) >= 0;
+      H5Dread(dataset, hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values->data()) >= 0;
   PetscCall(check(read, "cannot read dataset " + name));
-  std::uint64_t sum = box_checksum(box, values);
+  std::uint64_t sum = box_checksum(box, *values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
   PetscCall(verify(name, sum));
+  PetscFunctionReturn(0);
+}
+
+template <class T>
+PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, const Box &box, View field) {
+  std::vector<T> values;
+  PetscFunctionBeginUser;
+  PetscCall(read_values(name, dataset, box, &values));
   const T *value = values.data();
   for (int k = 0; k < int(box.count[0]); ++k)
     for (int j = 0; j < int(box.count[1]); ++j, value += box.count[2])
@@ -188,6 +196,32 @@ PetscErrorCode Hdf5File::read_field(const Grid &grid, const std::string &name, c
     PetscCall(read_field_as<float>(name, dataset.get(), box, field));
   else
     PetscCall(read_field_as<int>(name, dataset.get(), box, field));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::write_records(const std::string &name, std::size_t numbers,
+                                       const std::vector<double> &values) {
+  unsigned long long mine = values.size() / numbers, end = 0, all = 0;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
+  PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
+  PetscCall(write_values(name, {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}}, H5T_IEEE_F64LE, values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbers, std::vector<double> *values) {
+  Hdf5Dataset dataset;
+  int ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm_, &ranks));
+  PetscCall(open_dataset(name, &dataset));
+  const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+  PetscCall(check(shape.size() == 3 && shape[1] == 1 && shape[2] == numbers,
+                  "dataset " + name + " is " + shape_text(shape) + ", not records of " + std::to_string(numbers)));
+  const hsize_t begin = shape[0] * hsize_t(mpi_rank_) / hsize_t(ranks),
+                end = shape[0] * hsize_t(mpi_rank_ + 1) / hsize_t(ranks);
+  PetscCall(
+      read_values(name, dataset.get(), {3, {shape[0], 1, numbers}, {begin, 0, 0}, {end - begin, 1, numbers}}, values));
   PetscFunctionReturn(0);
 }
 

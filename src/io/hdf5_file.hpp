@@ -49,6 +49,11 @@ public:
   /// wall the dataset may have N + 1 points; if it has N, the high wall is left as it is. Ghosts are untouched.
   PetscErrorCode read_field(const Grid &grid, const std::string &name, const Staggering &staggering, View field);
 
+  /// Records of so many numbers, of which every rank has some: (records, 1, numbers), in the order of the ranks.
+  PetscErrorCode write_records(const std::string &name, std::size_t numbers, const std::vector<double> &values);
+  /// Each rank gets an equal share of them.
+  PetscErrorCode read_records(const std::string &name, std::size_t numbers, std::vector<double> *values);
+
   /// Small arrays, the same on every rank; T = double, long or unsigned char (text).
   template <class T>
   PetscErrorCode write_array(const std::string &name, const std::vector<hsize_t> &shape, const std::vector<T> &values);
@@ -85,6 +90,8 @@ private:
   template <class T>
   PetscErrorCode write_field_as(const Grid &grid, const FieldFormat &format, hid_t file_type,
                                 const std::vector<ConstView> &components);
+  template <class T>
+  PetscErrorCode read_values(const std::string &name, hid_t dataset, const Box &box, std::vector<T> *values);
   template <class T>
   PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Box &box, View field);
   PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,

@@ -4,6 +4,8 @@
 namespace eulastic::kernels {
 
 enum class MembraneLaw { neo_hookean, skalak };
+/// What remembers the shape at rest: the strain on the grid alone, or markers on the surface.
+enum class MembraneScheme { grid, markers };
 
 /// Shear modulus G_s (force per length) and, of Skalak's law, C: the modulus of area is 3 G_s of a neo-Hookean membrane
 /// and (1 + 2 C) G_s of Skalak's.
@@ -12,6 +14,7 @@ struct Membrane {
   double shear_modulus = 0, area_modulus = 1;
   double initial_area_stretch = 1;
   double bending_modulus = 0, spontaneous_curvature = 0;  ///< E_b (energy) and c0 (1/length; 2/R of a ball at rest)
+  MembraneScheme scheme = MembraneScheme::markers;
   double largest_modulus() const {
     return shear_modulus * (1 + (law == MembraneLaw::neo_hookean ? 3 : 1 + 2 * area_modulus));
   }

@@ -101,6 +101,12 @@ bool MembraneTransport::exists(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.is_membrane(); });
 }
 
+bool MembraneTransport::marks(const std::vector<Phase> &phases) {
+  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
+    return phase.material.is_membrane() && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
+  });
+}
+
 PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscFunctionBeginUser;
   force_known_ = false;
@@ -143,8 +149,7 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
 template <int Dim>
 PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next) {
   PetscFunctionBeginUser;
-  const double stretch = phase->material.membrane.initial_area_stretch;
-  const double least = 0.25 * std::min(1.0, stretch * stretch);
+  const double least = least_area_squared(*phase);
   std::vector<long> kept(row_parts(*grid_));
   const Local<Dim> local(*grid_, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
@@ -178,23 +183,63 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
       });
       scope.flops(double(surface_.nearest()) * (Dim == 2 ? 250 : 1300));
     }
-    PetscCall(surface_.extend(*phase, second ? tensor : next));
+    if (!second) PetscCall(surface_.extend(*phase, next));
   }
   unresolved_ = std::accumulate(kept.begin(), kept.end(), unresolved_);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, bool keeps_force,
-                                          std::vector<Phase> *phases, long *unresolved) {
+double MembraneTransport::least_area_squared(const Phase &phase) {
+  const double stretch = phase.material.membrane.initial_area_stretch;
+  return 0.25 * std::min(1.0, stretch * stretch);
+}
+
+// The strain of the grid comes nearer to that of the markers with every cell that the surface passes, as what fades
+// does; within a cell it is that of the grid, whose force and surface fit each other.
+void MembraneTransport::recall(double dt, const FieldBlock &velocity,
+                               const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase) {
+  constexpr double recalled = 1;  // of the difference, per cell passed
+  const double least = least_area_squared(*phase);
+  const auto each = [&](auto dim) {
+    for (const SurfaceMarkers::Strain &strain : strains) {
+      const SurfaceCells::Cell &cell = surface_.all()[strain.cell];
+      double passed = 0;
+      for (int d = 0; d < dim; ++d)
+        passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
+                  grid_->spacing()[d];
+      const double share = std::min(recalled * passed, 1.0);
+      for (int f = 0; f < phase->tensor.count(); ++f) {
+        double &B = phase->tensor[f].origin[cell.at];
+        B = kernels::fma(share, strain.B[f] - B, B);
+      }
+      Tensor<dim> value = tensor_at<dim>(phase->tensor, cell.at);
+      if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
+      ++unresolved_;
+      set_tensor<dim>(phase->tensor, cell.at, value);
+    }
+  };
+  if (grid_->dimension() == 2)
+    each(std::integral_constant<int, 2>());
+  else
+    each(std::integral_constant<int, 3>());
+}
+
+PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, Memory *memory,
+                                          std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   unresolved_ = 0;
-  NetForce net(*grid_, keeps_force && drives_all(*phases));
-  if (keeps_force) begin_force();
-  for (Phase &phase : *phases) {
+  NetForce net(*grid_, memory && drives_all(*phases));
+  if (memory) begin_force();
+  if (memory) PetscCall(markers_.move(dt, velocity, memory->markers));
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    Phase &phase = (*phases)[p];
     if (!phase.material.is_membrane()) continue;
     WorkSpace::Lease surface;
     PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
     PetscCall(surface_.find(phase, surface.fields()));
+    const bool marked = memory && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
+    std::vector<SurfaceMarkers::Strain> strains;
+    if (marked) markers_.find_strain(surface_, static_cast<int>(p), &strains);
     {
       WorkSpace::Lease next;
       PetscCall(work_->take("first stage of B_s", phase.tensor.count(), &next));
@@ -203,10 +248,36 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
       else
         PetscCall(heun<3>(dt, velocity, &phase, next.fields()));
     }
-    if (keeps_force) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
+    recall(dt, velocity, strains, &phase);
+    PetscCall(surface_.extend(phase, phase.tensor));
+    if (marked) markers_.settle(surface_, surface.fields(), static_cast<int>(p), memory->markers);
+    if (memory) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
   }
-  if (keeps_force) PetscCall(end_force(&net));
-  if (keeps_force) PetscCallMPI(MPI_Allreduce(&unresolved_, unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  if (!memory) PetscFunctionReturn(0);
+  PetscCall(end_force(&net));
+  PetscCallMPI(MPI_Allreduce(&unresolved_, &memory->unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, int label,
+                                                std::vector<SurfaceMarker> *markers) {
+  PetscFunctionBeginUser;
+  if (phase.material.membrane.scheme != kernels::MembraneScheme::markers) PetscFunctionReturn(0);
+  WorkSpace::Lease surface;
+  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
+  PetscCall(surface_.find(phase, surface.fields()));
+  markers_.place(surface_, surface.fields(), phase, number, label, markers);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers) {
+  std::vector<WantedGhosts> labels;
+  PetscFunctionBeginUser;
+  for (Phase &phase : *phases)
+    if (phase.material.is_membrane() && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
+  if (labels.empty()) PetscFunctionReturn(0);
+  PetscCall(exchange_->update(labels));
+  markers_.follow(*phases, markers);
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,7 @@
 #include "physics/elastic_force.hpp"
 #include "physics/net_force.hpp"
 #include "physics/surface_cells.hpp"
+#include "physics/surface_markers.hpp"
 #include "physics/surface_tension.hpp"
 #include "physics/transport.hpp"
 
@@ -21,7 +22,7 @@ inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
 class MembraneTransport {
 public:
   /// Ghosts of the velocity that `advance` reads.
-  static constexpr int velocity_ghosts = 4;
+  static constexpr int velocity_ghosts = SurfaceMarkers::velocity_ghosts;
   /// Of the work space, during each call.
   static constexpr int work_fields = SurfaceCells::work_fields + 6;
 
@@ -32,21 +33,31 @@ public:
         exchange_(&exchange),
         surface_(grid, exchange),
         bending_(grid, exchange),
+        markers_(grid),
         drifts_(drifts),
         force_(grid, grid.dimension()) {}
   static bool exists(const std::vector<Phase> &phases);
+  static bool marks(const std::vector<Phase> &phases);  ///< whether any has markers
   std::size_t bytes() const { return force_.bytes(); }
 
   /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch. Five
   /// ghosts of phi, here and below.
   PetscErrorCode start(Phase *phase);
+  /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
+  PetscErrorCode place_markers(const Phase &phase, int number, int label, std::vector<SurfaceMarker> *markers);
+  /// Each to the phase that its body is in now; those of bodies that are gone away.
+  PetscErrorCode follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers);
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase);
-  /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `keeps_force`:
-  /// it is this state whose force add_force() adds. `unresolved`, of such a state alone: cells of all ranks in which
-  /// the area would have fallen below half of that at the start, where the rest of the strain is lost. Collective.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, bool keeps_force, std::vector<Phase> *phases,
-                         long *unresolved);
+  /// What a state has beside its phases, and what advance() finds of it.
+  struct Memory {
+    std::vector<SurfaceMarker> *markers;
+    /// Cells of all ranks in which the area would have fallen below half of that at the start: strain is lost there.
+    long unresolved = 0;
+  };
+  /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `memory`: that
+  /// of the state whose force add_force() adds; null: copies of its phases, without markers. Collective.
+  PetscErrorCode advance(double dt, const FieldBlock &velocity, Memory *memory, std::vector<Phase> *phases);
   /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
   /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
   /// divergence of a stress adds up to nothing.
@@ -71,14 +82,18 @@ private:
   bool drives_all(const std::vector<Phase> &phases) const;
   PetscErrorCode measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
                                std::vector<SurfaceSample> *samples);
+  /// Leaves the layers to the caller.
   template <int Dim>
   PetscErrorCode heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next);
+  void recall(double dt, const FieldBlock &velocity, const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase);
+  static double least_area_squared(const Phase &phase);
 
   const Grid *grid_;
   WorkSpace *work_;
   GhostExchange *exchange_;
   SurfaceCells surface_;     ///< of the phase that is worked on
   MembraneBending bending_;  ///< the same
+  SurfaceMarkers markers_;
   bool drifts_;
   long unresolved_ = 0;
   FieldBlock force_;   ///< at faces, if it is known

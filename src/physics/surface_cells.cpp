@@ -91,6 +91,26 @@ void SurfaceCells::describe(const FieldBlock &fields, Cell *described) const {
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && cell.place[d] >= 0 && cell.place[d] < grid_->owned()[d];
 }
 
+// Levels are nearly linear: a quadratic through three along each direction.
+double SurfaceCells::distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const {
+  const ConstView levels = fields[level];
+  double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0, width = 0;
+  for (int d = 0; d < grid_->dimension(); ++d) {
+    const double o = offset[d], step = cell.normal[d] * grid_->spacing()[d];
+    weight[d][0] = 0.5 * o * (o - 1);
+    weight[d][1] = 1 - o * o;
+    weight[d][2] = 0.5 * o * (o + 1);
+    width += variance * step * step;
+  }
+  const int deep = grid_->dimension() == 3 ? 1 : 0;
+  for (int k = -deep; k <= deep; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i)
+        x += weight[0][i + 1] * weight[1][j + 1] * weight[2][k + 1] *
+             (far - levels.origin[cell.at + i + j * levels.sy + k * levels.sz]);
+  return x * __builtin_sqrt(width);
+}
+
 // Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
 Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
   const bool alone = phase.rows.inside() && !(d == 0 && grid_->wraps_x());

@@ -36,6 +36,10 @@ public:
   /// every layer.
   const std::vector<Cell> &all() const { return cells_; }
   std::size_t nearest() const { return first_[1]; }  ///< how many
+  /// Of a point so many cells from the centre of one of all(), a cell at most; `fields` as find() left them.
+  double distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const;
+  /// Which of all() lies at an offset from the origin; -1: none.
+  int number(std::ptrdiff_t at) const { return number_[grid_->layout().origin + at]; }
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
   PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
   /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one

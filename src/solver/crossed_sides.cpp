@@ -75,6 +75,7 @@ PetscErrorCode Solver::take_out_bodies() {
     take_out(*grid_, leaves, &phase);
     PetscCall(settle(phase));
   }
+  if (membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
   PetscFunctionReturn(0);
 }
 
@@ -110,6 +111,8 @@ PetscErrorCode Solver::feed_bodies() {
     feeders_->forget(copy.label);
     put_body(*grid_, copy, shift, bodies_.bodies(), &now_.phases[p]);
     PetscCall(settle(now_.phases[p]));
+    if (now_.phases[p].material.is_membrane())
+      PetscCall(membranes_->place_markers(now_.phases[p], p, bodies_.bodies(), &now_.markers));
   }
   PetscFunctionReturn(0);
 }

@@ -127,6 +127,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   PetscCall(bodies_.follow(*grid_, now_.phases));
   if (feeders_) PetscCall(feed_bodies());
   PetscCall(separate_bodies());
+  if (membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
   now_.travel = 0;
   PetscFunctionReturn(0);
 }

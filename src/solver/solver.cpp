@@ -104,6 +104,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(settle(phase));
     if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
+  PetscCall(place_markers());
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
@@ -111,6 +112,22 @@ PetscErrorCode Solver::prepare() {
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::place_markers() {
+  PetscFunctionBeginUser;
+  now_.markers.clear();
+  for (std::size_t p = 0; p < now_.phases.size(); ++p)
+    if (now_.phases[p].material.is_membrane())
+      PetscCall(membranes_->place_markers(now_.phases[p], static_cast<int>(p), 0, &now_.markers));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::set_markers(const std::vector<SurfaceMarker> &markers) {
+  PetscFunctionBeginUser;
+  now_.markers = markers;
+  if (MembraneTransport::marks(now_.phases)) PetscCall(SurfaceMarkers(*grid_).send_home(&now_.markers));
   PetscFunctionReturn(0);
 }
 

@@ -56,6 +56,10 @@ public:
   /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
   /// before, on a scene with the same phases.
   PetscErrorCode resume(long stages, long sweeps);
+  /// For membranes, from the strain that they have: after resume() on a state that had none.
+  PetscErrorCode place_markers();
+  /// Those of a state that was read, each on any rank.
+  PetscErrorCode set_markers(const std::vector<SurfaceMarker> &markers);
   /// Measures the flow: time step limits, WENO5's velocity scale.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;

@@ -16,6 +16,10 @@ PetscErrorCode state_hash(const Grid &grid, const State &state, std::uint64_t *h
       sum += hash_points(grid, phase.tensor[c], staggering_of(components[c], phase.material.is_membrane()), ++salt);
     if (phase.label) sum += hash_points(grid, phase.label[0], at_centre, ++salt);
   }
+  for (const SurfaceMarker &marker : state.markers) {
+    const auto values = marker.packed();
+    sum += hash_values(values.data(), values.size());
+  }
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm()));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "field/surface_marker.hpp"
 
 #include <cstdint>
 
@@ -21,10 +22,11 @@ struct State {
   FieldBlock pressure_before;  ///< that of the step before, where it is needed; else empty
   double pressure_interval = 0;  ///< between both, 0: there are not two yet
   FieldBlock advection;        ///< v.grad v of the last step, for Adams-Bashforth; empty with Euler
+  std::vector<SurfaceMarker> markers;  ///< of membranes, owned, half a step behind when staggered; in any order
   std::vector<Phase> phases;   ///< three ghosts valid; half a step behind when staggered
 };
 
-/// Rank-independent 64-bit hash of velocity, pressure and phases.
+/// Rank-independent 64-bit hash of velocity, pressure, phases and markers.
 PetscErrorCode state_hash(const Grid &grid, const State &state, std::uint64_t *hash);
 
 }  // namespace eulastic

@@ -71,9 +71,9 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined, true, true});
   }
   if (membranes_) {
-    long unresolved = 0;
-    PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases, &phases, &unresolved));
-    now_.forgotten += unresolved;
+    MembraneTransport::Memory memory{&now_.markers};
+    PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases ? &memory : nullptr, &phases));
+    now_.forgotten += memory.unresolved;
   }
   PetscCall(exchange_->update(tensors));
   for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);

@@ -4,6 +4,7 @@ import pathlib
 import sys
 import unittest
 
+import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -13,6 +14,8 @@ from scene_case import SceneCase  # noqa: E402
 CAPSULE = ("-grid_cells 32,32,32 -grid_length 4,4,4 -fluid_viscosity 1 -species a -a_shape sphere -a_radius 1 "
            "-a_centre 2,2,2 -a_law membrane -a_surface_shear_modulus 1 -interface_scheme plic -time_step 1e-3 "
            "-time_end 2e-3 -series_interval 1e-3 -snapshot_interval 2e-3").split()
+SHEAR = [str(pathlib.Path(__file__).resolve().parents[2] / "options" / "capsule_in_shear.opts"),
+         *("-grid_cells 20,24,20 -grid_length 5,6,5 -wall_ymin_velocity -3,0,0 -wall_ymax_velocity 3,0,0 -snapshot_interval 0").split()]
 
 
 class Membranes(SceneCase):
@@ -48,6 +51,23 @@ class Membranes(SceneCase):
         supplied = run.summary["energy_supplied"]
         self.assertLess(abs(run.summary["energy_lost"]), 0.005 * supplied)
         self.assertGreater(run.bodies.taylor_deformation[-1, 0], run.bodies.taylor_deformation[0, 0])
+
+    def test_the_shape_at_rest_is_remembered(self):
+        """A capsule that tank-treads keeps its deformation, which fades without markers."""
+        def late_over_early(name, *more):
+            run = self.run_program(name, *SHEAR, "-time_end", "12", "-series_interval", ".5", *more)
+            return numpy.divide(*(numpy.interp(t, run.bodies.time, run.bodies.taylor_deformation[:, 0]) for t in (12, 4)))
+        self.assertLess(abs(late_over_early("markers") - 1), 0.015)
+        self.assertLess(late_over_early("grid", "-capsule_membrane_scheme", "grid"), 0.95)
+
+    def test_markers_go_on_after_a_restart(self):
+        """On other ranks too, with the same bits."""
+        whole = self.run_program("whole", *SHEAR, "-time_steps_max", "24")
+        half = self.run_program("half", *SHEAR, "-time_steps_max", "12", "-checkpoint_interval", "100", ranks=2)
+        with h5py.File(half.directory / "checkpoint_00000012.h5") as file:
+            self.assertGreater(len(file["membrane_markers"]), 100)
+        on = self.run_program("half", *SHEAR, "-time_steps_max", "24", "-restart", half.directory, ranks=3)
+        self.assertEqual(on.summary["state_hash"], whole.summary["state_hash"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,155 @@
+// Values at scattered points of a surface as a quadratic over its tangent plane, by weighted least squares;
+// docs/method.md, section 18.
+#pragma once
+
+#include "kernels/membrane.hpp"
+
+namespace eulastic::kernels {
+
+/// Points around one of a surface, up to `most`, side by side in groups of eight: the last one is filled with the
+/// weight 0. u, v: along the plane; in 2-D v is not used.
+template <int Values>
+struct SurfacePoints {
+  static constexpr int most = 128, lanes = 8;
+  alignas(64) double u[most], v[most], weight[most], value[Values][most];
+  int count = 0;
+  void fill_up() noexcept {
+    for (; count % lanes != 0; ++count) {
+      u[count] = v[count] = weight[count] = 0;
+      for (auto &one : value) one[count] = 0;
+    }
+  }
+};
+
+/// Of each value: its coefficients 1, u, (v,) u^2, (u v, v^2).
+template <int Dim, int Values>
+struct SurfaceFit {
+  static constexpr int terms = Dim == 3 ? 6 : 3, pairs = terms * (terms + 1) / 2;
+  double coefficient[terms][Values];
+  double residual;  ///< weighted mean square of what is left of the first Dim values
+};
+
+EULASTIC_INLINE double sum_of_lanes(const double *v) noexcept {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+/// Of points that are filled up. False, and nothing of use, where they do not determine it.
+template <int Dim, int Values>
+EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim, Values> *fit) noexcept {
+  using Fit = SurfaceFit<Dim, Values>;
+  constexpr int terms = Fit::terms, lanes = SurfacePoints<Values>::lanes;
+  constexpr double least = 1e-4;  // of a pivot, of what it was
+  alignas(64) double moments[Fit::pairs][lanes] = {}, sums[terms][Values][lanes] = {}, squares[lanes] = {};
+  for (int first = 0; first < p.count; first += lanes) {
+    alignas(64) double f[terms][lanes], wf[terms][lanes];
+#pragma omp simd
+    for (int l = 0; l < lanes; ++l) {
+      const double u = p.u[first + l], v = p.v[first + l];
+      f[0][l] = 1;
+      f[1][l] = u;
+      f[2][l] = Dim == 3 ? v : u * u;
+      if constexpr (Dim == 3) {
+        f[3][l] = u * u;
+        f[4][l] = u * v;
+        f[5][l] = v * v;
+      }
+    }
+    for (int i = 0, pair = 0; i < terms; ++i) {
+#pragma omp simd
+      for (int l = 0; l < lanes; ++l) wf[i][l] = p.weight[first + l] * f[i][l];
+      for (int j = 0; j <= i; ++j, ++pair)
+#pragma omp simd
+        for (int l = 0; l < lanes; ++l) moments[pair][l] = fma(wf[i][l], f[j][l], moments[pair][l]);
+      for (int q = 0; q < Values; ++q)
+#pragma omp simd
+        for (int l = 0; l < lanes; ++l) sums[i][q][l] = fma(wf[i][l], p.value[q][first + l], sums[i][q][l]);
+    }
+    for (int q = 0; q < Dim; ++q)
+#pragma omp simd
+      for (int l = 0; l < lanes; ++l) {
+        const double value = p.value[q][first + l];
+        squares[l] = fma(p.weight[first + l] * value, value, squares[l]);
+      }
+  }
+  double L[terms][terms], right[terms][Values];
+  for (int i = 0, pair = 0; i < terms; ++i) {
+    for (int j = 0; j <= i; ++j, ++pair) L[i][j] = sum_of_lanes(moments[pair]);
+    for (int q = 0; q < Values; ++q) right[i][q] = fit->coefficient[i][q] = sum_of_lanes(sums[i][q]);
+  }
+  const double weight = L[0][0];
+  for (int c = 0; c < terms; ++c) {  // Cholesky
+    const double whole = L[c][c];
+    for (int k = 0; k < c; ++k) L[c][c] -= L[c][k] * L[c][k];
+    if (!(L[c][c] > least * whole)) return false;
+    L[c][c] = __builtin_sqrt(L[c][c]);
+    for (int r = c + 1; r < terms; ++r) {
+      for (int k = 0; k < c; ++k) L[r][c] -= L[r][k] * L[c][k];
+      L[r][c] /= L[c][c];
+    }
+  }
+  double left = sum_of_lanes(squares);
+  for (int q = 0; q < Values; ++q) {
+    for (int r = 0; r < terms; ++r) {
+      double &x = fit->coefficient[r][q];
+      for (int k = 0; k < r; ++k) x -= L[r][k] * fit->coefficient[k][q];
+      x /= L[r][r];
+    }
+    for (int r = terms - 1; r >= 0; --r) {
+      double &x = fit->coefficient[r][q];
+      for (int k = r + 1; k < terms; ++k) x -= L[k][r] * fit->coefficient[k][q];
+      x /= L[r][r];
+    }
+    for (int r = 0; q < Dim && r < terms; ++r) left -= right[r][q] * fit->coefficient[r][q];
+  }
+  fit->residual = left > 0 ? left / weight : 0;
+  return true;
+}
+
+/// Unit vectors along the surface normal to n; in 2-D one.
+template <int Dim>
+EULASTIC_INLINE std::array<Vector<Dim>, Dim - 1> tangents(const Vector<Dim> &n) noexcept {
+  if constexpr (Dim == 2) {
+    return {{{-n[1], n[0]}}};
+  } else {
+    int least = 0;
+    for (int d = 1; d < 3; ++d)
+      if (__builtin_fabs(n[d]) < __builtin_fabs(n[least])) least = d;
+    Vector<3> a{}, b{};
+    const int p = (least + 1) % 3, q = (least + 2) % 3;
+    const double size = __builtin_sqrt(n[p] * n[p] + n[q] * n[q]);
+    a[p] = -n[q] / size;
+    a[q] = n[p] / size;
+    for (int d = 0; d < 3; ++d) b[d] = n[(d + 1) % 3] * a[(d + 2) % 3] - n[(d + 2) % 3] * a[(d + 1) % 3];
+    return {a, b};
+  }
+}
+
+/// The tensor along the plane of t whose components there are the inverse of G.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> inverse_in_plane(const std::array<Vector<Dim>, Dim - 1> &t,
+                                             const double (&G)[Dim - 1][Dim - 1]) noexcept {
+  Tensor<Dim> out{};
+  if constexpr (Dim == 2) {
+    for (int x = 0; x < 2; ++x)
+      for (int y = 0; y < 2; ++y) out[x][y] = t[0][x] * t[0][y] / G[0][0];
+  } else {
+    const double det = G[0][0] * G[1][1] - G[0][1] * G[1][0];
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y)
+        out[x][y] = (G[1][1] * (t[0][x] * t[0][y]) + G[0][0] * (t[1][x] * t[1][y]) -
+                     G[0][1] * (t[0][x] * t[1][y] + t[1][x] * t[0][y])) /
+                    det;
+  }
+  return out;
+}
+
+/// Weight of a point in an average over the four next to it along each direction, r cells away (Peskin, Acta Numerica
+/// 11 (2002), (6.27)): they add up to 1, and keep what is linear.
+EULASTIC_INLINE double peskin4(double r) noexcept {
+  const double a = __builtin_fabs(r);
+  const double inner = 1 + 4 * a - 4 * a * a, outer = -7 + 12 * a - 4 * a * a;
+  if (a < 1) return 0.125 * (3 - 2 * a + __builtin_sqrt(inner));
+  return a < 2 ? 0.125 * (5 - 2 * a - __builtin_sqrt(outer > 0 ? outer : 0)) : 0;
+}
+
+}  // namespace eulastic::kernels

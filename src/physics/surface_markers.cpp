@@ -1,0 +1,216 @@
+#include "physics/surface_markers.hpp"
+
+#include "base/deliver.hpp"
+#include "base/events.hpp"
+#include "grid/threads.hpp"
+#include "kernels/surface_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace eulastic {
+namespace {
+
+constexpr double settling = 0.2;     // of the distance from the surface, in every step
+constexpr double least_label = 0.5;  // of a cell that has one
+constexpr int around = 3;            // cells: those whose markers a cell's strain comes from, at most
+
+int in_box(const Grid &grid, int d, int index) {
+  const int n = grid.cells()[d];
+  return grid.is_wall(d) ? std::clamp(index, 0, n - 1) : (index % n + n) % n;
+}
+
+// Into the cell where it is; at a wall not beyond.
+void renew_cell(const Grid &grid, SurfaceMarker *marker) {
+  for (int d = 0; d < grid.dimension(); ++d) {
+    double &offset = marker->offset[d];
+    const double cells = std::floor(offset + 0.5);
+    const int to = marker->cell[d] + static_cast<int>(cells);
+    offset -= cells;
+    marker->cell[d] = in_box(grid, d, to);
+    if (grid.is_wall(d) && to != marker->cell[d]) offset = to < 0 ? -0.5 : 0.5;
+  }
+}
+
+Int3 local_cell(const Grid &grid, const SurfaceMarker &marker) {
+  Int3 local;
+  for (int d = 0; d < 3; ++d) local[d] = marker.cell[d] - grid.layout().begin[d];
+  return local;
+}
+
+std::ptrdiff_t offset_of(const Layout &layout, const Int3 &c) { return c[0] + c[1] * layout.sy + c[2] * layout.sz; }
+
+// Component a of the velocity at so many cells from a cell's centre.
+template <int Dim>
+double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
+  int first[3]{0, 0, cell[2]};
+  double weight[3][4];
+  for (int d = 0; d < Dim; ++d) {
+    const double place = offset[d] + (d == a ? 0.5 : 0), low = std::floor(place);
+    first[d] = cell[d] + static_cast<int>(low) - 1;
+    for (int m = 0; m < 4; ++m) weight[d][m] = kernels::peskin4(place - low - (m - 1));
+  }
+  double sum = 0;
+  for (int k = 0; k < (Dim == 3 ? 4 : 1); ++k)
+    for (int j = 0; j < 4; ++j) {
+      const double *row = &v(first[0], first[1] + j, first[2] + k);
+      double along = 0;
+      for (int i = 0; i < 4; ++i) along = kernels::fma(weight[0][i], row[i], along);
+      sum = kernels::fma(Dim == 3 ? weight[1][j] * weight[2][k] : weight[1][j], along, sum);
+    }
+  return sum;
+}
+
+template <int Dim>
+void move_marker(const Grid &grid, double dt, const FieldBlock &velocity, SurfaceMarker *marker) {
+  const Int3 cell = local_cell(grid, *marker);
+  Real3 half = marker->offset, end = half;
+  for (int d = 0; d < Dim; ++d)
+    half[d] += 0.5 * dt / grid.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, marker->offset);
+  for (int d = 0; d < Dim; ++d) end[d] += dt / grid.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, half);
+  marker->offset = end;
+  renew_cell(grid, marker);
+}
+
+template <int Dim>
+std::array<double, 6> metric_of(const kernels::Tensor<Dim> &B, const kernels::Vector<Dim> &n) {
+  const auto t = kernels::tangents<Dim>(n);
+  double G[Dim - 1][Dim - 1] = {}, mean = 0;
+  for (int a = 0; a < Dim - 1; ++a)
+    for (int b = 0; b < Dim - 1; ++b)
+      for (int x = 0; x < Dim; ++x)
+        for (int y = 0; y < Dim; ++y) G[a][b] += t[a][x] * B[x][y] * t[b][y];
+  const kernels::Tensor<Dim> inverse = kernels::inverse_in_plane<Dim>(t, G);
+  for (int x = 0; x < Dim; ++x) mean += inverse[x][x] / (Dim - 1);
+  std::array<double, 6> metric{1, 1, 1, 0, 0, 0};
+  for (int x = 0; x < Dim; ++x)
+    for (int y = x; y < Dim; ++y) metric[kernels::position<3>(x, y)] = inverse[x][y] + mean * (n[x] * n[y]);
+  return metric;
+}
+
+}  // namespace
+
+bool SurfaceMarkers::approach(const SurfaceCells &surface, const FieldBlock &fields, double part,
+                              SurfaceMarker *marker) const {
+  const int number = surface.number(offset_of(grid_->layout(), local_cell(*grid_, *marker)));
+  if (number < 0) return false;
+  const SurfaceCells::Cell &cell = surface.all()[number];
+  const double distance = part * surface.distance_at(fields, cell, marker->offset);
+  for (int d = 0; d < 3; ++d) marker->offset[d] -= distance * cell.normal[d] / grid_->spacing()[d];
+  return true;
+}
+
+void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields, const Phase &phase, int number,
+                           int label, std::vector<SurfaceMarker> *markers) const {
+  constexpr int approaches = 3;
+  const Int3 &begin = grid_->layout().begin, &cells = grid_->cells();
+  for (std::size_t c = 0; c < surface.nearest(); ++c) {
+    const SurfaceCells::Cell &cell = surface.all()[c];
+    const int own = phase.label ? static_cast<int>(phase.label[0].origin[cell.at]) : 0;
+    if (!cell.owned || (phase.label && own == 0) || (label != 0 && own != label)) continue;
+    SurfaceMarker marker;
+    for (int d = 0; d < 3; ++d) marker.cell[d] = begin[d] + cell.place[d];
+    marker.number =
+        marker.cell[0] + std::int64_t(cells[0]) * (marker.cell[1] + std::int64_t(cells[1]) * marker.cell[2]);
+    for (int n = 0; n < approaches; ++n) (void)approach(surface, fields, 1, &marker);
+    for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * grid_->spacing()[d];
+    marker.normal = cell.normal;
+    marker.label = own;
+    marker.phase = number;
+    marker.metric = grid_->dimension() == 2
+                        ? metric_of<2>(tensor_at<2>(phase.tensor, cell.at), normal_of<2>(cell.normal))
+                        : metric_of<3>(tensor_at<3>(phase.tensor, cell.at), normal_of<3>(cell.normal));
+    renew_cell(*grid_, &marker);
+    markers->push_back(marker);
+  }
+}
+
+PetscErrorCode SurfaceMarkers::move(double dt, const FieldBlock &velocity, std::vector<SurfaceMarker> *markers) {
+  PetscFunctionBeginUser;
+  {
+    VerbScope scope(Verb::membrane);
+    const int parts = row_parts(*grid_);
+    in_parallel(parts, parts, [&](int part) {
+      const Piece piece(markers->size(), part, parts);
+      for (std::size_t m = piece.begin; m < piece.end; ++m)
+        (grid_->dimension() == 2 ? move_marker<2> : move_marker<3>)(*grid_, dt, velocity, &(*markers)[m]);
+    });
+    scope.flops(double(markers->size()) * (grid_->dimension() == 2 ? 300 : 1200));
+  }
+  PetscCall(exchange(markers));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SurfaceMarkers::send_home(std::vector<SurfaceMarker> *markers) const {
+  std::vector<int> owners;
+  PetscFunctionBeginUser;
+  for (const SurfaceMarker &marker : *markers)
+    owners.push_back(grid_->owner(marker.cell[0], marker.cell[1], marker.cell[2]));
+  PetscCall(deliver(grid_->comm(), owners, markers));
+  PetscFunctionReturn(0);
+}
+
+// A rank has three cells at least, so that it or its neighbours along a direction own all that is within three.
+PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
+  PetscFunctionBeginUser;
+  if (grid_->ranks() == 1) {
+    all_ = *markers;
+    PetscFunctionReturn(0);
+  }
+  std::vector<int> ranks;
+  all_.clear();
+  for (const SurfaceMarker &marker : *markers) {
+    std::set<int> places[3], to;
+    for (int d = 0; d < 3; ++d)
+      for (const int away : {-around, 0, around}) {
+        if (d >= grid_->dimension() && away != 0) continue;
+        places[d].insert(grid_->owner_along(d, in_box(*grid_, d, marker.cell[d] + away)));
+      }
+    for (const int z : places[2])
+      for (const int y : places[1])
+        for (const int x : places[0]) to.insert(grid_->rank_at({x, y, z}));
+    for (const int rank : to) {
+      ranks.push_back(rank);
+      all_.push_back(marker);
+    }
+  }
+  PetscCall(deliver(grid_->comm(), ranks, &all_));
+  markers->clear();
+  for (const SurfaceMarker &marker : all_)
+    if (grid_->owner(marker.cell[0], marker.cell[1], marker.cell[2]) == grid_->rank()) markers->push_back(marker);
+  PetscFunctionReturn(0);
+}
+
+void SurfaceMarkers::settle(const SurfaceCells &surface, const FieldBlock &fields, int phase,
+                            std::vector<SurfaceMarker> *markers) const {
+  const auto far = [&](SurfaceMarker &marker) {
+    return marker.phase == phase && !approach(surface, fields, settling, &marker);
+  };
+  markers->erase(std::remove_if(markers->begin(), markers->end(), far), markers->end());
+}
+
+void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const {
+  const Layout &layout = grid_->layout();
+  const int deep = grid_->dimension() == 3 ? 1 : 0;
+  const auto lost = [&](SurfaceMarker &marker) {
+    if (marker.label == 0) return false;
+    const Int3 cell = local_cell(*grid_, marker);
+    for (const int reach : {0, 1})  // its own cell as a rule
+      for (std::size_t p = 0; p < phases.size(); ++p) {
+        if (!phases[p].material.is_membrane()) continue;
+        const double *label = phases[p].label[0].origin + offset_of(layout, cell);
+        for (int k = -reach * deep; k <= reach * deep; ++k)
+          for (int j = -reach; j <= reach; ++j)
+            for (int i = -reach; i <= reach; ++i)
+              if (std::fabs(label[i + j * layout.sy + k * layout.sz] - marker.label) < least_label) {
+                marker.phase = static_cast<int>(p);
+                return false;
+              }
+      }
+    return true;
+  };
+  markers->erase(std::remove_if(markers->begin(), markers->end(), lost), markers->end());
+}
+
+}  // namespace eulastic

@@ -1,0 +1,58 @@
+// Markers on membranes: material points that move with the flow and know where they were when the membrane was at rest,
+// so that its strain does not fade; docs/method.md, section 18.
+#pragma once
+
+#include "field/surface_marker.hpp"
+#include "physics/membrane_tensor.hpp"
+#include "physics/surface_cells.hpp"
+
+#include <vector>
+
+namespace eulastic {
+
+class SurfaceMarkers {
+public:
+  /// Ghosts of the velocity that move() reads, as long as nothing moves further than a cell.
+  static constexpr int velocity_ghosts = 4;
+  explicit SurfaceMarkers(const Grid &grid) : grid_(&grid) {}
+
+  /// One more at the surface beside each of the owned cells nearest to it, of the body `label`, or of all: the strain
+  /// of the phase is now that against their rest. `number`: of the phase; `fields` as SurfaceCells left them.
+  void place(const SurfaceCells &surface, const FieldBlock &fields, const Phase &phase, int number, int label,
+             std::vector<SurfaceMarker> *markers) const;
+  /// Over dt, by the midpoint rule in a flow that stays. Collective: each goes to the rank that owns its cell, copies
+  /// to those nearby.
+  PetscErrorCode move(double dt, const FieldBlock &velocity, std::vector<SurfaceMarker> *markers);
+  /// After move(): the strain at the owned nearest cells where markers tell.
+  struct Strain {
+    std::size_t cell;  ///< position among those of the surface
+    std::array<double, 6> B;
+  };
+  void find_strain(const SurfaceCells &surface, int phase, std::vector<Strain> *strains);
+  /// Takes those of a phase nearer to its surface, and out what is far from it. `fields` as SurfaceCells left them.
+  void settle(const SurfaceCells &surface, const FieldBlock &fields, int phase,
+              std::vector<SurfaceMarker> *markers) const;
+  /// Each to the phase that its body is in now, those of bodies that are gone away; labels with one layer of ghosts.
+  void follow(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const;
+  /// Collective: each to the rank that owns its cell.
+  PetscErrorCode send_home(std::vector<SurfaceMarker> *markers) const;
+
+private:
+  struct Near {
+    std::ptrdiff_t at;  ///< its cell, offset from the origin
+    int marker;         ///< of all_
+  };
+  PetscErrorCode exchange(std::vector<SurfaceMarker> *markers);
+  /// By a part of its distance from the surface; whether that is known.
+  bool approach(const SurfaceCells &surface, const FieldBlock &fields, double part, SurfaceMarker *marker) const;
+  void sort(const SurfaceCells &surface, int phase);
+  template <int Dim>
+  bool strain_at(const SurfaceCells &surface, const SurfaceCells::Cell &cell, double *B) const;
+
+  const Grid *grid_;
+  std::vector<SurfaceMarker> all_;  ///< since move(): owned ones and those near owned cells
+  std::vector<Near> near_;          ///< of the phase that is worked on, by their place in memory
+  std::vector<int> begin_;          ///< of those at every offset from the memory's start, and the end
+};
+
+}  // namespace eulastic
