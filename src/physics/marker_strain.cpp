@@ -10,9 +10,10 @@
 namespace eulastic {
 namespace {
 
-constexpr double radius = 2.5;      // cells around a point of the surface in which markers tell of it
-constexpr int rows_around = 3;      // that is, of cells around the cell beside it
-constexpr double round_off = 1e-9;  // of a metric
+template <int Dim>
+constexpr double radius = Dim == 2 ? 2.5 : 2;  // cells around a point of the surface in which markers tell of it
+constexpr int rows_around = 3;                 // that is, of cells around the cell beside it
+constexpr double round_off = 1e-9;             // of a metric
 template <int Dim>
 constexpr int fewest = Dim == 2 ? 5 : 8;  // markers: two more than coefficients
 constexpr double same_side = 0.3;         // least cosine between normals
@@ -57,7 +58,7 @@ EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const
             one.away[d] = (step[d] + one.marker->offset[d]) * h[d] + cell.distance * cell.normal[d];
             one.square += (one.away[d] / h[d]) * (one.away[d] / h[d]);
           }
-          count += one.square < radius * radius;
+          count += one.square < radius<Dim> * radius<Dim>;
         }
       }
     }
@@ -72,7 +73,7 @@ EULASTIC_INLINE bool strain_around(const Grid &grid, const kernels::Vector<Dim> 
   constexpr int height = Dim, metric = Dim + 1;
   const auto t = kernels::tangents<Dim>(n);
   const Real3 &h = grid.spacing();
-  const double length = radius * std::max({h[0], h[1], Dim == 3 ? h[2] : 0});
+  const double length = radius<Dim> * std::max({h[0], h[1], Dim == 3 ? h[2] : 0});
   kernels::SurfacePoints<Values> points;
   for (int m = 0; m < count; ++m) {
     const SurfaceMarker &marker = *seen[m].marker;
@@ -82,7 +83,7 @@ EULASTIC_INLINE bool strain_around(const Grid &grid, const kernels::Vector<Dim> 
     for (int a = 0; a < Dim - 1; ++a)
       for (int d = 0; d < Dim; ++d) along[a] += seen[m].away[d] * t[a][d];
     for (int d = 0; d < Dim; ++d) up += seen[m].away[d] * n[d];
-    const double near = 1 - seen[m].square / (radius * radius);
+    const double near = 1 - seen[m].square / (radius<Dim> * radius<Dim>);
     points.u[points.count] = along[0] / length;
     points.v[points.count] = along[1] / length;
     points.weight[points.count] = near * near;
@@ -100,7 +101,8 @@ EULASTIC_INLINE bool strain_around(const Grid &grid, const kernels::Vector<Dim> 
   points.fill_up();
   kernels::SurfaceFit<Dim, Values> fit;
   if (!kernels::fit_surface<Dim, Values>(points, &fit)) return false;
-  if (!(fit.residual < (trusted / radius) * (trusted / radius))) return false;
+  constexpr double most = trusted / radius<Dim>;
+  if (!(fit.residual < most * most)) return false;
   std::array<double, 6> rest = nearest.metric;
   for (int q = metric; q < Values; ++q) rest[q - metric] = fit.coefficient[0][q];
   double G[Dim - 1][Dim - 1] = {};
