@@ -143,13 +143,13 @@ EULASTIC_INLINE Tensor<Dim> inverse_in_plane(const std::array<Vector<Dim>, Dim -
   return out;
 }
 
-/// Weight of a point in an average over the four next to it along each direction, r cells away (Peskin, Acta Numerica
-/// 11 (2002), (6.27)): they add up to 1, and keep what is linear.
-EULASTIC_INLINE double peskin4(double r) noexcept {
+/// Weight of a point r cells away among the four next to a place along a direction, whose value they give: with a
+/// continuous slope, exactly of what is quadratic (Keys, IEEE Trans. Acoust. Speech Signal Process. 29, 1981, a =
+/// -1/2).
+EULASTIC_INLINE double keys4(double r) noexcept {
   const double a = __builtin_fabs(r);
-  const double inner = 1 + 4 * a - 4 * a * a, outer = -7 + 12 * a - 4 * a * a;
-  if (a < 1) return 0.125 * (3 - 2 * a + __builtin_sqrt(inner));
-  return a < 2 ? 0.125 * (5 - 2 * a - __builtin_sqrt(outer > 0 ? outer : 0)) : 0;
+  if (a < 1) return fma(fma(1.5, a, -2.5), a * a, 1);
+  return a < 2 ? fma(fma(fma(-0.5, a, 2.5), a, -4.0), a, 2.0) : 0;
 }
 
 }  // namespace eulastic::kernels

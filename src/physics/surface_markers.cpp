@@ -49,7 +49,7 @@ double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
   for (int d = 0; d < Dim; ++d) {
     const double place = offset[d] + (d == a ? 0.5 : 0), low = std::floor(place);
     first[d] = cell[d] + static_cast<int>(low) - 1;
-    for (int m = 0; m < 4; ++m) weight[d][m] = kernels::peskin4(place - low - (m - 1));
+    for (int m = 0; m < 4; ++m) weight[d][m] = kernels::keys4(place - low - (m - 1));
   }
   double sum = 0;
   for (int k = 0; k < (Dim == 3 ? 4 : 1); ++k)

@@ -70,17 +70,20 @@ TEST(SurfaceFit, InTwoDimensionsFitsAParabola) {
   EXPECT_NEAR(fit.coefficient[1][1], 1, 1e-13);
 }
 
-TEST(SurfaceFit, AveragesKeepWhatIsLinear) {
+TEST(SurfaceFit, FourPointsGiveWhatIsQuadratic) {
   for (const double place : {0.0, 0.1, 0.37, 0.5, 0.93}) {
-    double sum = 0, moment = 0;
+    double sum = 0, moment = 0, square = 0;
     for (int m = -1; m <= 2; ++m) {
-      sum += peskin4(place - m);
-      moment += peskin4(place - m) * m;
+      sum += keys4(place - m);
+      moment += keys4(place - m) * m;
+      square += keys4(place - m) * m * m;
     }
     EXPECT_NEAR(sum, 1, 1e-14);
     EXPECT_NEAR(moment, place, 1e-14);
+    EXPECT_NEAR(square, place * place, 1e-14);
   }
-  EXPECT_EQ(peskin4(2.5), 0);
+  EXPECT_NEAR(keys4(1 + 1e-9), keys4(1 - 1e-9), 1e-8);
+  EXPECT_EQ(keys4(2.5), 0);
 }
 
 TEST(SurfaceFit, InverseInAPlane) {
