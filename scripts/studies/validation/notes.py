@@ -41,9 +41,7 @@ NOTES = {
     "V2": "Walls and images add strain by the stresslet of the drop (ellipsoids.py). Without tension a drop stays an ellipsoid.",
     "V4": "Walls and images as for a rigid sphere, as which the membrane turns.",
     "V5": "The start-up has what walls and images do to D in its box, by capsule_startups. Later, in a box of 5, 6 and 5 radii, they add .8 % to the "
-          "strain rate and take 2.8 % off the vorticity (ellipsoids.py). Through three revolutions D falls and the axis across the shear shortens; "
-          "area and period stay.",
-    "V7": "The stiff capsule rounds off while it turns.",
+          "strain rate and take 2.8 % off the vorticity (ellipsoids.py).",
     "V9": "The references are between the walls and images of the box, to leading order in size over distance; they add some 2 % to D. They agree with that of "
           "V5, another code, to .1 %, and without a membrane with exact ellipsoids (tests/regression/test_boundary_integral.py).",
 }
