@@ -1,10 +1,10 @@
-"""S13 to S20: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
+"""S13 to S21: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
 import math
 
 import numpy
 
 from .bodies import fast_at
-from .case import Case, Measure
+from .case import ROOT, Case, Measure
 
 # Drag K of a simple cubic array of spheres over Stokes' 6 pi mu a U at solid volume fraction c, U the mean velocity of the box
 # (Zick & Homsy, J. Fluid Mech. 115, 1982, table 2).
@@ -97,7 +97,38 @@ def upper_share():
     return per_length * ahead / (per_length * (ahead + up) + .05)
 
 
+# Backward-facing step at Re = 800: where the flow comes back to the lower wall, leaves the upper one and comes back to that, in
+# step heights (Gartling 1990, table II: 6.10, 4.85, 10.48 channel heights).
+STEP = {"reattachment below": 12.20, "separation above": 9.70, "reattachment above": 20.96}
+
+
+def step_options(n, _):
+    """The parabola 24 (y - 1/2)(1 - y) of the upper half, its mean over every cell."""
+    path = ROOT / "build" / f"backward_step_inlet_{n}.txt"
+    y = numpy.clip(numpy.arange(n + 1) / n, .5, 1)
+    path.write_text("\n".join(f"{u:.15g}" for u in n * numpy.diff(24 * (.75 * y**2 - y**3 / 3 - y / 2))) + "\n")
+    return {"grid_cells": f"{30 * n},{n},1", "grid_length": f"30,1,{1 / n}", "inflow_xmin_profile": path, "snapshot_interval": 300}
+
+
+def turns(run, row, beside):
+    """Where the shear on a wall changes its sign, in step heights; below the corner's eddy is the first."""
+    u = run.snapshots[-1].velocity()[0][0]
+    shear = 9 * u[row] - u[beside]
+    x = (numpy.arange(len(shear)) + .5) * run.spacing[0]
+    at = numpy.flatnonzero(shear[1:] * shear[:-1] < 0)
+    return 2 * (x[at] - shear[at] * (x[at + 1] - x[at]) / (shear[at + 1] - shear[at]))
+
+
+def step_measure(what, row, beside, number):
+    return Measure(what, lambda run: float(turns(run, row, beside)[number]), {"fast": lambda n: .02 * max(1, (64 / n)**2)},
+                   "asked for: 2 %, at 64 cells; second order", STEP[what], True)
+
+
 CASES = (
+    Case("S21", "Backward-facing step, Re = 800", "backward_step", step_options, fast_at((32, 64)), (),
+         (step_measure("reattachment below", 0, 1, -1), step_measure("separation above", -1, -2, 0),
+          step_measure("reattachment above", -1, -2, -1)),
+         lambda run: ((run.series.time, run.series.kinetic_energy), None), ("t", "kinetic energy")),
     array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
     Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
          (Measure("flow rate", bulk, {"fast": lambda across: .01 * (20 / across)**1.8},
