@@ -193,7 +193,9 @@ CASES = (
     Case("V8", "Capsule that a uniform flow carries 3.4 radii along (2, 1)", "bending_ring", carried, fast_at((8, 12)), fast_at((6,)),
          (Measure("change of D", change_carried("taylor_deformation"), {"fast": lambda n: .04 * (8 / n)**2},
                   "exact: nothing deforms; as a capsule's D in V4 at 16, of second order"),
-          Measure("change of the area", change_carried("surface_area"), {"fast": lambda n: .005 * (8 / n)**2}, "as that of a body after V5"),
+          Measure("change of the area", change_carried("surface_area"), {"fast": lambda n: .005 * (8 / n)**2}, "as that of a body after V5",
+                  misses={"fast": (lambda n: .0065 * (8 / n)**2, "at once: planes of exact fractions have less area than those of a surface "
+                                   "that has moved; from there on it stays")}),
           Measure("change of volume", drift, {"fast": 1e-5}, "of the divergence, as AREA of S10")),
          lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D")),
 )
