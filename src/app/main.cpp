@@ -5,6 +5,7 @@
 #include "app/scene_warnings.hpp"
 #include "app/signals.hpp"
 #include "base/events.hpp"
+#include "base/rank_zero.hpp"
 #include "io/hdf5_file.hpp"
 
 #include <unistd.h>
@@ -87,7 +88,7 @@ bool finalize() {
   std::string kept;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   (void)PetscPushErrorHandler(keep_message, &kept);
-  if (!PetscFinalize()) return false;
+  if (!PetscFinalize()) return MPI_Finalize() != MPI_SUCCESS;
   if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", kept.c_str());
   return true;
 }
@@ -107,14 +108,19 @@ void wait_passively(char **argv) {
 
 int program(int argc, char **argv) {
   wait_passively(argv);
-  const char *environment = std::getenv("PETSC_OPTIONS");
-  ParseResult parsed = parse({argv + 1, argv + argc}, environment ? environment : "");
-  parsed.program = argv[0];
-  unsetenv("PETSC_OPTIONS");
   // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
   // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
   setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // one rank by itself needs no daemon of Open MPI beside it
+  int threads;
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads)) return exit_failed;
+  const auto environment = on_rank_0([] {
+    const char *given = std::getenv("PETSC_OPTIONS");
+    return std::string(given ? given : "");
+  });
+  ParseResult parsed = parse({argv + 1, argv + argc}, environment);
+  parsed.program = argv[0];
+  unsetenv("PETSC_OPTIONS");
   std::vector<char *> petsc{argv[0]};
   for (std::string &argument : parsed.petsc_arguments) {
     petsc.push_back(argument.data());

@@ -1,11 +1,11 @@
 #include "app/openings.hpp"
 
 #include "app/option_values.hpp"
+#include "base/rank_zero.hpp"
 #include "field/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 namespace eulastic {
@@ -15,9 +15,9 @@ std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "m
 
 // Numbers of a text file, whatever separates them; # starts a comment.
 std::string read_numbers(const std::string &path, std::vector<std::vector<double>> *rows) {
-  std::ifstream file(path);
-  if (!file) return "cannot read " + path;
-  std::string line;
+  std::string text, line;
+  if (!read_file(path, &text)) return "cannot read " + path;
+  std::istringstream file(text);
   for (int number = 1; std::getline(file, line); ++number) {
     line.erase(std::min(line.find('#'), line.size()));
     std::replace_if(
@@ -32,7 +32,7 @@ std::string read_numbers(const std::string &path, std::vector<std::vector<double
     }
     if (!row.empty()) rows->push_back(row);
   }
-  return file.bad() ? "cannot read " + path : rows->empty() ? path + " holds no numbers" : std::string();
+  return rows->empty() ? path + " holds no numbers" : std::string();
 }
 
 std::string read_table(const std::string &path, TimeCourse *course) {

@@ -3,12 +3,13 @@
 #include "app/option_table.hpp"
 #include "app/option_values.hpp"
 #include "app/petsc_options.hpp"
+#include "base/rank_zero.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <set>
+#include <sstream>
 
 namespace eulastic {
 namespace {
@@ -36,10 +37,9 @@ bool is_boolean_option(const std::string &name) {
 // Whether the word after option `name` is its value. PETSc's own options and booleans may have none: an existing
 // file after them is the options file.
 bool takes(const std::string &name, const std::string &word) {
-  std::error_code ignored;
   if (is_name(word)) return false;
   if (is_boolean_option(name) && is_boolean_word(word)) return true;
-  return !(is_petsc_option(name) || is_boolean_option(name)) || !std::filesystem::is_regular_file(word, ignored);
+  return !(is_petsc_option(name) || is_boolean_option(name)) || !is_file(word);
 }
 
 }  // namespace
@@ -82,14 +82,13 @@ std::string split_words(const std::string &line, std::vector<std::string> *words
 
 namespace {
 
-std::string read_file(const std::string &path, int depth, std::vector<Source> *sources) {
-  std::error_code ignored;
+std::string read_entries(const std::string &path, int depth, std::vector<Source> *sources) {
+  std::string text, line;
   if (depth > 8) return "-options_file: " + path + " brings in itself";
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path, ignored))
+  if (!read_file(path, &text))
     return "options file " + path +
            " cannot be read; accepted: one options file and options -name value, lists without spaces";
-  std::string line;
+  std::istringstream file(text);
   Source entries;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string where = " (" + path + ":" + std::to_string(number) + ")";
@@ -101,7 +100,7 @@ std::string read_file(const std::string &path, int depth, std::vector<Source> *s
     entries.pop_back();
     if (brought_in.empty()) return "-options_file: a value is missing; accepted: a path" + where;
     const std::string beside = (std::filesystem::path(path).parent_path() / brought_in).string();
-    if (const std::string wrong = read_file(beside, depth + 1, sources); !wrong.empty()) return wrong + where;
+    if (const std::string wrong = read_entries(beside, depth + 1, sources); !wrong.empty()) return wrong + where;
   }
   for (Entry &entry : entries) entry.options_file = path;
   sources->push_back(std::move(entries));
@@ -111,7 +110,7 @@ std::string read_file(const std::string &path, int depth, std::vector<Source> *s
 }  // namespace
 
 std::string read_options_file(const std::string &path, std::vector<Source> *sources) {
-  return read_file(path, 0, sources);
+  return read_entries(path, 0, sources);
 }
 
 std::string find_input(const Entry &entry) {
@@ -122,9 +121,11 @@ std::string find_input(const Entry &entry) {
     return fs::exists(place, ignored) || fs::exists(text.substr(0, text.rfind(':')), ignored);
   };
   const fs::path path = entry.value;
-  if (entry.options_file.empty() || path.is_absolute() || is_there(path)) return entry.value;
-  const fs::path beside = fs::path(entry.options_file).parent_path() / path;
-  return is_there(beside) ? beside.string() : entry.value;
+  if (entry.options_file.empty() || path.is_absolute()) return entry.value;
+  return on_rank_0([&] {
+    const fs::path beside = fs::path(entry.options_file).parent_path() / path;
+    return !is_there(path) && is_there(beside) ? beside.string() : entry.value;
+  });
 }
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// From the command line to a validated Config, without MPI or PETSc: every rank gets the same answer by itself.
+// From the command line to a validated Config, without PETSc: all ranks together, with the same answer.
 #pragma once
 
 #include "app/config.hpp"
@@ -22,7 +22,7 @@ struct ParseResult {
 
 /// `arguments`: the command line without the program name: options and at most one options file. An options file
 /// has lines `-name value`, # starts a comment. The command line wins over `petsc_options` (the environment
-/// variable), which wins over the file. Reads the options file and position lists, writes nothing.
+/// variable), which wins over the file. Rank 0 reads the files that they name; nothing is written.
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options = {});
 
 /// Every option as resolved; itself an options file that gives the same run.

@@ -1,6 +1,7 @@
 #include "app/restart.hpp"
 
 #include "app/option_table.hpp"
+#include "base/rank_zero.hpp"
 #include "io/fail_together.hpp"
 
 #include <algorithm>
@@ -28,21 +29,15 @@ std::map<std::string, std::string> values_of(const std::string &options) {
 std::string shown(const std::string &value) { return value.empty() ? "not given" : value; }
 
 // Rank 0's answer counts: others may see the directory a moment later.
-PetscErrorCode list_everywhere(MPI_Comm comm, const std::string &directory, std::vector<std::string> *paths) {
-  int rank;
-  std::string text;
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0)
+std::vector<std::string> list_everywhere(const std::string &directory) {
+  std::istringstream lines(on_rank_0([&] {
+    std::string text;
     for (const std::string &path : list_checkpoints(directory)) text += path + "\n";
-  int length = static_cast<int>(text.size());
-  PetscCallMPI(MPI_Bcast(&length, 1, MPI_INT, 0, comm));
-  text.resize(length);
-  PetscCallMPI(MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm));
-  std::istringstream lines(text);
-  paths->clear();
-  for (std::string line; std::getline(lines, line);) paths->push_back(line);
-  PetscFunctionReturn(0);
+    return text;
+  }));
+  std::vector<std::string> paths;
+  for (std::string line; std::getline(lines, line);) paths.push_back(line);
+  return paths;
 }
 
 // `refusal`: the file is whole but this run must not go on from it.
@@ -83,9 +78,11 @@ std::string beyond_end(const State &state, const TimeControl &time) {
 
 bool restarts_in_place(const Config &config) {
   const fs::path source = config.checkpoint.restart;
-  std::error_code error;
-  const fs::path directory = fs::is_directory(source, error) ? source : fs::absolute(source, error).parent_path();
-  return fs::equivalent(directory, config.output.directory, error);
+  return on_rank_0([&] {
+    std::error_code error;
+    const fs::path directory = fs::is_directory(source, error) ? source : fs::absolute(source, error).parent_path();
+    return fs::equivalent(directory, config.output.directory, error);
+  });
 }
 
 PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away) {
@@ -122,10 +119,10 @@ PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *p
   const MPI_Comm comm = solver->grid().comm();
   const fs::path source = parsed.config.checkpoint.restart;
   std::error_code error;
-  const bool is_directory = fs::is_directory(source, error);
-  std::vector<std::string> all;
+  const bool is_directory = on_rank_0([&] { return fs::is_directory(source, error); });
   PetscFunctionBeginUser;
-  PetscCall(list_everywhere(comm, is_directory ? source : fs::absolute(source, error).parent_path(), &all));
+  const std::vector<std::string> all =
+      list_everywhere(is_directory ? source : fs::absolute(source, error).parent_path());
   const std::vector<std::string> candidates = is_directory ? all : std::vector<std::string>{source};
   if (candidates.empty()) *refusal = "-restart: there is no checkpoint in " + source.string();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -139,7 +136,7 @@ PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *p
     std::string older;
     for (const std::string &other : all)
       if (older.empty() && (checkpoint_step(*path) < 0 || checkpoint_step(other) < checkpoint_step(*path)) &&
-          !fs::equivalent(other, *path, error))
+          !on_rank_0([&] { return fs::equivalent(other, *path, error); }))
         older = other;
     *refusal = "-restart: " + damage + (older.empty() ? "; there is no older one" : "; the next older one is " + older);
     if (!is_directory || older.empty()) PetscFunctionReturn(0);

@@ -43,7 +43,7 @@ PetscErrorCode SampleFiles::add(File &&of, const std::string &directory, double 
   columns.insert(columns.end(), {"velocity_x", "velocity_y", "velocity_z", "pressure", "solid_fraction"});
   File &file = files_.emplace_back(std::move(of));
   const std::string path = directory + file.name();
-  PetscCall(file.table.open(grid_->comm(), path, columns, rows_until(path, end)));
+  PetscCall(file.table.open(grid_->comm(), path, columns, grid_->rank() == 0 ? rows_until(path, end) : 0));
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 #include "app/option_values.hpp"
 #include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_sides.hpp"
@@ -16,11 +17,6 @@ namespace eulastic {
 namespace {
 
 constexpr double most_unequal = 1000;  // spacings
-
-bool is_file(const std::string &path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
 
 bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 
@@ -275,9 +271,11 @@ std::string check_snapshots(const Config &config) {
 
 std::string check_restart(const Config &config) {
   const std::string &path = config.checkpoint.restart;
-  std::error_code ignored;
-  if (!path.empty() && !std::filesystem::exists(path, ignored))
-    return "-restart: there is no file or directory " + path;
+  const auto is_there = [&] {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  };
+  if (!path.empty() && !on_rank_0(is_there)) return "-restart: there is no file or directory " + path;
   if (config.checkpoint.keep == 0 && config.checkpoint.regular())
     return "-checkpoint_keep: 0 with -checkpoint_interval or -checkpoint_wall_minutes; accepted: at least 1";
   return {};

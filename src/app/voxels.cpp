@@ -1,6 +1,7 @@
 #include "app/voxels.hpp"
 
 #include "base/events.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/closed_surface.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/resample.hpp"
@@ -15,9 +16,30 @@
 namespace eulastic {
 namespace {
 
+// All members are collective.
 class VoxelBody {
 public:
   std::string open(const SpeciesSpec &spec, const GridSpec &grid) {
+    const std::string wrong = on_rank_0([&] { return open_locally(spec, grid); });
+    share(&triangles_);
+    share(&box_);
+    return wrong;
+  }
+
+  std::string fill(const CellWindow &window, View fraction) {
+    if (!triangles_.empty()) return fill_surface(window, triangles_, fraction);
+    const auto read = [this](const Int3 &begin, const Int3 &end, double *values) {
+      const std::string wrong = on_rank_0([&] { return volume_->read(begin, end, values); });
+      std::size_t bytes = sizeof *values;
+      for (int d = 0; d < 3; ++d) bytes *= end[d] - begin[d];
+      (void)share_bytes(values, bytes);
+      return wrong;
+    };
+    return resample(window, box_, read, fraction);
+  }
+
+private:
+  std::string open_locally(const SpeciesSpec &spec, const GridSpec &grid) {
     const VoxelSpec &voxels = spec.voxels;
     VolumeFormat format;
     std::string file, dataset, wrong = find_volume(voxels.path, &format, &file, &dataset);
@@ -28,15 +50,6 @@ public:
     return place_volume(voxels, file, grid);
   }
 
-  std::string fill(const CellWindow &window, View fraction) {
-    if (!volume_) return fill_surface(window, triangles_, fraction);
-    const auto read = [this](const Int3 &begin, const Int3 &end, double *values) {
-      return volume_->read(begin, end, values);
-    };
-    return resample(window, box_, read, fraction);
-  }
-
-private:
   std::string open_surface(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
     if (std::string wrong = read_stl(file, &triangles_); !wrong.empty()) return wrong;
     if (const std::string wrong = why_not_closed(triangles_); !wrong.empty()) return file + ": " + wrong;
@@ -83,9 +96,9 @@ private:
     return {};
   }
 
-  std::unique_ptr<VolumeFile> volume_;  // none: a surface
+  std::unique_ptr<VolumeFile> volume_;  // of rank 0
   VoxelBox box_;
-  std::vector<Triangle> triangles_;
+  std::vector<Triangle> triangles_;  // none: a volume
 };
 
 std::string about(const SpeciesSpec &spec, const std::string &wrong) {
@@ -94,23 +107,29 @@ std::string about(const SpeciesSpec &spec, const std::string &wrong) {
 
 constexpr int most_cells = 1 << 24;  // of the box, in memory at a time
 
+bool on_any_rank(bool here) {
+  int any = here;
+  (void)MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  return any > 0;
+}
+
 }  // namespace
 
 std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit) {
   const Int3 &n = grid.cells;
   const int step = static_cast<int>(std::clamp(most_cells / (double(n[0]) * n[1]), 1.0, double(n[2])));
   std::vector<double> phi;
-  for (int k = begin; k < end; k += step) {
-    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::min(step, end - k)});
+  for (int k = begin; on_any_rank(k < end); k += step) {
+    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::clamp(end - k, 0, step)});
     phi.resize(std::size_t(n[0]) * n[1] * window.size[2]);
     const View fraction{phi.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
     VoxelBody body;  // anew: files may have to be read from the front
     std::string wrong = body.open(spec, grid);
     if (wrong.empty()) wrong = body.fill(window, fraction);
-    if (!wrong.empty()) return about(spec, wrong);
+    if (on_any_rank(!wrong.empty())) return about(spec, wrong);
     if (spec.voxels.invert)
       for (double &q : phi) q = 1 - q;
-    visit(window, fraction);
+    if (window.size[2] > 0) visit(window, fraction);
   }
   return {};
 }

@@ -12,13 +12,13 @@ namespace eulastic {
 
 using VisitLayers = std::function<void(const CellWindow &, ConstView fraction)>;
 
-/// phi of a species of shape voxels in the layers begin <= k < end of the box, some layers at a time. Returns one line
-/// on what is wrong, or nothing.
+/// phi of a species of shape voxels in the layers begin <= k < end of the box, some layers at a time. Collective, each
+/// rank with its layers; ends on all ranks when something is wrong on one. Returns one line on what is wrong here, or
+/// nothing.
 std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit);
 
 /// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
-/// `solids`, and with `masks` their cells. Every rank reads the files, all of them. Returns one line on the first that
-/// cannot be used, or nothing.
+/// `solids`, and with `masks` their cells. Collective. Returns one line on the first that cannot be used, or nothing.
 std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSpec &grid, bool masks,
                            SolidBodies *solids, std::vector<double> *volumes);
 

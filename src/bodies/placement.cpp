@@ -1,5 +1,6 @@
 #include "bodies/placement.hpp"
 
+#include "base/rank_zero.hpp"
 #include "bodies/random.hpp"
 #include "bodies/shapes.hpp"
 
@@ -142,11 +143,13 @@ std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, std::vec
   } else if (spec.placement == Placement::one) {
     places->push_back({spec.centre_given ? spec.centre : middle, spec.orientation});
     if (spec.random_orientation) places->back().orientation = Random(spec.seed, spec.name).orientation(flat ? 2 : 3);
+  } else if (spec.placement == Placement::list) {
+    reason = on_rank_0([&] { return read_list(spec, flat ? 2 : 3, places); });
+    share(places);
   } else {
-    reason =
-        spec.placement == Placement::list ? read_list(spec, flat ? 2 : 3, places) : make_lattice(spec, grid, places);
-    if (!reason.empty()) return reason;
+    reason = make_lattice(spec, grid, places);
   }
+  if (!reason.empty()) return reason;
   const Surface surface(spec, flat ? 2 : 3);
   for (std::size_t b = 0; b < places->size(); ++b) {
     if (flat) (*places)[b].centre[2] = middle[2];

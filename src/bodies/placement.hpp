@@ -19,8 +19,8 @@ struct BodyPlace {
 /// impossible shape, a bad line of the file, a body outside the box, longer than it, or reaching into a wall (slabs,
 /// cylinders and tubes may), a lumen that leaves the box. List: CSV with x,y,z or x,y,z,angle_x,angle_y,angle_z per
 /// line, such a header line and empty lines allowed; angles on a line replace the species' orientation. Lattice:
-/// centres at (i + 1/2) L/n, and jitter. A slab lies where its interval says; shape state places nothing. Communicates
-/// nothing; every rank reads the file.
+/// centres at (i + 1/2) L/n, and jitter. A slab lies where its interval says; shape state places nothing. Collective
+/// over all ranks of the program where there is a list.
 std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, std::vector<BodyPlace> *places);
 
 }  // namespace eulastic

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace eulastic {
 namespace {
@@ -59,6 +60,14 @@ void for_overlaps(const Overlaps &overlaps, int voxel, Visit visit) {
   for (std::size_t o = overlaps.start[n]; o < overlaps.start[n + 1]; ++o) visit(overlaps.list[o]);
 }
 
+// The box of voxels that the cells of any rank overlap.
+std::pair<Int3, Int3> voxels_of_all(const Overlaps &x, const Overlaps &y, const Overlaps &z) {
+  std::array<int, 6> bounds{x.begin, y.begin, z.begin, -x.end, -y.end, -z.end};
+  if (x.begin == x.end || y.begin == y.end || z.begin == z.end) bounds.fill(std::numeric_limits<int>::max());
+  (void)MPI_Allreduce(MPI_IN_PLACE, bounds.data(), 6, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  return {{bounds[0], bounds[1], bounds[2]}, {-bounds[3], -bounds[4], -bounds[5]}};
+}
+
 }  // namespace
 
 double clean_fraction(double phi) noexcept { return phi < 1e-12 ? 0 : phi > 1 - 1e-12 ? 1 : phi; }
@@ -69,23 +78,29 @@ std::string resample(const CellWindow &window, const VoxelBox &box, const ReadVo
     for (int j = 0; j < size[1]; ++j) std::fill_n(fraction.row(j, k), size[0], 0.0);
   const Overlaps x = find_overlaps(window, box, 0), y = find_overlaps(window, box, 1),
                  z = find_overlaps(window, box, 2);
-  const int nx = x.end - x.begin, ny = y.end - y.begin;
-  if (nx < 1 || ny < 1 || z.end == z.begin) return {};
-  const int step_x = std::min(nx, most_voxels), step_y = std::min(ny, most_voxels / step_x);
-  const int step_z = std::min(z.end - z.begin, most_voxels / step_x / step_y);
-  std::vector<double> voxels(std::size_t(step_x) * step_y * step_z), row(size[0]);
-  for (int k0 = z.begin; k0 < z.end; k0 += step_z)
-    for (int j0 = y.begin; j0 < y.end; j0 += step_y)
-      for (int i0 = x.begin; i0 < x.end; i0 += step_x) {
-        const Int3 end{std::min(i0 + step_x, x.end), std::min(j0 + step_y, y.end), std::min(k0 + step_z, z.end)};
+  const auto [first, last] = voxels_of_all(x, y, z);
+  Int3 step;
+  int most = most_voxels;
+  for (int d = 0; d < 3; ++d) {
+    if (last[d] <= first[d]) return {};
+    step[d] = std::min(last[d] - first[d], most);
+    most /= step[d];
+  }
+  std::vector<double> voxels(std::size_t(step[0]) * step[1] * step[2]), row(size[0]);
+  for (int k0 = first[2]; k0 < last[2]; k0 += step[2])
+    for (int j0 = first[1]; j0 < last[1]; j0 += step[1])
+      for (int i0 = first[0]; i0 < last[0]; i0 += step[0]) {
+        const Int3 end{std::min(i0 + step[0], last[0]), std::min(j0 + step[1], last[1]),
+                       std::min(k0 + step[2], last[2])};
         if (std::string wrong = read({i0, j0, k0}, end, voxels.data()); !wrong.empty()) return wrong;
-        const double *voxel = voxels.data();
-        for (int k = k0; k < end[2]; ++k)
-          for (int j = j0; j < end[1]; ++j) {
-            if (i0 == x.begin) std::fill(row.begin(), row.end(), 0.0);
-            for (int i = i0; i < end[0]; ++i, ++voxel)
-              if (*voxel != 0) for_overlaps(x, i, [&](const Overlap &o) { row[o.cell] += o.weight * *voxel; });
-            if (end[0] < x.end) continue;  // the rest of a very long row follows
+        for (int k = std::max(k0, z.begin); k < std::min(end[2], z.end); ++k)
+          for (int j = std::max(j0, y.begin); j < std::min(end[1], y.end); ++j) {
+            const double *voxel = &voxels[(std::size_t(k - k0) * (end[1] - j0) + (j - j0)) * (end[0] - i0)];
+            if (i0 == first[0]) std::fill(row.begin(), row.end(), 0.0);
+            for (int i = std::max(i0, x.begin); i < std::min(end[0], x.end); ++i)
+              if (const double q = voxel[i - i0]; q != 0)
+                for_overlaps(x, i, [&](const Overlap &o) { row[o.cell] += o.weight * q; });
+            if (end[0] < last[0]) continue;  // the rest of a very long row follows
             for_overlaps(z, k, [&](const Overlap &oz) {
               for_overlaps(y, j, [&](const Overlap &oy) {
                 double *phi = &fraction(0, oy.cell, oz.cell);

@@ -1,4 +1,4 @@
-// HDF5 datasets of voxels. Every rank opens the file on its own and reads the boxes it needs.
+// HDF5 datasets of voxels, read box by box.
 #include "io/hdf5_handle.hpp"
 #include "io/volume_file.hpp"
 

@@ -30,12 +30,14 @@ PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, cons
 
 PetscErrorCode write_vtkhdf_series(MPI_Comm comm, const std::string &directory,
                                    const std::vector<SnapshotEntry> &entries) {
+  int rank;
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   std::vector<Json> files;
   for (const SnapshotEntry &entry : entries) {
     const std::string name = entry.name + ".vtkhdf";
     std::error_code error;
-    if (!std::filesystem::exists(directory + "/" + name, error)) continue;
+    if (rank > 0 || !std::filesystem::exists(directory + "/" + name, error)) continue;  // rank 0 writes
     files.emplace_back().add("name", name).add("time", entry.time);
   }
   const std::string text = Json().add("file-series-version", std::string("1.0")).add("files", files).text();

@@ -315,7 +315,11 @@ PetscErrorCode fuzz_all(long cases, unsigned long seed, std::FILE *out, long *fo
 }  // namespace
 
 int main(int argc, char **argv) {
-  if (argc == 4 && !std::strcmp(argv[1], "--lines")) return print_lines(std::atol(argv[2]), std::atol(argv[3])), 0;
+  if (argc == 4 && !std::strcmp(argv[1], "--lines")) {
+    MPI_Init(nullptr, nullptr);
+    print_lines(std::atol(argv[2]), std::atol(argv[3]));
+    return MPI_Finalize();
+  }
   const long cases = argc > 1 ? std::atol(argv[1]) : 10000;
   const unsigned long seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
   std::FILE *out = fdopen(dup(1), "w");  // the runs themselves print to nowhere

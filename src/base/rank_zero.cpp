@@ -1,0 +1,39 @@
+#include "base/rank_zero.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace eulastic {
+
+int share_bytes(void *bytes, std::size_t count, MPI_Comm comm) {
+  constexpr std::size_t piece = std::size_t{1} << 26;
+  for (std::size_t begin = 0; begin < count; begin += piece) {
+    const int length = static_cast<int>(std::min(piece, count - begin));
+    if (const int failed = MPI_Bcast(static_cast<char *>(bytes) + begin, length, MPI_BYTE, 0, comm)) return failed;
+  }
+  return MPI_SUCCESS;
+}
+
+bool is_file(const std::string &path) {
+  return on_rank_0([&] {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored);
+  });
+}
+
+bool read_file(const std::string &path, std::string *bytes) {
+  const bool fine = on_rank_0([&] {
+    std::FILE *file = std::fopen(path.c_str(), "re");
+    if (!file) return false;
+    char piece[1 << 14];
+    bytes->clear();
+    while (const std::size_t length = std::fread(piece, 1, sizeof piece, file)) bytes->append(piece, length);
+    const bool whole = std::ferror(file) == 0;
+    return std::fclose(file) == 0 && whole;
+  });
+  share(bytes);
+  return fine;
+}
+
+}  // namespace eulastic
