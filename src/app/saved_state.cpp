@@ -44,9 +44,8 @@ CheckpointRecords markers_of(const State &state) {
   return records;
 }
 
-// Everything else; the arrays of bodies, `references` and `first_volumes`, only where there are some.
-CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const std::vector<Int3> &references,
-                             const std::vector<double> &first_volumes, std::uint64_t hash) {
+// Everything else but what owners know of their bodies.
+CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::uint64_t hash) {
   const State &s = solver.state();
   const OutputsPosition &o = position.outputs;
   CheckpointNumbers numbers;
@@ -69,14 +68,11 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, const 
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   if (solver.bodies().bodies() == 0) return numbers;
-  reals["body_first_volumes"] = first_volumes;
   if (Feeders *feeders = solver.feeders()) {
     integers["bodies_in_feeders"].assign(feeders->inside().begin(), feeders->inside().end());
     const std::vector<int> &like = solver.bodies().like();
     if (!like.empty()) integers["bodies_like"].assign(like.begin(), like.end());
   }
-  std::vector<long> &cells = integers["body_references"];
-  for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
   return numbers;
 }
 
@@ -119,10 +115,21 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
     const std::vector<long> &inside = integers["bodies_in_feeders"];
     feeders->set_inside({inside.begin(), inside.end()});
   }
-  std::vector<Int3> cells(static_cast<std::size_t>(solver->bodies().bodies()));
-  for (std::size_t n = 0; n < 3 * cells.size(); ++n)
-    cells[n / 3][n % 3] = static_cast<int>(integers["body_references"][n]);
-  solver->bodies().set_known(std::move(cells), reals["body_first_volumes"]);
+}
+
+PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *bodies) {
+  const BodyRange own = BodyRange::of(bodies->bodies(), grid.rank(), grid.ranks());
+  const hsize_t all = bodies->bodies(), begin = own.begin;
+  std::vector<long> cells(3 * own.size());
+  std::vector<double> first_volumes(own.size());
+  std::vector<Int3> references(own.size());
+  PetscFunctionBeginUser;
+  if (all == 0) PetscFunctionReturn(0);
+  PetscCall(file->read_share("body_references", 3 * all, 3 * begin, &cells));
+  PetscCall(file->read_share("body_first_volumes", all, begin, &first_volumes));
+  for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
+  bodies->set_known(std::move(references), std::move(first_volumes));
+  PetscFunctionReturn(0);
 }
 
 }  // namespace
@@ -135,9 +142,14 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
   PetscFunctionBeginUser;
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
   PetscCall(solver->bodies().known(solver->grid().comm(), &references, &first_volumes));
-  PetscCall(write_checkpoint(solver->grid(), path, options,
-                             numbers_of(*solver, position, references, first_volumes, hash), fields_of(*solver),
-                             {markers_of(solver->state())}));
+  CheckpointNumbers numbers = numbers_of(*solver, position, hash);
+  if (solver->bodies().bodies() > 0) {
+    numbers.reals["body_first_volumes"] = first_volumes;
+    std::vector<long> &cells = numbers.integers["body_references"];
+    for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
+  }
+  PetscCall(
+      write_checkpoint(solver->grid(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
   PetscFunctionReturn(0);
 }
 
@@ -155,13 +167,12 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   }
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
-  const auto bodies = static_cast<std::size_t>(solver->bodies().bodies());
-  const CheckpointNumbers expected =
-      numbers_of(*solver, *position, std::vector<Int3>(bodies), std::vector<double>(bodies), 0);
+  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
+  PetscCall(load_bodies(file, grid, &solver->bodies()));
   if (FieldBlock *memory = solver->pressure_memory()) memory->clear();               // the file may know of fewer
   for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));

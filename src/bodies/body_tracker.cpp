@@ -119,10 +119,10 @@ PetscErrorCode BodyTracker::known(MPI_Comm comm, std::vector<Int3> *references,
   PetscFunctionReturn(0);
 }
 
-void BodyTracker::set_known(std::vector<Int3> references, std::vector<double> first_volumes) {
-  references_ = std::move(references);
-  first_volumes_ = std::move(first_volumes);
-  shared_ = false;
+void BodyTracker::set_known(std::vector<Int3> owned_references, std::vector<double> owned_first_volumes) {
+  references_ = std::move(owned_references);
+  first_volumes_ = std::move(owned_first_volumes);
+  shared_ = true;
 }
 
 }  // namespace eulastic

@@ -69,8 +69,8 @@ public:
   /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
   /// Collective.
   PetscErrorCode known(MPI_Comm comm, std::vector<Int3> *references, std::vector<double> *first_volumes) const;
-  /// The same, of all bodies on every rank.
-  void set_known(std::vector<Int3> references, std::vector<double> first_volumes);
+  /// The same, of the bodies that this rank owns.
+  void set_known(std::vector<Int3> owned_references, std::vector<double> owned_first_volumes);
 
 private:
   void share(const Grid &grid);

@@ -56,6 +56,14 @@ public:
   bool has(const std::string &name) const { return file_.has(name); }
   /// Each rank gets some; none if there are none.
   PetscErrorCode read_records(CheckpointRecords *records);
+  /// As Hdf5File::read_share().
+  template <class T>
+  PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {
+    PetscFunctionBeginUser;
+    PetscCall(require_checksum(name));
+    PetscCall(file_.read_share(name, total, begin, values));
+    PetscFunctionReturn(0);
+  }
   /// Owned points, the high wall included.
   PetscErrorCode read_fields(const Grid &grid, const std::vector<CheckpointField> &fields);
 

@@ -1,4 +1,5 @@
 // Hdf5File: small arrays and attributes.
+#include "base/rank_zero.hpp"
 #include "io/checksum.hpp"
 #include "io/hdf5_file.hpp"
 
@@ -45,9 +46,13 @@ PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<hsize_t
                   "dataset " + name + " would be larger than its file"));
   const auto count = static_cast<std::size_t>(promised);
   values->resize(count);
+  const Hdf5Space space(H5Dget_space(dataset.get()));
+  if (mpi_rank_ > 0) (void)H5Sselect_none(space.get());
   const Hdf5Property transfer = hdf5_collective();
-  const bool read = H5Dread(dataset.get(), hdf5_type<T>(), H5S_ALL, H5S_ALL, transfer.get(), values->data()) >= 0;
+  const bool read =
+      H5Dread(dataset.get(), hdf5_type<T>(), space.get(), space.get(), transfer.get(), values->data()) >= 0;
   PetscCall(check(read, "cannot read dataset " + name));
+  PetscCallMPI(share_bytes(values->data(), count * sizeof(T), comm_));
   PetscCall(verify(name, checksum(values->data(), count, 0)));
   PetscFunctionReturn(0);
 }

@@ -225,4 +225,17 @@ PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbe
   PetscFunctionReturn(0);
 }
 
+template <class T>
+PetscErrorCode Hdf5File::read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {
+  Hdf5Dataset dataset;
+  PetscFunctionBeginUser;
+  PetscCall(open_dataset(name, &dataset));
+  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " is of another scene"));
+  PetscCall(read_values(name, dataset.get(), {1, {total, 1, 1}, {begin, 0, 0}, {values->size(), 1, 1}}, values));
+  PetscFunctionReturn(0);
+}
+
+template PetscErrorCode Hdf5File::read_share(const std::string &, hsize_t, hsize_t, std::vector<double> *);
+template PetscErrorCode Hdf5File::read_share(const std::string &, hsize_t, hsize_t, std::vector<long> *);
+
 }  // namespace eulastic

@@ -54,11 +54,16 @@ public:
   /// Each rank gets an equal share of them.
   PetscErrorCode read_records(const std::string &name, std::size_t numbers, std::vector<double> *values);
 
-  /// Small arrays, the same on every rank; T = double, long or unsigned char (text).
+  /// Small arrays, the same on every rank, written and read by rank 0; T = double, long or unsigned char (text).
   template <class T>
   PetscErrorCode write_array(const std::string &name, const std::vector<hsize_t> &shape, const std::vector<T> &values);
   template <class T>
   PetscErrorCode read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values);
+
+  /// Of an array of `total` values those that are this rank's, as many as there are `values`, from `begin` on; all
+  /// ranks together read all of it.
+  template <class T>
+  PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values);
 
   PetscErrorCode create_group(const std::string &name);
   /// `name` stands for `dataset` of another file, whose path is `file` as seen from the directory of this one.

@@ -1,4 +1,5 @@
 // HDF5 files on 1-4 ranks: what is in the file depends on the global index alone, and damage is an error.
+#include "base/body_range.hpp"
 #include "io/fail_together.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/text_file.hpp"
@@ -117,6 +118,11 @@ TEST(Hdf5, DamageIsAnError) {
     PetscCall(in.open(PETSC_COMM_WORLD, path));
     PetscCall(in.read_field(scene.grid, "q", at_centre, block[0]));
     PetscCall(in.read_array("numbers", &shape, &numbers));
+    EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
+    const BodyRange own = BodyRange::of(3, world_rank(), scene.grid.ranks());
+    std::vector<double> mine(own.size());
+    PetscCall(in.read_share("numbers", 3, own.begin, &mine));
+    EXPECT_EQ(mine, (std::vector<double>{numbers.begin() + own.begin, numbers.begin() + own.end}));
     PetscFunctionReturn(0);
   };
   EXPECT_EQ(error_of(read), "no error");
