@@ -161,7 +161,16 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   std::vector<int> ranks;
   all_.clear();
   for (const SurfaceMarker &marker : *markers) {
+    const Int3 local = local_cell(*grid_, marker);
+    bool inside = true;  // nobody else needs it
+    for (int d = 0; d < grid_->dimension(); ++d)
+      inside = inside && (grid_->processors(d) == 1 || (local[d] >= around && local[d] + around < grid_->owned()[d]));
     std::set<int> places[3], to;
+    if (inside) {
+      ranks.push_back(grid_->rank());
+      all_.push_back(marker);
+      continue;
+    }
     for (int d = 0; d < 3; ++d)
       for (const int away : {-around, 0, around}) {
         if (d >= grid_->dimension() && away != 0) continue;
