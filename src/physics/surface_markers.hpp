@@ -23,11 +23,11 @@ public:
   /// Over dt, by the midpoint rule in a flow that stays. Collective: each goes to the rank that owns its cell, copies
   /// to those nearby.
   PetscErrorCode move(double dt, const FieldBlock &velocity, std::vector<SurfaceMarker> *markers);
-  /// After move(): the strain at the owned nearest cells where markers tell.
   struct Strain {
     std::size_t cell;  ///< position among those of the surface
     std::array<double, 6> B;
   };
+  /// After move(): of the owned nearest cells where markers tell.
   void find_strain(const SurfaceCells &surface, int phase, std::vector<Strain> *strains);
   /// Takes those of a phase nearer to its surface, and out what is far from it. `fields` as SurfaceCells left them.
   void settle(const SurfaceCells &surface, const FieldBlock &fields, int phase,
@@ -46,8 +46,6 @@ private:
   /// By a part of its distance from the surface; whether that is known.
   bool approach(const SurfaceCells &surface, const FieldBlock &fields, double part, SurfaceMarker *marker) const;
   void sort(const SurfaceCells &surface, int phase);
-  template <int Dim>
-  bool strain_at(const SurfaceCells &surface, const SurfaceCells::Cell &cell, double *B) const;
 
   const Grid *grid_;
   std::vector<SurfaceMarker> all_;  ///< since move(): owned ones and those near owned cells
