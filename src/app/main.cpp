@@ -112,6 +112,9 @@ int program(int argc, char **argv) {
   // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
   setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // one rank by itself needs no daemon of Open MPI beside it
+  const auto has = [](const char *name) { return std::getenv(name) != nullptr; };
+  if (!has("OMPI_COMM_WORLD_RANK") && !has("PMIX_RANK") && !has("PMI_RANK"))
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);  // nor a directory, which runs that end meanwhile may remove
   int threads;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads)) return exit_failed;
   const auto environment = on_rank_0([] {

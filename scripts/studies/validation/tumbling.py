@@ -164,7 +164,7 @@ CASES = (
           Measure("D when the material has turned by pi", when(180, gone_round, deformation), {"fast": 25 / 12 * CAPILLARY},
                   "of the rest; what the flow adds, of a sphere: 25/12 Ca", 1 / 3)),
          beside(RIGID), ("strain", "inclination, stiff")),
-    Case("V7", "Red cell, viscosity ratio .3", "red_cell_in_shear", red_cell(.3, 20), fast_at((10,)), (),
+    Case("V7", "Red cell, viscosity ratio .3", "red_cell_in_shear", red_cell(.3, 24), fast_at((10,)), (),
          (motion("ratio .3", 0),), lambda run: (long_axis(run), None), ("strain", "inclination, .3")),
     Case("V7", "Red cell, viscosity ratio 20", "red_cell_in_shear", red_cell(20, 36), fast_at((10,)), (),
          (motion("ratio 20", 1),), lambda run: (long_axis(run), None), ("strain", "inclination, 20")),
