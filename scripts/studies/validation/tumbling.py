@@ -141,9 +141,9 @@ def red_cell(ratio, end):
                          "series_interval": .1 / 6.6e-5}
 
 
-def drop_measure(what, ours, wanted, kept):
+def drop_measure(what, ours, wanted, kept=None):
     return Measure(what, ours, {"fast": .03}, "asked for; leading order of walls and images", wanted, True,
-                   misses={"fast": (kept, "the mixture in cells of the surface yields")})
+                   misses={"fast": (kept, "beyond a ratio of 20 the velocity is late by steps")} if kept else {})
 
 
 def motion(what, expected):
@@ -154,9 +154,9 @@ def motion(what, expected):
 CASES = (
     LONG,
     Case("V7", "Oblate capsule, 50 times as viscous inside", "tumbling_capsule", viscous, fast_at((8,)), (),
-         (drop_measure("strain to half a turn", when(180, turned), of_drop(VISCOUS, 180), .22),
-          drop_measure("D at a quarter turn", when(90, turned, deformation), of_drop(VISCOUS, 90, 0), .05),
-          drop_measure("D at half a turn", when(180, turned, deformation), of_drop(VISCOUS, 180, 0), .04)),
+         (drop_measure("strain to half a turn", when(180, turned), of_drop(VISCOUS, 180), .15),
+          drop_measure("D at a quarter turn", when(90, turned, deformation), of_drop(VISCOUS, 90, 0)),
+          drop_measure("D at half a turn", when(180, turned, deformation), of_drop(VISCOUS, 180, 0))),
          beside(VISCOUS), ("strain", "inclination, viscous")),
     Case("V7", "Oblate capsule, Ca = .05", "tumbling_capsule", stiff, fast_at((8,)), (),
          (Measure("strain to half a turn, stiff", when(180, turned), {"fast": .05},
