@@ -66,7 +66,7 @@ class Unresolved(unittest.TestCase):
         """Cells with both sides less than a cell apart."""
         options = [ROOT / "options/channel_red_cells.opts", "-grid_cells", "20,20,20", "-body_force", "4e-3,0,0",
                    "-series_interval", "75", "-snapshot_interval", "0"]
-        last = ["-time_steps_max", "45"]
+        last = ["-time_steps_max", "72"]
         one, said = self.run_scene(*options, *last)
         self.assertGreater(one["strain_forgotten"], 0)
         self.assertRegex(said, r"\neulastic: warning: t = [^\n]*half of a membrane's area gone[^\n]*\n\Z")
@@ -75,7 +75,7 @@ class Unresolved(unittest.TestCase):
                 other, _ = self.run_scene(*options, *last, "-output_overwrite", **more)
                 for key in "state_hash", "strain_forgotten":
                     self.assertEqual(other[key], one[key])
-        half, _ = self.run_scene(*options, "-time_steps_max", "42", directory="half")
+        half, _ = self.run_scene(*options, "-time_steps_max", "70", directory="half")
         self.assertGreater(half["strain_forgotten"], 0)
         again, _ = self.run_scene(*options, *last, "-restart", self.room / "half", directory="half")
         for key in "state_hash", "strain_forgotten":
