@@ -12,8 +12,8 @@ namespace {
 
 template <int Dim>
 constexpr double radius = Dim == 2 ? 2.5 : 2;  // cells around a point of the surface in which markers tell of it
-constexpr int rows_around = 3;                 // that is, of cells around the cell beside it
-constexpr double round_off = 1e-9;             // of a metric
+constexpr int reach = SurfaceMarkers::reach;
+constexpr double round_off = 1e-9;  // of a metric
 template <int Dim>
 constexpr int fewest = Dim == 2 ? 5 : 8;  // markers: two more than coefficients
 constexpr double same_side = 0.3;         // least cosine between normals
@@ -39,10 +39,10 @@ EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const
   const Real3 &h = from.grid->spacing();
   const Layout &layout = from.grid->layout();
   int count = 0;
-  for (int z = Dim == 3 ? -rows_around : 0; z <= (Dim == 3 ? rows_around : 0); ++z)
-    for (int y = -rows_around; y <= rows_around; ++y) {
+  for (int z = Dim == 3 ? -reach : 0; z <= (Dim == 3 ? reach : 0); ++z)
+    for (int y = -reach; y <= reach; ++y) {
       const std::ptrdiff_t row = cell.at + y * layout.sy + z * layout.sz;
-      for (int x = -rows_around; x <= rows_around; ++x) {
+      for (int x = -reach; x <= reach; ++x) {
         const int first = from.begin[row + x], last = from.begin[row + x + 1];
         if (first == last) continue;
         const Real3 &normal = from.surface->all()[from.surface->number(row + x)].normal;
@@ -168,7 +168,7 @@ void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
           Int3 local;
           bool here = true;
           for (int d = 0; d < 3; ++d) {
-            const int ghosts = d < grid_->dimension() ? rows_around : 0;
+            const int ghosts = d < grid_->dimension() ? reach : 0;
             local[d] = all_[m].cell[d] - layout.begin[d] + image[d] * grid_->cells()[d];
             here = here && local[d] >= -ghosts && local[d] < layout.cells[d] + ghosts;
           }

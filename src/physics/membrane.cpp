@@ -198,7 +198,6 @@ double MembraneTransport::least_area_squared(const Phase &phase) {
 // does; within a cell it is that of the grid, whose force and surface fit each other.
 void MembraneTransport::recall(double dt, const FieldBlock &velocity,
                                const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase) {
-  constexpr double recalled = 1;  // of the difference, per cell passed
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
@@ -207,7 +206,7 @@ void MembraneTransport::recall(double dt, const FieldBlock &velocity,
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
                   grid_->spacing()[d];
-      const double share = std::min(recalled * passed, 1.0);
+      const double share = std::min(passed, 1.0);
       for (int f = 0; f < phase->tensor.count(); ++f) {
         double &B = phase->tensor[f].origin[cell.at];
         B = kernels::fma(share, strain.B[f] - B, B);
@@ -230,7 +229,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
   unresolved_ = 0;
   NetForce net(*grid_, memory && drives_all(*phases));
   if (memory) begin_force();
-  if (memory) PetscCall(markers_.move(dt, velocity, memory->markers));
+  if (memory && marks(*phases)) PetscCall(markers_.move(dt, velocity, memory->markers));
   for (std::size_t p = 0; p < phases->size(); ++p) {
     Phase &phase = (*phases)[p];
     if (!phase.material.is_membrane()) continue;
@@ -273,6 +272,7 @@ PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, 
 PetscErrorCode MembraneTransport::follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers) {
   std::vector<WantedGhosts> labels;
   PetscFunctionBeginUser;
+  if (!marks(*phases)) PetscFunctionReturn(0);
   for (Phase &phase : *phases)
     if (phase.material.is_membrane() && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
   if (labels.empty()) PetscFunctionReturn(0);

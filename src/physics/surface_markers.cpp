@@ -14,7 +14,6 @@ namespace {
 
 constexpr double settling = 0.2;     // of the distance from the surface, in every step
 constexpr double least_label = 0.5;  // of a cell that has one
-constexpr int around = 3;            // cells: those whose markers a cell's strain comes from, at most
 
 int in_box(const Grid &grid, int d, int index) {
   const int n = grid.cells()[d];
@@ -164,7 +163,7 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
     const Int3 local = local_cell(*grid_, marker);
     bool inside = true;  // nobody else needs it
     for (int d = 0; d < grid_->dimension(); ++d)
-      inside = inside && (grid_->processors(d) == 1 || (local[d] >= around && local[d] + around < grid_->owned()[d]));
+      inside = inside && (grid_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < grid_->owned()[d]));
     std::set<int> places[3], to;
     if (inside) {
       ranks.push_back(grid_->rank());
@@ -172,7 +171,7 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
       continue;
     }
     for (int d = 0; d < 3; ++d)
-      for (const int away : {-around, 0, around}) {
+      for (const int away : {-reach, 0, reach}) {
         if (d >= grid_->dimension() && away != 0) continue;
         places[d].insert(grid_->owner_along(d, in_box(*grid_, d, marker.cell[d] + away)));
       }
@@ -205,13 +204,13 @@ void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<Surfac
   const auto lost = [&](SurfaceMarker &marker) {
     if (marker.label == 0) return false;
     const Int3 cell = local_cell(*grid_, marker);
-    for (const int reach : {0, 1})  // its own cell as a rule
+    for (const int beside : {0, 1})  // its own cell as a rule
       for (std::size_t p = 0; p < phases.size(); ++p) {
         if (!phases[p].material.is_membrane()) continue;
         const double *label = phases[p].label[0].origin + offset_of(layout, cell);
-        for (int k = -reach * deep; k <= reach * deep; ++k)
-          for (int j = -reach; j <= reach; ++j)
-            for (int i = -reach; i <= reach; ++i)
+        for (int k = -beside * deep; k <= beside * deep; ++k)
+          for (int j = -beside; j <= beside; ++j)
+            for (int i = -beside; i <= beside; ++i)
               if (std::fabs(label[i + j * layout.sy + k * layout.sz] - marker.label) < least_label) {
                 marker.phase = static_cast<int>(p);
                 return false;

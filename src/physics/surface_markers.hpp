@@ -14,6 +14,8 @@ class SurfaceMarkers {
 public:
   /// Ghosts of the velocity that move() reads, as long as nothing moves further than a cell.
   static constexpr int velocity_ghosts = 4;
+  /// Cells along each direction: those whose markers a cell's strain comes from, at most.
+  static constexpr int reach = 3;
   explicit SurfaceMarkers(const Grid &grid) : grid_(&grid) {}
 
   /// One more at the surface beside each of the owned cells nearest to it, of the body `label`, or of all: the strain
