@@ -8,8 +8,8 @@
 namespace eulastic {
 
 // Of all bodies, those of other ranks too.
-PetscErrorCode Outputs::measure_drift() {
-  Measured &m = measured_;
+PetscErrorCode Outputs::measure_drift(Measured *measured) {
+  Measured &m = *measured;
   struct {
     double drift = 0;
     int label = 0;
@@ -48,7 +48,7 @@ PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
   PetscFunctionReturn(0);
 }
 
-std::vector<BodyRecord> Outputs::records(const std::vector<BodyMeasure> &bodies,
+std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                          const std::vector<SurfaceMeasure> &surfaces) const {
   std::vector<BodyRecord> records;
   // Loads are those of all bodies that bear some, in their order.
@@ -72,12 +72,12 @@ std::vector<BodyRecord> Outputs::records(const std::vector<BodyMeasure> &bodies,
     record.elastic_energy = body.elastic_energy;
     record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
     record.rest_deformation = body.rest_deformation;
-    if (config_.species[body.species].law == Law::rigid && rigid < measured_.loads.size()) {
-      record.force = measured_.loads[rigid].force;
-      record.torque = measured_.loads[rigid].torque;
-    } else if (elastic < measured_.surface_loads.size() && measured_.surface_loads[elastic].label == body.label) {
-      record.force = measured_.surface_loads[elastic].force;
-      record.torque = measured_.surface_loads[elastic].torque;
+    if (config_.species[body.species].law == Law::rigid && rigid < measured.loads.size()) {
+      record.force = measured.loads[rigid].force;
+      record.torque = measured.loads[rigid].torque;
+    } else if (elastic < measured.surface_loads.size() && measured.surface_loads[elastic].label == body.label) {
+      record.force = measured.surface_loads[elastic].force;
+      record.torque = measured.surface_loads[elastic].torque;
     }
     if (b < surfaces.size()) {
       const SurfaceMeasure &surface = surfaces[b];
@@ -101,7 +101,7 @@ PetscErrorCode Outputs::list_bodies(Summary *summary) const {
   const int all = solver_->bodies().bodies();
   PetscCall(gather_bodies(comm, all, Summary::most_bodies, measured_.bodies, &bodies));
   if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, measured_.surfaces, &surfaces));
-  summary->bodies = records(bodies, surfaces);
+  summary->bodies = records(measured_, bodies, surfaces);
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 #include "app/outputs.hpp"
 
+#include "app/between.hpp"
 #include "app/series_columns.hpp"
 #include "base/events.hpp"
 #include "physics/limits.hpp"
@@ -30,7 +31,8 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscCall(series_.open(comm, directory + "/series.csv",
                          series_columns(crossed_sides(config_.sides, *grid_), vessel_flows(config_, 0, {}, {})),
                          same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time, position.profile_time));
+  PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time < 0 ? -1 : solver_->state().time,
+                          position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
@@ -56,9 +58,25 @@ void Outputs::moved_to(const std::string &directory) {
 
 PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
-  const State &state = solver_->state();
   Measured &m = measured_;
-  if (m.time == state.time) PetscFunctionReturn(0);
+  if (m.time == solver_->state().time) PetscFunctionReturn(0);
+  PetscCall(look(&m));
+  if (solver_->bodies().first_volumes().empty()) {
+    std::vector<double> volumes;
+    for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
+    solver_->bodies().set_first_volumes(std::move(volumes));
+  }
+  PetscCall(measure_drift(&m));
+  if (solver_->state().step > 0)
+    mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
+  PetscFunctionReturn(0);
+}
+
+// All but volume drifts, of phases as Solver::phases_now() has them.
+PetscErrorCode Outputs::look(Measured *measured) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  Measured &m = *measured;
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver_->phases_now(&phases));
   const Fluid &fluid = config_.fluid;
@@ -70,51 +88,53 @@ PetscErrorCode Outputs::measure() {
       {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
-  if (solver_->bodies().first_volumes().empty()) {
-    std::vector<double> volumes;
-    for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
-    solver_->bodies().set_first_volumes(std::move(volumes));
-  }
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   if (solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
   PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
-  PetscCall(measure_drift());
   // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
   constexpr double noise = 1e-5;  // of U/h
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
   m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
-  if (state.step > 0) mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
   m.time = state.time;
   PetscFunctionReturn(0);
 }
 
-// Of a state that measure() has seen.
-PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
+PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   const Fluid &fluid = config_.fluid;
+  EnergyState &energy = row->energy;
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver_->phases_now(&phases));
-  energy->kinetic = measured_.flow.kinetic_energy;
-  energy->elastic = measured_.flow.elastic_energy;
-  energy->surface = measured_.surface.energy;
-  energy->surface_power = measured_.surface.power;
-  energy->dissipation = measured_.flow.viscous_dissipation;
+  energy.kinetic = measured.flow.kinetic_energy;
+  energy.elastic = measured.flow.elastic_energy;
+  energy.surface = measured.surface.energy;
+  energy.surface_power = measured.surface.power;
+  energy.dissipation = measured.flow.viscous_dissipation;
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
                               &config_.sides, state.time,      solver_->evolved_fraction(),
                               viscosity};
-  PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
+  PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy.rates));
   double power = 0;
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
-  energy->rates.force_power += power;
+  energy.rates.force_power += power;
   PetscCall(solver_->stretch_power(&power));
-  energy->rates.force_power += power;
-  for (const RigidLoad &load : measured_.loads) energy->rates.wall_power += load.power;
+  energy.rates.force_power += power;
+  for (const RigidLoad &load : measured.loads) energy.rates.wall_power += load.power;
   PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
-                               &sides_));
-  for (const SideFlow &side : sides_) energy->rates.side_power += side.power;
+                               &row->sides));
+  for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
+  row->dt = state.dt;
+  row->step = double(state.step);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::look(Row *row) {
+  PetscFunctionBeginUser;
+  PetscCall(look(&row->measured));
+  PetscCall(look_at_energy(row->measured, row));
   PetscFunctionReturn(0);
 }
 
@@ -138,6 +158,13 @@ PetscErrorCode Outputs::write_due(bool last) {
   };
   if (snapshots_ && config_.output.snapshot_exact && !last)
     PetscCall(write_passed_snapshots(snapshot_due_.between(state.time - state.dt, state.time)));
+  if (seen_) {
+    StageScope stage(Stage::output);
+    VerbScope scope(Verb::write);
+    PetscCall(write_row());
+  }
+  if (last && waits_) series_due_.last_time = series_time_before_;  // it is written now
+  const double series_time_before = series_due_.last_time;
   const bool series = now(&series_due_), snapshot = now(&snapshot_due_);
   const bool samples = samples_.due(state.time, series, last);
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);
@@ -148,50 +175,104 @@ PetscErrorCode Outputs::write_due(bool last) {
     PetscCall(solver_->phases_now(&phases));
     PetscCall(samples_.write(state.time, series, last, {state.velocity, state.pressure, *phases}));
   }
-  if (series) {
-    PetscCall(measure());
-    EnergyState energy;
-    PetscCall(measure_energy(&energy));
-    energy_.advance(state.time, energy);
-    const FlowMeasures &flow = measured_.flow;
-    double solid = 0;
-    for (const double volume : flow.phase_volume) solid += volume;
-    std::vector<double> row{state.time,
-                            double(state.step),
-                            state.dt,
-                            flow.kinetic_energy,
-                            flow.elastic_energy,
-                            flow.viscous_dissipation,
-                            flow.bulk_velocity[0],
-                            flow.bulk_velocity[1],
-                            flow.bulk_velocity[2],
-                            flow.speed_max,
-                            flow.divergence_rms,
-                            flow.divergence_max,
-                            solid,
-                            measured_.volume_drift,
-                            energy.rates.force_power,
-                            energy.rates.wall_power,
-                            energy.rates.elastic_power,
-                            energy_.lost(),
-                            energy_.lost_elastic(),
-                            energy_.lost_extended(),
-                            energy.surface,
-                            energy.surface_power};
-    if (!sides_.empty()) row.push_back(energy.rates.side_power);
-    for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
-    for (const VesselFlow &vessel : vessel_flows(config_, state.time, flow.bulk_velocity, sides_))
-      row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
-    PetscCall(series_.write(row));
-    if (bodies_file_) {
-      BodySpecies all{{}, solver_->bodies().species()};
-      for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
-      PetscCall(bodies_file_->add(state.time, all, records(measured_.bodies, measured_.surfaces)));
-      ++bodies_rows_;
-    }
+  if (series && (last || !solver_->is_behind())) {
+    PetscCall(write_row_now());
+  } else if (series) {
+    row_ = {};
+    PetscCall(solver_->look_behind([this] { return look(&row_); }));
+    waits_ = true;
+    series_time_before_ = series_time_before;
   }
   if (snapshot) PetscCall(snapshots_->write(config_, solver_));
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::see_middle(double dt) {
+  PetscFunctionBeginUser;
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  Row next;
+  PetscCall(look(&next));
+  const double share = row_.dt / (row_.dt + dt);
+  go_between(next.measured, share, &row_.measured);
+  go_between(next.energy, share, &row_.energy);
+  PetscCall(measure_drift(&row_.measured));
+  mach_max_ = std::max(mach_max_, row_.measured.mach);
+  waits_ = false;
+  seen_ = true;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_waiting() {
+  PetscFunctionBeginUser;
+  if (!waits_) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  PetscCall(write_row_now());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row_now() {
+  PetscFunctionBeginUser;
+  Row row;
+  PetscCall(measure());
+  row.measured = measured_;
+  PetscCall(look_at_energy(measured_, &row));
+  row_ = std::move(row);
+  PetscCall(write_row());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row() {
+  PetscFunctionBeginUser;
+  waits_ = seen_ = false;
+  is_new_ = true;
+  const Measured &measured = row_.measured;
+  const FlowMeasures &flow = measured.flow;
+  const EnergyRates &rates = row_.energy.rates;
+  energy_.advance(measured.time, row_.energy);
+  double solid = 0;
+  for (const double volume : flow.phase_volume) solid += volume;
+  std::vector<double> row{measured.time,
+                          row_.step,
+                          row_.dt,
+                          flow.kinetic_energy,
+                          flow.elastic_energy,
+                          flow.viscous_dissipation,
+                          flow.bulk_velocity[0],
+                          flow.bulk_velocity[1],
+                          flow.bulk_velocity[2],
+                          flow.speed_max,
+                          flow.divergence_rms,
+                          flow.divergence_max,
+                          solid,
+                          measured.volume_drift,
+                          rates.force_power,
+                          rates.wall_power,
+                          rates.elastic_power,
+                          energy_.lost(),
+                          energy_.lost_elastic(),
+                          energy_.lost_extended(),
+                          row_.energy.surface,
+                          row_.energy.surface_power};
+  if (!row_.sides.empty()) row.push_back(rates.side_power);
+  for (const SideFlow &side : row_.sides) row.insert(row.end(), {side.flow_rate, side.pressure});
+  for (const VesselFlow &vessel : vessel_flows(config_, measured.time, flow.bulk_velocity, row_.sides))
+    row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
+  PetscCall(series_.write(row));
+  if (bodies_file_) {
+    BodySpecies all{{}, solver_->bodies().species()};
+    for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
+    PetscCall(bodies_file_->add(measured.time, all, records(measured, measured.bodies, measured.surfaces)));
+    ++bodies_rows_;
+  }
+  PetscFunctionReturn(0);
+}
+
+const Measured *Outputs::take_row() {
+  const bool fresh = is_new_;
+  is_new_ = false;
+  return fresh ? &row_.measured : nullptr;
 }
 
 PetscErrorCode Outputs::sync(OutputsPosition *position) {
@@ -202,7 +283,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   position->series_rows = series_.rows();
   position->bodies_rows = bodies_rows_;
   position->snapshots = snapshots_ ? snapshots_->count() : snapshots_before_;
-  position->series_time = series_due_.last_time;
+  position->series_time = waits_ ? series_time_before_ : series_due_.last_time;
   position->snapshot_time = snapshot_due_.last_time;
   position->profile_time = samples_.profile_time();
   position->energy = energy_;
@@ -238,15 +319,16 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.volume_drift = measured_.volume_drift;
   summary.kinetic_energy = measured_.flow.kinetic_energy;
   summary.elastic_energy = measured_.flow.elastic_energy;
-  EnergyState energy;
-  PetscCall(measure_energy(&energy));
+  Row row;
+  PetscCall(look_at_energy(measured_, &row));
+  const EnergyState &energy = row.energy;
   EnergyBudget budget = energy_;  // only lines of series.csv advance that of the run
   budget.advance(state.time, energy);
   summary.viscous_dissipation = energy.dissipation;
   summary.force_power = energy.rates.force_power;
   summary.wall_power = energy.rates.wall_power;
   summary.side_power = energy.rates.side_power;
-  for (const SideFlow &side : sides_) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
+  for (const SideFlow &side : row.sides) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
   summary.elastic_power = energy.rates.elastic_power;
   summary.energy_supplied = budget.supplied();
   summary.energy_dissipated = budget.dissipated();

@@ -37,11 +37,20 @@ public:
   void moved_to(const std::string &directory);
   /// Brings all rows to the disk and says how far they are.
   PetscErrorCode sync(OutputsPosition *position);
-  /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time.
+  /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time. A
+  /// row of series.csv waits where phases are behind, but for the last one.
   PetscErrorCode write_due(bool last);
+  bool row_waits() const { return waits_; }
+  /// In the middle of the next step, of dt: the row that waits becomes what lies between that and the last middle; the
+  /// next write_due() writes it.
+  PetscErrorCode see_middle(double dt);
+  /// Writes the row that waits if there is no next step.
+  PetscErrorCode write_waiting();
+  /// The last row, once; null if there is no new one.
+  const Measured *take_row();
   /// Measures the state, if that has not been done.
   PetscErrorCode measure();
-  /// As of the last measure(), which every row of series.csv makes.
+  /// As of the last measure().
   const Measured &measured() const { return measured_; }
   /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing. Collective, after measure().
   PetscErrorCode unresolved_bodies(std::string *line) const;
@@ -51,14 +60,25 @@ public:
 private:
   int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
   bool resolved(double volume) const { return volume >= few_cells() * grid_->cell_volume(); }
-  /// Of these bodies, with what else is measured of them.
-  std::vector<BodyRecord> records(const std::vector<BodyMeasure> &bodies,
+  /// Of these bodies, with the loads that were measured.
+  std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                   const std::vector<SurfaceMeasure> &surfaces) const;
   PetscErrorCode list_bodies(Summary *summary) const;
-  PetscErrorCode measure_drift();
+  PetscErrorCode measure_drift(Measured *measured);
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
-  PetscErrorCode measure_energy(EnergyState *energy);
+  /// A state and what series.csv has of it beside.
+  struct Row {
+    double dt = 0, step = 0;
+    Measured measured;
+    EnergyState energy;
+    std::vector<SideFlow> sides;
+  };
+  PetscErrorCode look(Measured *measured);
+  PetscErrorCode look_at_energy(const Measured &measured, Row *row);
+  PetscErrorCode look(Row *row);
+  PetscErrorCode write_row();
+  PetscErrorCode write_row_now();
 
   Config config_;
   bool membranes_ = false;
@@ -71,7 +91,9 @@ private:
   std::unique_ptr<SnapshotOutput> snapshots_;
   Due series_due_, snapshot_due_;
   Measured measured_;
-  std::vector<SideFlow> sides_;  ///< as of the last measure_energy()
+  Row row_;  ///< the last one, or the one that waits, as it was in the middle of the last step
+  bool waits_ = false, seen_ = false, is_new_ = false;
+  double series_time_before_ = -1;  ///< of the row before the one that waits
   EnergyBudget energy_;
   long bodies_rows_ = 0, snapshots_before_ = 0;
   double mach_max_ = 0;

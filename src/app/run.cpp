@@ -90,8 +90,7 @@ PetscErrorCode check_state(Run *run) {
 // What a row of series.csv has shown.
 PetscErrorCode check_measured(Run *run) {
   PetscFunctionBeginUser;
-  const Measured &measured = run->outputs.measured();
-  if (measured.time == run->solver.state().time) PetscCall(run->guards.check(run->solver, measured, &run->stop));
+  if (const Measured *row = run->outputs.take_row()) PetscCall(run->guards.check(run->solver, *row, &run->stop));
   PetscFunctionReturn(0);
 }
 
@@ -163,13 +162,23 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     if (control->ends()) PetscCall(run->checkpoints.before_end(run->position, &run->stop));
     if (run->stop) break;
     step_begin = MPI_Wtime();
+    double looked = 0;
+    Solver::Look look;
+    if (run->outputs.row_waits())
+      look = [&] {
+        const double begin = MPI_Wtime();
+        PetscFunctionBeginUser;
+        PetscCall(run->outputs.see_middle(dt));
+        looked = MPI_Wtime() - begin;
+        PetscFunctionReturn(0);
+      };
     {
       StageScope stage(Stage::step);
       PetscCall(control->forget_unresolved(&solver, &warning));
-      PetscCall(solver.step(dt));
+      PetscCall(solver.step(dt, look));
     }
     print_warning(solver.grid().comm(), warning);
-    run->position.wall_seconds += MPI_Wtime() - step_begin;
+    run->position.wall_seconds += MPI_Wtime() - step_begin - looked;
     run->position.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
     PetscCall(accept(run));
     if (run->stop) break;
@@ -186,6 +195,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   if (!run->stop && whole) PetscCall(check_state(run));
   if (run->stop) run->exit_reason = run->stop.reason;
   if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
+  PetscCall(run->outputs.write_waiting());
   progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   PetscFunctionReturn(0);
 }
@@ -246,7 +256,8 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
     PetscCall(time_thrown_away(grid.comm(), path, run->solver.state().time, &thrown_away));
   else
     PetscCall(open_outputs(run));
-  if (source.empty()) PetscCall(run->outputs.write_due(false));
+  PetscCall(run->outputs.write_due(false));  // after a restart: the row that waited
+  (void)run->outputs.take_row();
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
   if (source.empty()) PetscCall(print_warnings(config, *run));

@@ -64,7 +64,7 @@ FieldBlock Solver::idle_tensor(int components) {
 PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   PetscFunctionBeginUser;
   *phases = &now_.phases;
-  if (!spec_.staggered() || now_.step == 0) PetscFunctionReturn(0);
+  if (!is_behind() || as_they_are_) PetscFunctionReturn(0);
   *phases = &phases_now_;
   if (phases_now_step_ == now_.step) PetscFunctionReturn(0);
   phases_now_.resize(now_.phases.size());
@@ -82,7 +82,44 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look) {
+PetscErrorCode Solver::look_behind(const Look &look) {
+  PetscFunctionBeginUser;
+  // Labels, and rigid bodies that travel, follow on a schedule: for who looks they are brought up in copies.
+  struct Kept {
+    FieldBlock fraction, label;
+    OccupiedRows rows;
+  };
+  std::vector<Kept> kept(now_.phases.size());
+  const auto swap = [&] {
+    for (std::size_t p = 0; p < kept.size(); ++p) {
+      Phase &phase = now_.phases[p];
+      if (kept[p].label) phase.label.swap(kept[p].label);
+      if (!kept[p].fraction) continue;
+      phase.fraction.swap(kept[p].fraction);
+      std::swap(phase.rows, kept[p].rows);
+    }
+    as_they_are_ = !as_they_are_;
+  };
+  for (std::size_t p = 0; p < kept.size(); ++p) {
+    const Phase &phase = now_.phases[p];
+    if (phase.label) kept[p].label.copy_from(phase.label);
+    if (!rigid_ || !rigid_->travels(phase)) continue;
+    kept[p].fraction.copy_from(phase.fraction);
+    kept[p].rows = phase.rows;
+  }
+  swap();
+  struct Restore {
+    const decltype(swap) &undo;
+    ~Restore() { undo(); }
+  } const restore{swap};
+  PetscCall(fill_rigid(now_.time, &now_.phases));
+  for (Phase &phase : now_.phases)
+    if (phase.label) PetscCall(carry_labels(*grid_, *exchange_, &phase));
+  PetscCall(look());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::look_back(const std::vector<double> &times, const Look &look) {
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
   FieldBlock begin, end;

@@ -198,10 +198,11 @@ std::size_t Solver::bytes() const {
   return sum;
 }
 
-PetscErrorCode Solver::step(double dt) {
+PetscErrorCode Solver::step(double dt, const Look &in_middle) {
   PetscFunctionBeginUser;
-  PetscCall(move_rigid(now_.time + dt, dt));
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
+  if (in_middle) PetscCall(look_behind(in_middle));
+  PetscCall(move_rigid(now_.time + dt, dt));
   if (now_.pressure_before) expect_pressure(dt);
   PetscCall(predict(dt));  // (7)
   if (feeders_) {

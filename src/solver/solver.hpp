@@ -82,8 +82,15 @@ public:
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
-  /// Advances by dt.
-  PetscErrorCode step(double dt);
+  using Look = std::function<PetscErrorCode()>;
+  /// Advances by dt. `in_middle` is called with the velocity of the start and, with the staggered integrator, phases of
+  /// the middle; weighed by the lengths of this step and the last, what it sees and what look_behind() has seen give
+  /// what belongs to the time of that velocity, to second order.
+  PetscErrorCode step(double dt, const Look &in_middle = {});
+  /// Calls look() with phases_now() half a step behind, as they are; state and time are not touched. Only where
+  /// is_behind().
+  PetscErrorCode look_behind(const Look &look);
+  bool is_behind() const { return spec_.staggered() && now_.step > 0; }
 
   /// The phases at the time of the velocity. With the staggered integrator they live half a step behind: a copy is
   /// brought up, the state is not touched. Valid until the next step.
@@ -91,7 +98,7 @@ public:
   /// Calls look() for each of `times` within the last step, with velocity and phases of that time, to second order;
   /// pressure is that of the step. The state is then what it was. Only with the staggered integrator, after step() and
   /// before phases_now().
-  PetscErrorCode look_back(const std::vector<double> &times, const std::function<PetscErrorCode()> &look);
+  PetscErrorCode look_back(const std::vector<double> &times, const Look &look);
   /// Least phi at a centre where B of each phase is evolved.
   std::vector<double> evolved_fraction() const;
   /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near
@@ -190,6 +197,7 @@ private:
   std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   double looks_back_ = 0;                ///< before the end of the step
+  bool as_they_are_ = false;             ///< phases_now(), see look_behind()
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart
 };
 

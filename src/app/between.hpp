@@ -1,0 +1,13 @@
+// Measures at a time between two at which they are known.
+#pragma once
+
+#include "app/guards.hpp"
+#include "diagnostics/energy_budget.hpp"
+
+namespace eulastic {
+
+/// `measured` of a time goes `share` of the way to `other`, of a later one, of the same bodies. Volume drifts are left.
+void go_between(const Measured &other, double share, Measured *measured);
+void go_between(const EnergyState &other, double share, EnergyState *energy);
+
+}  // namespace eulastic
