@@ -72,7 +72,7 @@ PetscErrorCode Outputs::measure() {
   PetscFunctionReturn(0);
 }
 
-// All but volume drifts, of phases as Solver::phases_now() has them.
+// All but volume drifts, of phases as Solver::phases_now() has them; `measured`: of another time, or of this velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
@@ -83,9 +83,11 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const Real3 &f = fluid.body_force.force;
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
-  PetscCall(measure_flow(
-      *grid_, state.velocity, *phases,
-      {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
+  if (m.time != state.time || viscosity)  // of this velocity they are known
+    PetscCall(measure_flow(
+        *grid_, state.velocity,
+        {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
+  PetscCall(measure_phases(*grid_, *phases, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
@@ -103,7 +105,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   const Fluid &fluid = config_.fluid;
-  EnergyState &energy = row->energy;
+  EnergyState &energy = row->energy = {};
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver_->phases_now(&phases));
   energy.kinetic = measured.flow.kinetic_energy;
@@ -191,7 +193,7 @@ PetscErrorCode Outputs::see_middle(double dt) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
-  Row next;
+  Row next = row_;
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
   go_between(next.measured, share, &row_.measured);

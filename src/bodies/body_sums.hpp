@@ -9,7 +9,7 @@
 
 namespace eulastic {
 
-/// `per_body` sums for each of `bodies` bodies. Terms are rounded to 2^-48 and may reach 2^30; sums may reach 2^54.
+/// `per_body` sums for each of `bodies` bodies. Terms are rounded to 2^-48 and may reach 2^40; sums may reach 2^54.
 class BodySums {
 public:
   BodySums(std::size_t bodies, int per_body) : per_body_(per_body), sums_(bodies * per_body) {}
@@ -24,7 +24,7 @@ public:
 
 private:
   static __int128 fixed(double term) noexcept {
-    if (!(std::abs(term) <= 0x1p30)) term = 0x1p30;  // a run that has gone wrong: others say so, here nothing overflows
+    if (!(std::abs(term) <= 0x1p40)) term = 0x1p40;  // a run that has gone wrong: others say so, here nothing overflows
     const double scaled = term * 0x1p48;
     // Above 2^53 a double is an integer already.
     return std::abs(scaled) < 0x1p53 ? static_cast<__int128>(std::llrint(scaled)) : static_cast<__int128>(scaled);

@@ -92,16 +92,29 @@ OpenCells open_cells(const Grid &grid, const RowPart &part, ConstView phi, View 
   return cells;
 }
 
-}  // namespace
+// Those alone that have none.
+OpenCells new_cells(const Grid &grid, const RowPart &part, const OccupiedRows &rows, ConstView phi, View label) {
+  OpenCells cells;
+  for (const Segment &whole : part.rows(grid)) {
+    const Segment row = rows.within(whole);
+    const double *fraction = phi.row(row.j, row.k), *own = label.row(row.j, row.k);
+    for (int i = row.i_begin; i < row.i_end; ++i)
+      if (own[i] == 0 && fraction[i] > label_threshold) cells.open.push_back({{i, row.j, row.k}, 0});
+  }
+  return cells;
+}
 
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
+PetscErrorCode carry(const Grid &grid, GhostExchange &exchange, bool new_alone, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   PetscCall(exchange.update(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
   std::vector<OpenCells> cells(row_parts(grid));
-  in_row_parts(grid, [&](const RowPart &part) { cells[part.number] = open_cells(grid, part, phi, label); });
+  in_row_parts(grid, [&](const RowPart &part) {
+    cells[part.number] =
+        new_alone ? new_cells(grid, part, phase->rows, phi, label) : open_cells(grid, part, phi, label);
+  });
   const Reach reach(grid);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1, &phase->rows));
@@ -122,6 +135,16 @@ PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *ph
     for (const Int3 &c : part.emptied) label(c[0], c[1], c[2]) = 0;
   }
   PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
+  return carry(grid, exchange, false, phase);
+}
+
+PetscErrorCode label_new_cells(const Grid &grid, GhostExchange &exchange, Phase *phase) {
+  return carry(grid, exchange, true, phase);
 }
 
 }  // namespace eulastic

@@ -16,5 +16,7 @@ inline constexpr double label_threshold = 1e-12;  ///< a cell with less phi has 
 /// cell takes the label of a face neighbour before that of an edge or corner neighbour, then of the one with the
 /// largest phi, then the smallest label; beyond four layers it keeps its own, if it has one.
 PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase);
+/// The same for cells alone that have no label yet, which the surface has reached since.
+PetscErrorCode label_new_cells(const Grid &grid, GhostExchange &exchange, Phase *phase);
 
 }  // namespace eulastic

@@ -1,12 +1,11 @@
 #include "bodies/measures.hpp"
 
 #include "base/events.hpp"
+#include "bodies/body_runs.hpp"
 #include "bodies/body_sums.hpp"
-#include "bodies/unwrap.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "grid/threads.hpp"
-#include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,44 +18,19 @@ constexpr double degrees = 180 / 3.14159265358979323846;
 constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13, full_cells = 14, mean_tensor = 15;
 constexpr int all_sums = 21, position_sums = 4;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
-constexpr double full_cell = 0.999;
 
-// Calls visit(phase, slot of the body, phi, i, j, k) for every cell of a part with a label.
-template <class Visit>
-void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
-                   Visit &&visit) {
-  for (const Phase &phase : phases) {
-    const ConstView fraction = phase.fraction[0], label = phase.label[0];
-    for (const Segment &whole : part.rows(grid)) {
-      const Segment row = phase.rows.within(whole, label);
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const int slot = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
-        if (slot >= 0) visit(phase, slot, fraction(i, row.j, row.k), i, row.j, row.k);
-      }
-    }
-  }
+double largest_of(const double *values, int n, double so_far) {
+  for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
+  return so_far;
 }
 
-// Calls visit(slot of the body, phi W, tr B or 0 where phi < 1/2) for every cell of a part with a label.
-template <class Visit>
-void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
-                     const RowEnergy &energy, Visit &&visit) {
-  std::vector<double> density(grid.owned()[0]);
-  for (const Phase &phase : phases) {
-    const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor[0], yy = phase.tensor[1],
-                    zz = phase.tensor[grid.dimension() == 3 ? 2 : 0];
-    for (const Segment &whole : part.rows(grid)) {
-      const Segment row = phase.rows.within(whole, label);
-      energy(grid, phase, row, density.data());
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const int slot = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
-        if (slot < 0) continue;
-        const double out_of_plane = grid.dimension() == 3 ? zz(i, row.j, row.k) : 1;
-        const double trace = xx(i, row.j, row.k) + yy(i, row.j, row.k) + out_of_plane;
-        visit(slot, density[i], fraction(i, row.j, row.k) >= 0.5 ? trace : 0);
-      }
-    }
-  }
+// The largest tr B where phi >= 1/2.
+double largest_trace(const Run &run, int dimension, double so_far) {
+  const double *phi = run.of(run.phase.fraction, 0), *xx = run.of(run.phase.tensor, 0),
+               *yy = run.of(run.phase.tensor, 1), *zz = dimension == 3 ? run.of(run.phase.tensor, 2) : nullptr;
+  for (int i = 0; i < run.size(); ++i)
+    if (phi[i] >= 0.5) so_far = std::max(so_far, xx[i] + yy[i] + (zz ? zz[i] : 1));
+  return so_far;
 }
 
 // Sums of owned bodies, of what add(part, sums) adds in every part of the owned rows to those that are here.
@@ -192,11 +166,15 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
   PetscCall(connect(grid, phases, {}, &owners, &references));
   BodySums sums(references.size(), position_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, owners, [&](const Phase &, int b, double phi, int i, int j, int k) {
-      const Real3 x = offset(grid, references[b], {i, j, k});
-      some.add(b, 0, phi);
-      for (int d = 0; d < grid.dimension(); ++d) some.add(b, first_moment + d, phi * x[d]);
-    });
+    for_each_run(
+        grid, part, phases, owners, [](const Phase &, const Segment &) {},
+        [&](const Run &run) {
+          const Real3 x = offset(grid, references[run.body], {run.begin, run.j, run.k});
+          const RunSums of_run = sum_positions(grid, run, references[run.body]);
+          some.add(run.body, 0, of_run.fraction);
+          some.add(run.body, first_moment, of_run.first_moment);
+          for (int d = 1; d < 3; ++d) some.add(run.body, first_moment + d, of_run.fraction * x[d]);
+        });
   };
   PetscCall(sum_bodies(grid, owners, add, &sums));
   for (int b = 0; b < owners.owned().size(); ++b)
@@ -212,26 +190,31 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
                                     const RowEnergy &energy, std::vector<BodyMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dimension = grid.dimension();
-  const auto centred = [&](int d, int i, int j, int k) {
-    const double *face = &velocity[d](i, j, k);
-    return (face[0] + face[velocity[d].stride(d)]) / 2;
-  };
+  const int dimension = grid.dimension(), parts = row_parts(grid);
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(grid, phases, {}, &owners, &references));
-  // Speed and energy density of all, tr B of every body.
-  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0));
-  std::vector<std::vector<double>> traces(found.size(), std::vector<double>(references.size(), 0.0));
+  // Speed and energy density of all, tr B of every body, and energy densities along the pieces of rows.
+  std::vector<std::vector<double>> found(parts, std::vector<double>(2, 0.0)), energies(parts);
+  std::vector<std::vector<double>> traces(parts, std::vector<double>(references.size(), 0.0));
   in_row_parts(grid, [&](const RowPart &part) {
-    std::vector<double> &some = found[part.number], &trace_of = traces[part.number];
-    for_each_cell(grid, part, phases, owners, [&](const Phase &, int, double, int i, int j, int k) {
-      for (int d = 0; d < dimension; ++d) some[0] = std::max(some[0], std::abs(centred(d, i, j, k)));
-    });
-    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double trace) {
-      some[1] = std::max(some[1], std::abs(density));
-      trace_of[b] = std::max(trace_of[b], trace);
-    });
+    std::vector<double> &some = found[part.number], &trace_of = traces[part.number], &density = energies[part.number];
+    std::vector<double> of_row(grid.owned()[0]);
+    for_each_run(
+        grid, part, phases, owners,
+        [&](const Phase &phase, const Segment &row) {
+          energy(grid, phase, row, of_row.data());
+          density.insert(density.end(), of_row.begin() + row.i_begin, of_row.begin() + row.i_end);
+        },
+        [&](const Run &run) {
+          for (int d = 0; d < dimension; ++d) {
+            const double *face = run.of(velocity, d);
+            some[0] = largest_of(face, run.size(), some[0]);
+            some[0] = largest_of(face + velocity[d].stride(d), run.size(), some[0]);
+          }
+          some[1] = largest_of(of_row.data() + run.begin, run.size(), some[1]);
+          trace_of[run.body] = largest_trace(run, dimension, trace_of[run.body]);
+        });
   });
   std::vector<double> most;
   PetscCall(reduce_maxima(grid.comm(), found, &most));
@@ -241,28 +224,31 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest.trace));
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
-    for_each_cell(grid, part, phases, owners, [&](const Phase &phase, int b, double phi, int i, int j, int k) {
-      const Real3 x = offset(grid, references[b], {i, j, k});
-      some.add(b, 0, phi);
-      for (int d = 0; d < dimension; ++d) {
-        some.add(b, first_moment + d, phi * x[d]);
-        some.add(b, second_moment + d, phi * x[d] * x[d]);
-        if (largest.speed > 0) some.add(b, momentum + d, phi * (centred(d, i, j, k) / largest.speed));
-      }
-      some.add(b, second_moment + 3, phi * x[1] * x[2]);
-      some.add(b, second_moment + 4, phi * x[0] * x[2]);
-      some.add(b, second_moment + 5, phi * x[0] * x[1]);
-      if (!(phi > full_cell) || phase.material.is_membrane()) return;  // B_s says nothing of the inside
-      some.add(b, full_cells, 1);
-      for (int f = 0; f < phase.tensor.count(); ++f) {
+    const double *density = energies[part.number].data(), *of_row = nullptr;  // of cell 0 of the row
+    const auto start = [&](const Phase &, const Segment &row) {
+      of_row = density - row.i_begin;
+      density += row.size();
+    };
+    for_each_run(grid, part, phases, owners, start, [&](const Run &run) {
+      const int b = run.body;
+      const Real3 at = offset(grid, references[b], {run.begin, run.j, run.k});
+      const RunSums of_run = sum_all(grid, run, references[b], velocity);
+      const double cells = of_run.fraction, x = of_run.first_moment, y = at[1], z = at[2];
+      const std::array first{x, cells * y, cells * z};
+      const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
+      some.add(b, 0, cells);
+      for (int d = 0; d < 3; ++d) some.add(b, first_moment + d, first[d]);
+      for (int c = 0; c < 6; ++c) some.add(b, second_moment + c, second[c]);
+      for (int d = 0; d < dimension && largest.speed > 0; ++d)
+        some.add(b, momentum + d, of_run.momentum[d] / largest.speed);
+      if (largest.energy > 0)
+        some.add(b, strain,
+                 lane_sum(of_row + run.begin, run.size(), grid.layout().begin[0] + run.begin) / largest.energy);
+      some.add(b, full_cells, of_run.full_cells);
+      for (int f = 0; f < run.phase.tensor.count() && of_run.full_cells > 0; ++f) {
         const auto [p, q] = tensor_components(dimension)[f];
-        const ConstView B = phase.tensor[f];
-        const double value = p == q ? B(i, j, k) : kernels::average4(&B(i, j, k), B.stride(p), B.stride(q));
-        some.add(b, mean_tensor + (p == q ? p : 6 - p - q), value);
+        some.add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
       }
-    });
-    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double) {
-      if (largest.energy > 0) some.add(b, strain, density / largest.energy);
     });
   };
   PetscCall(sum_bodies(grid, owners, add, &sums));

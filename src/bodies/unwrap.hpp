@@ -17,15 +17,16 @@ inline std::vector<Int3> within_box(const Grid &grid, std::vector<Int3> referenc
   return references;
 }
 
-/// Cells from a reference within the box to the nearest image of a local cell.
+/// Cells along d from `reference`, within the box, to the nearest image of local index i.
+inline int offset(const Grid &grid, int d, int reference, int i) {
+  const int n = grid.cells()[d], half = n / 2, distance = grid.layout().begin[d] + i - reference;
+  return grid.is_wall(d) ? distance : distance + (distance < -half ? n : distance >= n - half ? -n : 0);
+}
+
+/// The same of a cell.
 inline Real3 offset(const Grid &grid, const Int3 &reference, const Int3 &cell) {
   Real3 x{};
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const int n = grid.cells()[d], half = n / 2;
-    int distance = grid.layout().begin[d] + cell[d] - reference[d];
-    if (!grid.is_wall(d)) distance += distance < -half ? n : distance >= n - half ? -n : 0;
-    x[d] = distance;
-  }
+  for (int d = 0; d < grid.dimension(); ++d) x[d] = offset(grid, d, reference[d], cell[d]);
   return x;
 }
 

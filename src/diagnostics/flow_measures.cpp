@@ -11,7 +11,7 @@
 namespace eulastic {
 namespace {
 
-enum Sum { speed_squared, momentum_x, momentum_y, momentum_z, divergence_squared, gradient_squared, first_of_phases };
+enum Sum { speed_squared, momentum_x, momentum_y, momentum_z, divergence_squared, gradient_squared, flow_sums };
 enum Maximum { max_x, max_y, max_z, max_speed_squared, max_divergence, maxima };
 
 double square(double x) { return x * x; }
@@ -145,8 +145,8 @@ double largest(const double *values, int n, double so_far) {
 
 }  // namespace
 
-PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                            const FlowNumbers &numbers, FlowMeasures *measures) {
+PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const FlowNumbers &numbers,
+                            FlowMeasures *measures) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
   const int dimension = grid.dimension(), n = grid.owned()[0], first = grid.layout().begin[0];
@@ -154,7 +154,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
     std::vector<double> &most = found[part.number];
     RowMeasures measure(grid, velocity);
-    std::vector<double> energy(n), dissipated(n);
+    std::vector<double> dissipated(n);
     for (const Segment &row : part.rows(grid)) {
       for (int c = 0; c < dimension; ++c) {
         const double *q = velocity[c].row(row.j, row.k);
@@ -170,14 +170,6 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
         viscous_dissipation(grid, *numbers.local_viscosity, velocity, row, dissipated.data());
       sums.add_row(gradient_squared, numbers.local_viscosity ? dissipated.data() : measure.squared_gradient(row), n,
                    first);
-      for (std::size_t p = 0; p < phases.size(); ++p) {
-        const ConstView phi = phases[p].fraction[0];
-        const Segment held = phases[p].rows.within(row, phi);
-        const int sum_of_phase = first_of_phases + 2 * static_cast<int>(p), i = held.i_begin;
-        strain_energy(grid, phases[p], held, energy.data());
-        sums.add_row(sum_of_phase, phi.row(row.j, row.k) + i, held.size(), first + i);
-        sums.add_row(sum_of_phase + 1, energy.data() + i, held.size(), first + i);
-      }
     }
   };
   const auto add_all = [&](const RowPart &part, ExactSums &sums) {
@@ -189,11 +181,9 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
           SideFaces(grid, velocity, &sums).add(d, high);
       }
   };
-  double flops = grid.owned_count() * dimension * (10 + 4 * dimension);
-  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * dimension + 3);
-  scope.flops(flops);
-  std::vector<double> sum(first_of_phases + 2 * phases.size());
-  PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add_all, sum.data()));
+  scope.flops(grid.owned_count() * dimension * (10 + 4 * dimension));
+  double sum[flow_sums];
+  PetscCall(sum_row_parts(grid, flow_sums, add_all, sum));
   std::vector<double> maximum;
   PetscCall(reduce_maxima(grid.comm(), found, &maximum));
 
@@ -212,11 +202,36 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   m.divergence_max = maximum[max_divergence] * scale + 0 * sum[divergence_squared];
   m.viscous_dissipation =
       (numbers.local_viscosity ? numbers.density : numbers.viscosity) * sum[gradient_squared] * volume;
-  m.elastic_energy = 0;
-  m.phase_volume.clear();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode measure_phases(const Grid &grid, const std::vector<Phase> &phases, FlowMeasures *measures) {
+  enum { volume, energy, sums_of_phase };
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::sums);
+  const int first = grid.layout().begin[0];
+  const auto add = [&](const RowPart &part, ExactSums &sums) {
+    std::vector<double> density(grid.owned()[0]);
+    for (const Segment &row : part.rows(grid))
+      for (std::size_t p = 0; p < phases.size(); ++p) {
+        const ConstView phi = phases[p].fraction[0];
+        const Segment held = phases[p].rows.within(row, phi);
+        const int sum_of_phase = sums_of_phase * static_cast<int>(p), i = held.i_begin;
+        strain_energy(grid, phases[p], held, density.data());
+        sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first + i);
+        sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first + i);
+      }
+  };
+  double flops = 0;
+  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * grid.dimension() + 3);
+  scope.flops(flops);
+  std::vector<double> sum(sums_of_phase * phases.size());
+  PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add, sum.data()));
+  measures->elastic_energy = 0;
+  measures->phase_volume.clear();
   for (std::size_t p = 0; p < phases.size(); ++p) {
-    m.phase_volume.push_back(sum[first_of_phases + 2 * p] * volume);
-    m.elastic_energy += sum[first_of_phases + 2 * p + 1] * volume;
+    measures->phase_volume.push_back(sum[sums_of_phase * p + volume] * grid.cell_volume());
+    measures->elastic_energy += sum[sums_of_phase * p + energy] * grid.cell_volume();
   }
   PetscFunctionReturn(0);
 }

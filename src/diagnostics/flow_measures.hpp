@@ -1,4 +1,4 @@
-// The numbers of a flow: energies, means, divergence, dissipation, volumes, from one pass and two Allreduces.
+// The numbers of a flow: energies, means, divergence, dissipation, volumes, from two passes and three Allreduces.
 //
 // Every value is an exact sum or a maximum: the same bits on any number of ranks. In 2-D integrals are per unit
 // depth. Control volumes are the points' own: half a cell for velocity gradients on a wall.
@@ -30,7 +30,9 @@ struct FlowMeasures {
 };
 
 /// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
-PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                            const FlowNumbers &numbers, FlowMeasures *measures);
+PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const FlowNumbers &numbers,
+                            FlowMeasures *measures);
+/// The last two of the measures.
+PetscErrorCode measure_phases(const Grid &grid, const std::vector<Phase> &phases, FlowMeasures *measures);
 
 }  // namespace eulastic

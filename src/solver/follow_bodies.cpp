@@ -85,27 +85,24 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
 PetscErrorCode Solver::look_behind(const Look &look) {
   PetscFunctionBeginUser;
   // Labels, and rigid bodies that travel, follow on a schedule: for who looks they are brought up in copies.
-  struct Kept {
-    FieldBlock fraction, label;
-    OccupiedRows rows;
-  };
-  std::vector<Kept> kept(now_.phases.size());
-  const auto swap = [&] {
-    for (std::size_t p = 0; p < kept.size(); ++p) {
-      Phase &phase = now_.phases[p];
-      if (kept[p].label) phase.label.swap(kept[p].label);
-      if (!kept[p].fraction) continue;
-      phase.fraction.swap(kept[p].fraction);
-      std::swap(phase.rows, kept[p].rows);
+  phases_now_step_ = -1;
+  phases_now_.resize(now_.phases.size());
+  const auto swap = [this] {
+    for (std::size_t p = 0; p < phases_now_.size(); ++p) {
+      Phase &phase = now_.phases[p], &copy = phases_now_[p];
+      if (phase.label) phase.label.swap(copy.label);
+      if (!rigid_ || !rigid_->travels(phase)) continue;
+      phase.fraction.swap(copy.fraction);
+      std::swap(phase.rows, copy.rows);
     }
     as_they_are_ = !as_they_are_;
   };
-  for (std::size_t p = 0; p < kept.size(); ++p) {
+  for (std::size_t p = 0; p < phases_now_.size(); ++p) {
     const Phase &phase = now_.phases[p];
-    if (phase.label) kept[p].label.copy_from(phase.label);
+    if (phase.label) phases_now_[p].label.copy_from(phase.label);
     if (!rigid_ || !rigid_->travels(phase)) continue;
-    kept[p].fraction.copy_from(phase.fraction);
-    kept[p].rows = phase.rows;
+    phases_now_[p].fraction.copy_from(phase.fraction);
+    phases_now_[p].rows = phase.rows;
   }
   swap();
   struct Restore {
@@ -114,7 +111,7 @@ PetscErrorCode Solver::look_behind(const Look &look) {
   } const restore{swap};
   PetscCall(fill_rigid(now_.time, &now_.phases));
   for (Phase &phase : now_.phases)
-    if (phase.label) PetscCall(carry_labels(*grid_, *exchange_, &phase));
+    if (phase.label) PetscCall(label_new_cells(*grid_, *exchange_, &phase));
   PetscCall(look());
   PetscFunctionReturn(0);
 }

@@ -98,7 +98,8 @@ struct Measures {
 Measures measure(Box &box, double viscosity) {
   Measures m;
   box.fill_ghosts();
-  EXPECT_EQ(measure_flow(box.grid, box.velocity, box.phases, {1.3, viscosity, 0, 0}, &m.flow), 0);
+  EXPECT_EQ(measure_flow(box.grid, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
+  EXPECT_EQ(measure_phases(box.grid, box.phases, &m.flow), 0);
   const EnergyNumbers numbers{1.3,        viscosity, {0.3, 0.2, 0},
                               &box.walls, 0,         std::vector<double>(box.phases.size(), 0.5)};
   EXPECT_EQ(measure_energy_rates(box.grid, box.velocity, box.phases, numbers, &m.rates), 0);

@@ -72,8 +72,7 @@ struct Box {
   }
   FlowMeasures flow() const {
     FlowMeasures measures;
-    EXPECT_EQ(
-        measure_flow(grid, velocity, phases, {fluid.density, fluid.viscosity, 0, 0, &viscosity.fields}, &measures), 0);
+    EXPECT_EQ(measure_flow(grid, velocity, {fluid.density, fluid.viscosity, 0, 0, &viscosity.fields}, &measures), 0);
     return measures;
   }
   EnergyRates rates() const {

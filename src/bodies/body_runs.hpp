@@ -1,0 +1,61 @@
+// Sums over the cells of bodies, run by run: exact to the last bit on any ranks, without a sum for every cell.
+#pragma once
+
+#include "bodies/body_owners.hpp"
+#include "bodies/unwrap.hpp"
+#include "field/exact_sum.hpp"
+#include "field/phase.hpp"
+#include "field/sides.hpp"
+#include "grid/threads.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace eulastic {
+
+/// Cells [begin, end) of a row that have the label of one body, all in one block of ExactSums by absolute x index: the
+/// same on any ranks, and so are sums over their lanes.
+struct Run {
+  const Phase &phase;
+  int body;  ///< its slot
+  int begin, end, j, k;
+  int size() const { return end - begin; }
+  const double *of(const FieldBlock &block, int f) const { return block[f].row(j, k) + begin; }
+};
+
+/// Calls visit(run) for all runs of a part, and start(phase, piece of a row) before those of that piece.
+template <class Start, class Visit>
+void for_each_run(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
+                  Start &&start, Visit &&visit) {
+  const int first = grid.layout().begin[0];
+  for (const Phase &phase : phases) {
+    const ConstView label = phase.label[0];
+    for (const Segment &whole : part.rows(grid)) {
+      const Segment row = phase.rows.within(whole, label);
+      if (row.i_begin < row.i_end) start(phase, row);
+      const double *own = label.row(row.j, row.k);
+      for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
+        const int block_end = begin + ExactSums::block - (first + begin) % ExactSums::block;
+        end = begin + 1;
+        while (end < std::min(row.i_end, block_end) && own[end] == own[begin]) ++end;
+        const int slot = owners.slot(static_cast<int>(own[begin]) - 1);
+        if (slot >= 0) visit(Run{phase, slot, begin, end, row.j, row.k});
+      }
+    }
+  }
+}
+
+/// Sums over the cells of a run: of phi, of it times x and x^2, x in cells from a reference, of it times the velocity,
+/// and over full cells of 1 and of B.
+struct RunSums {
+  double fraction = 0, first_moment = 0, second_moment = 0;
+  Real3 momentum{};
+  double full_cells = 0;
+  std::array<double, 6> tensor{};
+};
+/// The first three sums.
+RunSums sum_positions(const Grid &grid, const Run &run, const Int3 &reference);
+/// All of them; one ghost of velocity and B.
+RunSums sum_all(const Grid &grid, const Run &run, const Int3 &reference, const FieldBlock &velocity);
+
+}  // namespace eulastic
