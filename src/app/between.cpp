@@ -5,6 +5,13 @@
 namespace eulastic {
 namespace {
 
+// Strain energies are squares of what grows in proportion to time.
+double energy_between(double energy, double other, double share) {
+  if (energy < 0 || other < 0) return energy + share * (other - energy);
+  const double root = std::sqrt(energy), between = root + share * (std::sqrt(other) - root);
+  return between * between;
+}
+
 struct Between {
   double share;
 
@@ -19,7 +26,6 @@ struct Between {
 
   void operator()(FlowMeasures &flow, const FlowMeasures &other) const {
     (*this)(flow.viscous_dissipation, other.viscous_dissipation);
-    (*this)(flow.elastic_energy, other.elastic_energy);
     (*this)(flow.phase_volume, other.phase_volume);
   }
   void operator()(RigidLoad &load, const RigidLoad &other) const {
@@ -57,7 +63,7 @@ struct Between {
     (*this)(rates.wall_power, other.wall_power);
     (*this)(rates.elastic_power, other.elastic_power);
     (*this)(rates.extended_power, other.extended_power);
-    (*this)(rates.extended_energy, other.extended_energy);
+    rates.extended_energy = energy_between(rates.extended_energy, other.extended_energy, share);
   }
 };
 
@@ -65,6 +71,8 @@ struct Between {
 
 void go_between(const Measured &other, double share, Measured *measured) {
   const Between between{share};
+  const double energy = measured->flow.elastic_energy, linear = energy + share * (other.flow.elastic_energy - energy);
+  measured->flow.elastic_energy = energy_between(energy, other.flow.elastic_energy, share);
   between(measured->flow, other.flow);
   between(measured->surface.energy, other.surface.energy);
   between(measured->surface.power, other.surface.power);
@@ -72,11 +80,13 @@ void go_between(const Measured &other, double share, Measured *measured) {
   between(measured->surface_loads, other.surface_loads);
   between(measured->bodies, other.bodies);
   between(measured->surfaces, other.surfaces);
+  if (linear > 0)  // together they have that of the flow
+    for (BodyMeasure &body : measured->bodies) body.elastic_energy *= measured->flow.elastic_energy / linear;
 }
 
 void go_between(const EnergyState &other, double share, EnergyState *energy) {
   const Between between{share};
-  between(energy->elastic, other.elastic);
+  energy->elastic = energy_between(energy->elastic, other.elastic, share);
   between(energy->surface, other.surface);
   between(energy->surface_power, other.surface_power);
   between(energy->dissipation, other.dissipation);

@@ -96,3 +96,33 @@ TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
       ASSERT_EQ(world.phases[0].label[0](i, row.j, row.k),
                 alone.phases[0].label[0](layout.begin[0] + i, layout.begin[1] + row.j, layout.begin[2] + row.k));
 }
+
+TEST(Labels, NewCellsAloneAreNamedAndOldOnesStay) {
+  // Half a cell onwards: those that the surface has reached, and no others.
+  const GridSpec spec = box({28, 15, 14}, {28, 15, 14});
+  const SpeciesSpec sphere = species(Shape::sphere, 4);
+  BodyScene scene(PETSC_COMM_WORLD, spec);
+  const auto places_at = [](double shift) {
+    return std::vector<BodyPlace>{{{5 + shift, 7, 7}, {}}, {{wrap(17 + shift, 28), 7, 7}, {}}};
+  };
+  scene.add(sphere, places_at(0));
+  Phase before;
+  before.copy_from(scene.phases[0]);
+  GhostExchange exchange(scene.grid);
+  scene.move(sphere, places_at(0.5));
+  ASSERT_EQ(label_new_cells(scene.grid, exchange, &scene.phases[0]), 0);
+  Phase fresh;
+  ASSERT_EQ(fill_phase(scene.grid, sphere, places_at(0.5), 1, &fresh), 0);
+  const ConstView old = std::as_const(before.label)[0], label = std::as_const(scene.phases[0].label)[0],
+                  expected = std::as_const(fresh.label)[0], phi = std::as_const(fresh.fraction)[0];
+  long counts[2] = {0, 0};  // named anew, wrong
+  for (const Segment &row : scene.grid.rows())
+    for (int i = row.i_begin; i < row.i_end; ++i) {
+      const bool is_new = old(i, row.j, row.k) == 0 && phi(i, row.j, row.k) > label_threshold;
+      counts[0] += is_new;
+      counts[1] += label(i, row.j, row.k) != (is_new ? expected(i, row.j, row.k) : old(i, row.j, row.k));
+    }
+  MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
+  EXPECT_GT(counts[0], 20);
+  EXPECT_EQ(counts[1], 0);
+}

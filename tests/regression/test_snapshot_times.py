@@ -60,6 +60,34 @@ class SnapshotTimes(Restart):
         self.run_case("films", *DISCS, "-time_step", .06, "-time_end", .3, *EXACT, "-snapshot_interval", .02)
         numpy.testing.assert_allclose(self.times("films"), [n * .02 for n in range(16)], rtol=1e-12)
 
+    def test_rows_of_the_series_are_of_second_order(self):
+        """A row between two half levels against the one that a run which ends there makes of its last one, by half a step:
+        what both miss, and so their difference, falls with the square of the step."""
+        case = [*DISCS, "-initial_velocity_mean", ".6,0,0", "-series_interval", "1e-9", "-time_end", 100]
+        columns = ("elastic_energy", "elastic_power", "centroid", "elastic_energy of bodies")
+
+        def differences(step, steps):
+            self.run_case("ends", *case, "-time_step", step, "-time_steps_max", steps)
+            self.run_case("goes_on", *case, "-time_step", step, "-time_steps_max", steps + 3)
+            rows = []
+            for run in ("ends", "goes_on"):
+                lines = self.series(run).splitlines()
+                row = dict(zip(lines[0].split(","), map(float, lines[steps + 1].split(","))))
+                self.assertEqual(row["step"], steps)
+                with h5py.File(self.room / run / "bodies.h5") as file:
+                    self.assertEqual(file["time"][steps], row["time"])
+                    rows.append([numpy.array(q) for q in (
+                        row["elastic_energy"], row["elastic_power"], file["centroid"][steps, :, 0],
+                        file["elastic_energy"][steps])])
+                shutil.rmtree(self.room / run)
+            return [abs(a - b).max() / abs(a).max() for a, b in zip(*rows)]
+        coarse, fine = differences(.08, 5), differences(.02, 20)
+        for name, a, b in zip(columns, coarse, fine):
+            print(f"{name}: {a:.2e}, with a quarter of the step {b:.2e}")
+            self.assertGreater(a, 0, name)
+            self.assertLess(b, a / 8, name)
+            self.assertLess(b, 2e-3, name)
+
     def test_second_order(self):
         """Against small steps that meet the multiples. Where solids are depends on the grid and the step together; there
         a snapshot must be much better than that of the next step, late by up to a step."""
