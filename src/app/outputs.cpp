@@ -207,10 +207,13 @@ PetscErrorCode Outputs::see_middle(double dt) {
 
 PetscErrorCode Outputs::write_waiting() {
   PetscFunctionBeginUser;
-  if (!waits_) PetscFunctionReturn(0);
+  if (!waits_ && !seen_) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
-  PetscCall(write_row_now());
+  if (seen_)
+    PetscCall(write_row());
+  else
+    PetscCall(write_row_now());
   PetscFunctionReturn(0);
 }
 

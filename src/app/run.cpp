@@ -195,7 +195,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   if (!run->stop && whole) PetscCall(check_state(run));
   if (run->stop) run->exit_reason = run->stop.reason;
   if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
-  PetscCall(run->outputs.write_waiting());
+  if (!run->directory.pending()) PetscCall(run->outputs.write_waiting());
   progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   PetscFunctionReturn(0);
 }
