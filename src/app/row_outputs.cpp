@@ -1,0 +1,171 @@
+// Outputs: rows of series.csv and bodies.h5.
+#include "app/between.hpp"
+#include "app/outputs.hpp"
+#include "base/events.hpp"
+#include "physics/species_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+
+// All but volume drifts, of phases as Solver::phases_now() has them; `measured`: of another time, or of this velocity.
+PetscErrorCode Outputs::look(Measured *measured) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  Measured &m = *measured;
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver_->phases_now(&phases));
+  const Fluid &fluid = config_.fluid;
+  const Real3 &f = fluid.body_force.force;
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
+  if (m.time != state.time || viscosity)  // of this velocity they are known
+    PetscCall(measure_flow(
+        *grid_, state.velocity,
+        {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
+  PetscCall(measure_phases(*grid_, *phases, &m.flow));
+  if (solver_->bodies().bodies() > 0)
+    PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
+  PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
+  if (solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
+  PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
+  constexpr double noise = 1e-5;  // of U/h
+  const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
+  m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
+  m.time = state.time;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  const Fluid &fluid = config_.fluid;
+  EnergyState &energy = row->energy = {};
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver_->phases_now(&phases));
+  energy.kinetic = measured.flow.kinetic_energy;
+  energy.elastic = measured.flow.elastic_energy;
+  energy.surface = measured.surface.energy;
+  energy.surface_power = measured.surface.power;
+  energy.dissipation = measured.flow.viscous_dissipation;
+  const FieldBlock *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
+  const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
+                              &config_.sides, state.time,      solver_->evolved_fraction(),
+                              viscosity};
+  PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy.rates));
+  double power = 0;
+  PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
+  energy.rates.force_power += power;
+  PetscCall(solver_->stretch_power(&power));
+  energy.rates.force_power += power;
+  for (const RigidLoad &load : measured.loads) energy.rates.wall_power += load.power;
+  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
+                               &row->sides));
+  for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
+  row->dt = state.dt;
+  row->step = double(state.step);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::look(Row *row) {
+  PetscFunctionBeginUser;
+  PetscCall(look(&row->measured));
+  PetscCall(look_at_energy(row->measured, row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::see_middle(double dt) {
+  PetscFunctionBeginUser;
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  Row next = row_;
+  PetscCall(look(&next));
+  const double share = row_.dt / (row_.dt + dt);
+  go_between(next.measured, share, &row_.measured);
+  go_between(next.energy, share, &row_.energy);
+  PetscCall(measure_drift(&row_.measured));
+  mach_max_ = std::max(mach_max_, row_.measured.mach);
+  waits_ = false;
+  seen_ = true;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_waiting() {
+  PetscFunctionBeginUser;
+  if (!waits_ && !seen_) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  if (seen_)
+    PetscCall(write_row());
+  else
+    PetscCall(write_row_now());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row_now() {
+  PetscFunctionBeginUser;
+  Row row;
+  PetscCall(measure());
+  row.measured = measured_;
+  PetscCall(look_at_energy(measured_, &row));
+  row_ = std::move(row);
+  PetscCall(write_row());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row() {
+  PetscFunctionBeginUser;
+  waits_ = seen_ = false;
+  is_new_ = true;
+  const Measured &measured = row_.measured;
+  const FlowMeasures &flow = measured.flow;
+  const EnergyRates &rates = row_.energy.rates;
+  energy_.advance(measured.time, row_.energy);
+  double solid = 0;
+  for (const double volume : flow.phase_volume) solid += volume;
+  std::vector<double> row{measured.time,
+                          row_.step,
+                          row_.dt,
+                          flow.kinetic_energy,
+                          flow.elastic_energy,
+                          flow.viscous_dissipation,
+                          flow.bulk_velocity[0],
+                          flow.bulk_velocity[1],
+                          flow.bulk_velocity[2],
+                          flow.speed_max,
+                          flow.divergence_rms,
+                          flow.divergence_max,
+                          solid,
+                          measured.volume_drift,
+                          rates.force_power,
+                          rates.wall_power,
+                          rates.elastic_power,
+                          energy_.lost(),
+                          energy_.lost_elastic(),
+                          energy_.lost_extended(),
+                          row_.energy.surface,
+                          row_.energy.surface_power};
+  if (!row_.sides.empty()) row.push_back(rates.side_power);
+  for (const SideFlow &side : row_.sides) row.insert(row.end(), {side.flow_rate, side.pressure});
+  for (const VesselFlow &vessel : vessel_flows(config_, measured.time, flow.bulk_velocity, row_.sides))
+    row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
+  PetscCall(series_.write(row));
+  if (bodies_file_) {
+    BodySpecies all{{}, solver_->bodies().species()};
+    for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
+    PetscCall(bodies_file_->add(measured.time, all, records(measured, measured.bodies, measured.surfaces)));
+    ++bodies_rows_;
+  }
+  PetscFunctionReturn(0);
+}
+
+const Measured *Outputs::take_row() {
+  const bool fresh = is_new_;
+  is_new_ = false;
+  return fresh ? &row_.measured : nullptr;
+}
+
+}  // namespace eulastic
