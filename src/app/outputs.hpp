@@ -70,6 +70,7 @@ private:
   /// A state and what series.csv has of it beside.
   struct Row {
     double dt = 0, step = 0;
+    int bodies = 0;  ///< of the whole box
     Measured measured;
     EnergyState energy;
     std::vector<SideFlow> sides;

@@ -67,6 +67,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
   row->dt = state.dt;
   row->step = double(state.step);
+  row->bodies = solver_->bodies().bodies();
   PetscFunctionReturn(0);
 }
 
@@ -155,6 +156,7 @@ PetscErrorCode Outputs::write_row() {
   PetscCall(series_.write(row));
   if (bodies_file_) {
     BodySpecies all{{}, solver_->bodies().species()};
+    all.of.resize(row_.bodies);  // others have come since
     for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
     PetscCall(bodies_file_->add(measured.time, all, records(measured, measured.bodies, measured.surfaces)));
     ++bodies_rows_;
