@@ -184,9 +184,11 @@ PetscErrorCode Outputs::write_due(bool last) {
       row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
     PetscCall(series_.write(row));
     if (bodies_file_) {
-      BodySpecies all{{}, solver_->bodies().species()};
-      for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
-      PetscCall(bodies_file_->add(state.time, all, records(measured_.bodies, measured_.surfaces)));
+      const auto name = [this](int label) -> const std::string & {
+        return config_.species[solver_->bodies().species(label)].name;
+      };
+      PetscCall(bodies_file_->add(state.time, {solver_->bodies().bodies(), name},
+                                  records(measured_.bodies, measured_.surfaces)));
       ++bodies_rows_;
     }
   }
