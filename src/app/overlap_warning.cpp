@@ -141,9 +141,12 @@ PetscErrorCode find_overlap_warning(MPI_Comm comm, const Config &config, std::st
   int rank, ranks;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  // With -check_only and -ranks there may be more ranks here than the cells are for.
-  const bool share = Grid::why_not(config.grid, ranks).empty();
-  const Grid grid = Grid::planned(config.grid, share ? ranks : 1);
+  // Any split does, also where there are more ranks than the cells of -check_only are for.
+  GridSpec spec = config.grid;
+  spec.processors = {};
+  spec.starts = {};
+  const bool share = Grid::why_not(spec, ranks).empty();
+  const Grid grid = Grid::planned(spec, share ? ranks : 1);
   const Layout box = share || rank == 0 ? grid.layout_of(rank) : Layout{};
   std::vector<Places> near(config.species.size());
   for (std::size_t s = 0; s < near.size(); ++s)
