@@ -75,8 +75,8 @@ public:
   int bodies() const { return static_cast<int>(bodies_.size()); }
   int label(int b) const { return bodies_[b].label; }
 
-  // Bodies that may share cells with body b, ascending.
-  const std::vector<int> &candidates(int b) const { return candidates_[b]; }
+  // Bodies that may share cells, each pair both ways, ascending.
+  const std::vector<std::pair<int, int>> &candidates() const { return candidates_; }
 
   // What two bodies share, or the first part of it that is found.
   double shared(int one, int two, bool all) const {
@@ -110,11 +110,10 @@ private:
   void find_candidates() {
     Crowd crowd(grid_, widest_ > 0 ? widest_ : grid_.length[0], bodies_.size());  // those with ends
     std::vector<int> in_crowd, endless;
-    candidates_.resize(bodies_.size());
     const auto add = [&](int one, int two) {
       if (!is_wanted(spec(std::min(one, two)), spec(std::max(one, two)))) return;
-      candidates_[one].push_back(two);
-      candidates_[two].push_back(one);
+      candidates_.emplace_back(one, two);
+      candidates_.emplace_back(two, one);
     };
     for (int b = 0; b < bodies(); ++b) {
       const bool ends = has_ends(spec(b));
@@ -128,7 +127,7 @@ private:
       (ends ? in_crowd : endless).push_back(b);
       if (ends) crowd.add(convex(b));
     }
-    for (std::vector<int> &some : candidates_) std::sort(some.begin(), some.end());
+    std::sort(candidates_.begin(), candidates_.end());
   }
 
   // Whether the sphere around a body may meet a body without ends. Across its axis a tube has no images.
@@ -156,7 +155,7 @@ private:
   std::vector<ConvexBody> shapes_;  // of species
   std::vector<Body> bodies_;
   double widest_ = 0;
-  std::vector<std::vector<int>> candidates_;  // of every body
+  std::vector<std::pair<int, int>> candidates_;
 };
 
 }  // namespace
@@ -179,21 +178,18 @@ bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Plac
 std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
                                const GridSpec &grid, Overlap *first) {
   *first = {};
-  int found[2] = {};
+  std::pair<int, int> found;
   std::vector<int> overlaps;
   const Search search(species, places, grid);
-  for (int b = 0; b < search.bodies(); ++b)
-    for (const int candidate : search.candidates(b)) {
-      const auto [one, two] = std::minmax({b, candidate});
-      if (search.shared(one, two, false) == 0) continue;
-      overlaps.push_back(search.label(b));
-      if (first->body == 0 || std::pair(one, two) < std::pair(found[0], found[1])) {
-        *first = {search.label(one), search.label(two), 0};
-        found[0] = one, found[1] = two;
-      }
-      break;
-    }
-  if (first->body > 0) first->volume = search.shared(found[0], found[1], true);
+  for (const auto &[b, candidate] : search.candidates()) {
+    if (!overlaps.empty() && overlaps.back() == search.label(b)) continue;
+    const std::pair<int, int> pair = std::minmax(b, candidate);
+    if (search.shared(pair.first, pair.second, false) == 0) continue;
+    if (overlaps.empty() || pair < found) found = pair;
+    overlaps.push_back(search.label(b));
+  }
+  if (overlaps.empty()) return overlaps;
+  *first = {search.label(found.first), search.label(found.second), search.shared(found.first, found.second, true)};
   return overlaps;
 }
 
