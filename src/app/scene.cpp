@@ -65,7 +65,7 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     PetscCall(file.read_phase(species, next_label, &phase, &placed));
     phase.separate = config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
     PetscCall(separate_places(grid, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
-    if (species.law == Law::rigid) PetscCall(rigid->add(species, placed, next_label, &phase));
+    if (species.law == Law::rigid) PetscCall(rigid->add(species, config.places[s], next_label, &phase));
     next_label += placed.count;
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
