@@ -53,14 +53,13 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
   std::vector<BodyRecord> records;
   // Loads are those of all bodies that bear some, in their order.
   std::size_t rigid = 0, elastic = 0;
-  int before = 0;
+  const auto pass = [&](const SpeciesSpec &spec) { ++(spec.law == Law::rigid ? rigid : elastic); };
+  for (int s = 0; s < static_cast<int>(config_.species.size()) && !bodies.empty(); ++s)
+    if (config_.species[s].bears_load())
+      solver_->bodies().for_labels(s, bodies.front().label, [&](int) { pass(config_.species[s]); });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyMeasure &body = bodies[b];
-    for (; before < body.label - 1; ++before) {
-      const SpeciesSpec &spec = config_.species[solver_->bodies().species()[before]];
-      rigid += spec.law == Law::rigid;
-      elastic += spec.law != Law::rigid && spec.bears_load();
-    }
+    if (b > 0 && config_.species[bodies[b - 1].species].bears_load()) pass(config_.species[bodies[b - 1].species]);
     BodyRecord record;
     record.id = body.label;
     record.species = config_.species[body.species].name;

@@ -71,7 +71,7 @@ public:
                 1e-9 * bytes, 1e-9 * memory_limit());
     bool crowded = false;
     for (std::size_t s = 0; s < config_.species.size(); ++s)
-      crowded = crowded || (config_.separates(config_.species[s]) && config_.places[s].size() > 1);
+      crowded = crowded || (config_.separates(config_.species[s]) && config_.places[s].count > 1);
     if (crowded)
       report.line("phases (estimate)",
                   "%d, %zu for the species, %.4g GB per rank for each more that keeps bodies apart",
@@ -99,7 +99,7 @@ public:
     const SpeciesSpec &spec = config_.species[s];
     if (spec.shape == Shape::state) return {0, 0};
     if (spec.shape == Shape::voxels) return {1, config_.solid_volumes[s]};
-    return {double(config_.places[s].size()), volume_in_box(spec, config_.grid)};
+    return {double(config_.places[s].count), volume_in_box(spec, config_.grid)};
   }
 
   void bodies(Report &report) const {

@@ -109,8 +109,9 @@ struct Config {
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none
   std::vector<SpeciesSpec> species;
-  bool body_series = true;                     ///< bodies are named, followed and measured
-  std::vector<std::vector<BodyPlace>> places;  ///< of the bodies of every species; by validate()
+  bool body_series = true;            ///< bodies are named, followed and measured
+  std::vector<Places> places;         ///< of the bodies of every species, walls and posts everywhere; by validate()
+  std::vector<int> colours;           ///< phases that the bodies of every species are expected to need; by validate()
   std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate() for -check_only
   Method method = method_preset(MethodKind::fast);
   TimeControl time;

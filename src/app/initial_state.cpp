@@ -1,6 +1,7 @@
 #include "app/initial_state.hpp"
 
 #include "app/option_values.hpp"
+#include "bodies/body_owners.hpp"
 #include "bodies/fill_phase.hpp"
 #include "io/fail_together.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 
 namespace eulastic {
 namespace {
@@ -189,8 +191,7 @@ PetscErrorCode InitialState::read_tensor(const SpeciesSpec &species, Phase *phas
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_label, Phase *phase,
-                                        std::vector<BodyPlace> *places) {
+PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_label, Phase *phase, Places *places) {
   PetscFunctionBeginUser;
   const std::string fraction = open_ ? name_for("solid_fraction", species) : std::string();
   if (species.shape == Shape::state && fraction.empty())
@@ -207,8 +208,7 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode InitialState::read_bodies(const SpeciesSpec &species, int first_label, Phase *phase,
-                                         std::vector<BodyPlace> *places) {
+PetscErrorCode InitialState::read_bodies(const SpeciesSpec &species, int first_label, Phase *phase, Places *places) {
   PetscFunctionBeginUser;
   const View label = phase->label[0], phi = phase->fraction[0];
   const std::string name = name_for("body", species);
@@ -236,22 +236,35 @@ PetscErrorCode InitialState::read_bodies(const SpeciesSpec &species, int first_l
 }
 
 // The first cell of each body, one that is more than half full if there is any.
-PetscErrorCode InitialState::find_bodies(int first_label, int bodies, const Phase &phase,
-                                         std::vector<BodyPlace> *places) const {
+PetscErrorCode InitialState::find_bodies(int first_label, int bodies, const Phase &phase, Places *places) const {
   PetscFunctionBeginUser;
-  const std::int64_t cells = static_cast<std::int64_t>(grid_->cell_count());
-  std::vector<std::int64_t> first(bodies, 2 * cells);
+  const double cells = grid_->cell_count();
+  std::map<int, double> first;
   for_cells(*grid_, [&](int i, int j, int k) {
     const int body = static_cast<int>(phase.label[0](i, j, k)) - first_label;
     if (body < 0) return;
-    const std::int64_t rank = global_index(*grid_, i, j, k) + (phase.fraction[0](i, j, k) > 0.5 ? 0 : cells);
-    first[body] = std::min(first[body], rank);
+    const double rank = double(global_index(*grid_, i, j, k)) + (phase.fraction[0](i, j, k) > 0.5 ? 0 : cells);
+    double &least = first.try_emplace(body, rank).first->second;
+    least = std::min(least, rank);
   });
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first.data(), bodies, MPI_INT64_T, MPI_MIN, grid_->comm()));
-  places->assign(bodies, {});
-  for (int b = 0; b < bodies; ++b) {
-    const Int3 cell = cell_at(*grid_, first[b] % cells);
-    for (int d = 0; d < 3; ++d) (*places)[b].centre[d] = (cell[d] + 0.5) * grid_->spacing()[d];
+  std::vector<int> here;
+  std::vector<double> last;
+  for (const auto &[body, rank] : first) {
+    here.push_back(body);
+    last.push_back(-rank);
+  }
+  BodyOwners owners;
+  PetscCall(owners.connect(grid_->comm(), bodies, std::move(here)));
+  std::vector<double> owned(owners.owned().size(), -2 * cells);
+  PetscCall(owners.reduce(1, MPI_MAX, last, &owned));
+  *places = {};
+  places->count = bodies;
+  places->everywhere = grid_->ranks() == 1;
+  for (std::size_t b = 0; b < owned.size(); ++b) {
+    const Int3 cell = cell_at(*grid_, static_cast<std::int64_t>(-owned[b]) % static_cast<std::int64_t>(cells));
+    NumberedPlace &place = places->known.emplace_back();
+    place.index = owners.owned().begin + static_cast<int>(b);
+    for (int d = 0; d < 3; ++d) place.centre[d] = (cell[d] + 0.5) * grid_->spacing()[d];
   }
   PetscFunctionReturn(0);
 }

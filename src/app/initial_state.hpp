@@ -24,7 +24,7 @@ public:
   bool holds(const SpeciesSpec &species) const;
   /// Fraction, B and labels of one species; `places`: the bodies as placed, replaced by those of the file, labels
   /// `first_label` and following.
-  PetscErrorCode read_phase(const SpeciesSpec &species, int first_label, Phase *phase, std::vector<BodyPlace> *places);
+  PetscErrorCode read_phase(const SpeciesSpec &species, int first_label, Phase *phase, Places *places);
   /// Whether any bodies came from the file: then their centres in `places` are just some cell of theirs.
   bool has_bodies() const { return has_bodies_; }
 
@@ -35,8 +35,8 @@ private:
   PetscErrorCode read(const std::string &name, const Staggering &staggering, Wanted wanted, View field);
   PetscErrorCode read_constant(const std::string &name, double value);
   PetscErrorCode read_tensor(const SpeciesSpec &species, Phase *phase);
-  PetscErrorCode read_bodies(const SpeciesSpec &species, int first_label, Phase *phase, std::vector<BodyPlace> *places);
-  PetscErrorCode find_bodies(int first_label, int bodies, const Phase &phase, std::vector<BodyPlace> *places) const;
+  PetscErrorCode read_bodies(const SpeciesSpec &species, int first_label, Phase *phase, Places *places);
+  PetscErrorCode find_bodies(int first_label, int bodies, const Phase &phase, Places *places) const;
   PetscErrorCode fail(const std::string &problem) const;
 
   const Config *config_;

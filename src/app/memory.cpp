@@ -1,6 +1,5 @@
 #include "app/memory.hpp"
 
-#include "bodies/expected_colours.hpp"
 #include "field/open_sides.hpp"
 #include "io/fail_together.hpp"
 #include "solver/solver.hpp"
@@ -12,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -25,11 +25,6 @@ int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 
 double phase_fields(const Config &config, bool carries_tensor = true) {
   const int tensor = !carries_tensor ? 0 : dimension_of(config) == 2 ? 3 : 6;
   return (1 + config.body_series + tensor) * (config.method.staggered() ? 2 : 1);
-}
-
-int phases_of(const Config &config, std::size_t species) {
-  const SpeciesSpec &spec = config.species[species];
-  return config.separates(spec) ? expected_colours(spec, config.grid, config.places[species]) : 1;
 }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
@@ -58,13 +53,13 @@ double fields(const Config &config) {
     sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
   for (const auto &pair : config.sides)
     for (const Side &side : pair) sum += side.kind == SideKind::pressure && side.load.exists();  // its response
-  if (method.staggered() && config.fluid.inertia) sum += dimension;  // of the step before
+  if (method.staggered() && config.fluid.inertia) sum += dimension;                              // of the step before
   if (config.species.empty()) return sum;
   double tensor = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const bool carries = config.species[s].material().carries_tensor();
     if (carries) tensor = dimension == 2 ? 3 : 6;
-    sum += phases_of(config, s) * phase_fields(config, carries);
+    sum += config.colours[s] * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
@@ -105,11 +100,7 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 
 }  // namespace
 
-int expected_phases(const Config &config) {
-  int phases = 0;
-  for (std::size_t s = 0; s < config.species.size(); ++s) phases += phases_of(config, s);
-  return phases;
-}
+int expected_phases(const Config &config) { return std::accumulate(config.colours.begin(), config.colours.end(), 0); }
 
 double bytes_per_rank(const Config &config, const Int3 &parts) {
   return sizeof(double) * fields(config) * ghosted_cells(config, parts);

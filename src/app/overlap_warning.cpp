@@ -2,6 +2,7 @@
 
 #include "app/voxels.hpp"
 #include "base/deliver.hpp"
+#include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
 #include "bodies/shapes.hpp"
 #include "io/fail_together.hpp"
@@ -10,22 +11,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace eulastic {
 namespace {
 
-// The first label of every species, and one more.
-std::vector<int> first_labels(const Config &config) {
-  std::vector<int> first{1};
-  for (std::size_t s = 0; s < config.species.size(); ++s)
-    first.push_back(first[s] +
-                    (config.species[s].shape == Shape::voxels ? 1 : static_cast<int>(config.places[s].size())));
-  return first;
-}
-
 const SpeciesSpec &species_of(const Config &config, int label) {
-  const std::vector<int> first = first_labels(config);
+  const std::vector<int> first = first_labels(config.species, config.places);
   std::size_t s = 0;
   while (label >= first[s + 1]) ++s;
   return config.species[s];
@@ -61,33 +54,31 @@ std::string describe(const Config &config, const Overlap &first, long count) {
   return text + remedy(moves_two ? two : one);
 }
 
-// Bodies and those of a species from a file, which each rank reads some layers of. `overlaps`: of the own bodies.
-PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, std::size_t file, int rank, int ranks,
-                                 std::vector<char> *overlaps, Overlap *first) {
+// Bodies near this rank and those of a species from a file. `overlaps`: labels, in any order.
+PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const CellWindow &cells,
+                                 const std::vector<Places> &near, std::size_t file, std::vector<int> *overlaps,
+                                 Overlap *first) {
   PetscFunctionBeginUser;
   struct Record {
     int label;
     SharedVolume shared;
   };
   const SpeciesSpec &solid = config.species[file];
-  const std::vector<int> label = first_labels(config);
-  const std::int64_t layers = config.grid.cells[2];
-  const auto limit = [&](int r) { return static_cast<int>(layers * r / ranks); };
-  const BodyRange own = BodyRange::of(label.back() - 1, rank, ranks);
+  const std::vector<int> label = first_labels(config.species, config.places);
+  int ranks;
   std::vector<std::map<int, SharedVolume>> shared(config.species.size());
   std::vector<Record> records;
   std::vector<int> owners;
-  PetscCall(fail_together(comm, read_voxels(solid, config.grid, limit(rank), limit(rank + 1),
-                                            [&](const CellWindow &window, ConstView fraction) {
-                                              for (std::size_t s = 0; s < config.species.size(); ++s) {
-                                                const SpeciesSpec &spec = config.species[s];
-                                                if (spec.shape == Shape::voxels || spec.placement == Placement::random)
-                                                  continue;
-                                                if (spec.material().attached && solid.material().attached) continue;
-                                                add_shared(spec, config.places[s], config.grid, window, fraction,
-                                                           &shared[s]);
-                                              }
-                                            })));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  const auto add = [&](const CellWindow &window, ConstView fraction) {
+    for (std::size_t s = 0; s < config.species.size(); ++s) {
+      const SpeciesSpec &spec = config.species[s];
+      if (spec.shape == Shape::voxels || spec.placement == Placement::random) continue;
+      if (spec.material().attached && solid.material().attached) continue;
+      add_shared(spec, near[s], config.grid, window, fraction, &shared[s]);
+    }
+  };
+  PetscCall(fail_together(comm, read_voxels(solid, config.grid, cells, add)));
   for (std::size_t s = 0; s < config.species.size(); ++s)
     for (const auto &[body, with] : shared[s]) {
       records.push_back({label[s] + body, with});
@@ -102,17 +93,26 @@ PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, std::size_
     sum.volume += record.shared.volume;
     sum.overlaps = sum.overlaps || record.shared.overlaps;
   }
-  int any = 0;
   for (const auto &[body, sum] : sums) {
     if (!sum.overlaps) continue;
-    any = 1;
-    (*overlaps)[body - 1 - own.begin] = 1;
+    overlaps->insert(overlaps->end(), {body, label[file]});
     const auto [one, two] = std::minmax({body, label[file]});
     const Overlap pair{one, two, cell * double(sum.volume)};
     if (is_before(pair, *first)) *first = pair;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm));
-  if (any > 0 && own.has(label[file] - 1)) (*overlaps)[label[file] - 1 - own.begin] = 1;
+  PetscFunctionReturn(0);
+}
+
+// How many bodies ranks have named, each once.
+PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels, long *count) {
+  int ranks;
+  std::vector<int> owners;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  for (const int label : *labels) owners.push_back(BodyRange::owner(label - 1, bodies, ranks));
+  PetscCall(deliver(comm, owners, labels));
+  *count = static_cast<long>(std::set<int>(labels->begin(), labels->end()).size());
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 1, MPI_LONG, MPI_SUM, comm));
   PetscFunctionReturn(0);
 }
 
@@ -135,18 +135,31 @@ PetscErrorCode find_overlap_warning(MPI_Comm comm, const Config &config, std::st
   PetscFunctionBeginUser;
   warning->clear();
   if (!config.initial_state.empty()) PetscFunctionReturn(0);
+  const auto is_file = [](const SpeciesSpec &spec) { return spec.shape == Shape::voxels; };
+  const bool files = std::any_of(config.species.begin(), config.species.end(), is_file);
+  if (!files && !may_overlap(config.species, config.places)) PetscFunctionReturn(0);
   int rank, ranks;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  // Any split does, also where there are more ranks than the cells of -check_only are for.
+  GridSpec spec = config.grid;
+  spec.processors = {};
+  spec.starts = {};
+  const bool share = Grid::why_not(spec, ranks).empty();
+  const Grid grid = Grid::planned(spec, share ? ranks : 1);
+  const Layout box = share || rank == 0 ? grid.layout_of(rank) : Layout{};
+  std::vector<Places> near(config.species.size());
+  for (std::size_t s = 0; s < near.size(); ++s)
+    PetscCall(bring_near(comm, grid, config.species[s], config.places[s], &near[s]));
   Overlap first;
-  const BodyRange own = BodyRange::of(first_labels(config).back() - 1, rank, ranks);
-  std::vector<char> overlaps = find_overlaps(config.species, config.places, config.grid, own, &first);
-  for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (config.species[s].shape == Shape::voxels)
-      PetscCall(compare_with_file(comm, config, s, rank, ranks, &overlaps, &first));
+  std::vector<int> overlaps;
+  if (may_overlap(config.species, config.places)) overlaps = find_overlaps(config.species, near, config.grid, &first);
+  for (std::size_t s = 0; s < near.size(); ++s)
+    if (is_file(config.species[s]))
+      PetscCall(compare_with_file(comm, config, {config.grid, box.begin, box.cells}, near, s, &overlaps, &first));
   PetscCall(agree(comm, &first));
-  long count = std::count(overlaps.begin(), overlaps.end(), 1);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_LONG, MPI_SUM, comm));
+  long count;
+  PetscCall(count_bodies(comm, first_labels(config.species, config.places).back() - 1, &overlaps, &count));
   if (first.body > 0) *warning = describe(config, first, count);
   PetscFunctionReturn(0);
 }

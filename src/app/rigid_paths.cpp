@@ -78,10 +78,10 @@ std::string check_meetings(const Config &config, std::size_t which) {
     double speed = 0;
     for (const SpeciesSpec *spec : {&one, &two})
       for (const double V : spec->motion.velocity) speed += std::fabs(V);
-    const double pairs = double(config.places[which].size()) * double(config.places[s].size());
+    const double pairs = double(config.places[which].count) * double(config.places[s].count);
     const double looks = std::min(4 * speed * config.time.end / spacing, most_looks / std::max(1.0, pairs));
-    for (const BodyPlace &at : config.places[which])
-      for (const BodyPlace &place : config.places[s])
+    for (const BodyPlace &at : config.places[which].known)
+      for (const BodyPlace &place : config.places[s].known)
         for (long n = 0; n <= static_cast<long>(looks) + 1; ++n) {
           const double time = config.time.end * double(n) / (static_cast<double>(static_cast<long>(looks)) + 1);
           if (gap_between(config, one, at, two, place, time) < spacing)
@@ -106,7 +106,7 @@ std::string check_paths(const Config &config) {
       return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
     if (Feeders::exist(config.sides))
       return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
-    for (const BodyPlace &place : config.places[s])
+    for (const BodyPlace &place : config.places[s].known)
       for (int d = 0; d < dimension; ++d)
         if (const std::string wrong = check_path(config, spec, place, d); !wrong.empty()) return wrong;
     if (const std::string wrong = check_meetings(config, s); !wrong.empty()) return wrong;

@@ -155,10 +155,12 @@ PetscErrorCode Outputs::write_row() {
     row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
   PetscCall(series_.write(row));
   if (bodies_file_) {
-    BodySpecies all{{}, solver_->bodies().species()};
-    all.of.resize(row_.bodies);  // others have come since
-    for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
-    PetscCall(bodies_file_->add(measured.time, all, records(measured, measured.bodies, measured.surfaces)));
+    const auto name = [this](int label) -> const std::string & {
+      return config_.species[solver_->bodies().species(label)].name;
+    };
+    // As many as there were: others may have come since.
+    PetscCall(
+        bodies_file_->add(measured.time, {row_.bodies, name}, records(measured, measured.bodies, measured.surfaces)));
     ++bodies_rows_;
   }
   PetscFunctionReturn(0);

@@ -44,7 +44,7 @@ CheckpointRecords markers_of(const State &state) {
   return records;
 }
 
-// Everything else but what owners know of their bodies.
+// Everything else but what belongs to bodies.
 CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::uint64_t hash) {
   const State &s = solver.state();
   const OutputsPosition &o = position.outputs;
@@ -67,12 +67,6 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
   integers["state_hash"] = {static_cast<long>(hash)};
   if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
-  if (solver.bodies().bodies() == 0) return numbers;
-  if (Feeders *feeders = solver.feeders()) {
-    integers["bodies_in_feeders"].assign(feeders->inside().begin(), feeders->inside().end());
-    const std::vector<int> &like = solver.bodies().like();
-    if (!like.empty()) integers["bodies_like"].assign(like.begin(), like.end());
-  }
   return numbers;
 }
 
@@ -110,14 +104,30 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];
   o.snapshots = integers["output_rows"][2];
-  if (solver->bodies().bodies() == 0) return;
-  if (Feeders *feeders = solver->feeders()) {
-    const std::vector<long> &inside = integers["bodies_in_feeders"];
-    feeders->set_inside({inside.begin(), inside.end()});
-  }
 }
 
-PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *bodies) {
+// Of all bodies, on rank 0: what owners know of them, and what feeders do.
+PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
+  std::vector<Int3> references;
+  std::vector<double> first_volumes;
+  PetscFunctionBeginUser;
+  BodyTracker &bodies = solver.bodies();
+  PetscCall(bodies.known(solver.grid(), &references, &first_volumes));
+  if (bodies.bodies() == 0) PetscFunctionReturn(0);
+  std::vector<long> &cells = numbers->integers["body_references"];
+  for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
+  numbers->reals["body_first_volumes"] = std::move(first_volumes);
+  const Feeders *feeders = solver.feeders();
+  if (!feeders) PetscFunctionReturn(0);
+  if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
+  std::vector<long> &inside = numbers->integers["bodies_in_feeders"];
+  if (solver.grid().rank() > 0) PetscFunctionReturn(0);
+  inside.assign(bodies.bodies(), 0);
+  for (const auto &[label, stretch] : feeders->inside()) inside[label - 1] = stretch + 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *bodies, Feeders *feeders) {
   const BodyRange own = BodyRange::of(bodies->bodies(), grid.rank(), grid.ranks());
   const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
@@ -129,6 +139,13 @@ PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *
   PetscCall(file->read_share("body_first_volumes", all, begin, &first_volumes));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
+  if (!feeders) PetscFunctionReturn(0);
+  std::vector<long> stretches(own.size());
+  std::map<int, int> inside;
+  PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
+  for (int b = 0; b < own.size(); ++b)
+    if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
+  PetscCall(feeders->set_inside(inside));
   PetscFunctionReturn(0);
 }
 
@@ -137,17 +154,10 @@ PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *
 PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
                           const std::string &path) {
   std::uint64_t hash = 0;
-  std::vector<Int3> references;
-  std::vector<double> first_volumes;
   PetscFunctionBeginUser;
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
-  PetscCall(solver->bodies().known(solver->grid().comm(), &references, &first_volumes));
   CheckpointNumbers numbers = numbers_of(*solver, position, hash);
-  if (solver->bodies().bodies() > 0) {
-    numbers.reals["body_first_volumes"] = first_volumes;
-    std::vector<long> &cells = numbers.integers["body_references"];
-    for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
-  }
+  PetscCall(gather_numbers(*solver, &numbers));
   PetscCall(
       write_checkpoint(solver->grid(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
   PetscFunctionReturn(0);
@@ -160,10 +170,9 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("colours", &colours));
   PetscCall(file->read_if_there("forgotten", &forgotten));
-  if (Feeders *feeders = solver->feeders()) {
+  if (solver->feeders()) {
     PetscCall(file->read_if_there("bodies_like", &like));
     solver->bodies().set_like(like);
-    feeders->set_inside(std::vector<int>(solver->bodies().bodies(), 0));
   }
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
@@ -172,7 +181,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
-  PetscCall(load_bodies(file, grid, &solver->bodies()));
+  PetscCall(load_bodies(file, grid, &solver->bodies(), solver->feeders()));
   if (FieldBlock *memory = solver->pressure_memory()) memory->clear();               // the file may know of fewer
   for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));

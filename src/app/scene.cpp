@@ -6,6 +6,7 @@
 #include "base/events.hpp"
 #include "bodies/contact.hpp"
 #include "bodies/fill_phase.hpp"
+#include "bodies/near_places.hpp"
 #include "bodies/rigid.hpp"
 #include "io/fail_together.hpp"
 
@@ -21,15 +22,15 @@ PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *
 }
 
 // Bodies that are near at the start get phases of their own; bodies of simple shapes are then whole, also where the
-// larger fraction had a cell for itself. `colours`: the first phase of the species, others are added.
+// larger fraction had a cell for itself. `places`: those that come near this rank; `colours`: the first phase of the
+// species, others are added.
 PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const SpeciesSpec &species,
-                               const std::vector<BodyPlace> &places, int first_label, bool refill,
-                               std::vector<Phase> *colours) {
+                               const Places &places, int first_label, bool refill, std::vector<Phase> *colours) {
   PetscFunctionBeginUser;
-  std::vector<int> colour(places.size(), 0);
+  std::map<int, int> colour;
   std::vector<int> also;  // of a body that is nowhere the fullest one no cell here has the label
   if (refill)
-    for (const std::size_t b : bodies_of_rank(grid, species, places)) also.push_back(first_label + static_cast<int>(b));
+    for (const NumberedPlace &place : places.known) also.push_back(first_label + place.index);
   Separation result;
   for (int round = 0; round < most_colours; ++round) {
     if (refill)  // B of a file may differ from I anywhere
@@ -55,19 +56,20 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
   std::vector<Phase> more;  // colours come after the first phases of all species
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
-    std::vector<BodyPlace> places = config.places[s];
+    Places placed = config.places[s], near;
+    PetscCall(bring_near(grid.comm(), grid, species, placed, &near));
     std::vector<Phase> colours(1);
     Phase &phase = colours[0];
-    PetscCall(fill_phase(grid, species, places, next_label, &phase));
-    if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &places));
-    PetscCall(file.read_phase(species, next_label, &phase, &places));
-    phase.separate = config.separates(species) && (places.size() > 1 || Feeders::exist(config.sides));
-    PetscCall(separate_places(grid, solver->exchange(), species, places, next_label, !file.holds(species), &colours));
-    if (species.law == Law::rigid) PetscCall(rigid->add(species, places, next_label, &phase));
-    next_label += static_cast<int>(places.size());
+    PetscCall(fill_phase(grid, species, near, next_label, &phase));
+    if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &placed));
+    PetscCall(file.read_phase(species, next_label, &phase, &placed));
+    phase.separate = config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
+    PetscCall(separate_places(grid, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
+    if (species.law == Law::rigid) PetscCall(rigid->add(species, config.places[s], next_label, &phase));
+    next_label += placed.count;
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
-    solver->bodies().add_phase(grid, config.body_series ? places : std::vector<BodyPlace>());
+    solver->bodies().add_phase(grid, config.body_series ? placed : Places());
     if (!config.body_series) state.phases.back().label = FieldBlock();
   }
   PetscCall(solver->set_rigid(std::move(rigid)));

@@ -4,6 +4,7 @@
 #include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "base/rank_zero.hpp"
+#include "bodies/expected_colours.hpp"
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_sides.hpp"
@@ -210,23 +211,47 @@ std::string check_contact(const Config &config, const SpeciesSpec &spec) {
          (config.body_series ? "-interface_scheme plic" : "-body_series true") + "; accepted here: merge";
 }
 
-bool any_random(const Config &config) {
-  return std::any_of(config.species.begin(), config.species.end(),
-                     [](const SpeciesSpec &spec) { return spec.placement == Placement::random; });
+bool is_random(const SpeciesSpec &spec) { return spec.placement == Placement::random; }
+
+// Walls and posts, which others are compared with wherever they are, and whose loads every rank knows.
+bool is_known_everywhere(const SpeciesSpec &spec) {
+  return spec.bears_load() || spec.material().attached || spec.shape == Shape::cylinder;
 }
 
-std::string place_species(std::size_t which, const SolidBodies &solids, Config *config) {
+std::string place_species(std::size_t which, const SolidBodies &solids, const KeptBodies &kept, Config *config) {
   const SpeciesSpec &spec = config->species[which];
-  std::vector<BodyPlace> places;
-  if (spec.placement == Placement::random) {
-    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &places);
+  Places places;
+  if (is_random(spec)) {
+    std::vector<BodyPlace> all;
+    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &all);
         !wrong.empty())
       return wrong;
-  } else if (const std::string wrong = place_bodies(spec, config->grid, &places); !wrong.empty()) {
+    places = Places(all);
+  } else if (const std::string wrong = place_bodies(spec, config->grid, &places, kept); !wrong.empty()) {
     return "-species " + spec.name + (spec.placement == Placement::list ? " (-" + spec.name + "_positions): " : ": ") +
            wrong;
   }
+  config->colours.push_back(config->separates(spec) ? expected_colours(spec, config->grid, places) : 1);
   config->places.push_back(std::move(places));
+  return {};
+}
+
+// Bodies at random keep clear of all that come before them, which every rank knows until they are placed; then it keeps
+// its share.
+std::string place_all(const SolidBodies &solids, Config *config) {
+  const std::vector<SpeciesSpec> &species = config->species;
+  int rank, ranks;
+  (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  (void)MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  config->places.clear();
+  config->colours.clear();
+  for (std::size_t s = 0; s < species.size(); ++s) {
+    const bool all = is_known_everywhere(species[s]) || std::any_of(species.begin() + s, species.end(), is_random);
+    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks, expected_colours_of};
+    if (std::string wrong = place_species(s, solids, kept, config); !wrong.empty()) return wrong;
+  }
+  for (std::size_t s = 0; s < species.size(); ++s)
+    if (!is_known_everywhere(species[s])) config->places[s].share_among(rank, ranks);
   return {};
 }
 
@@ -296,13 +321,12 @@ std::string validate(Config *whole) {
     for (const int high : {0, 1})
       if (crossed(config, d, high))
         solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
-  if (const bool random = any_random(config); random || config.check_only)
+  const bool random = std::any_of(config.species.begin(), config.species.end(), is_random);
+  if (random || config.check_only)
     if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
         !wrong.empty())
       return wrong;
-  whole->places.clear();
-  for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (const std::string wrong = place_species(s, solids, whole); !wrong.empty()) return wrong;
+  if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
   return check_paths(config);
 }
 

@@ -2,6 +2,8 @@
 
 #include "bodies/shapes.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
@@ -29,19 +31,21 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
   PetscFunctionBeginUser;
   const Grid &grid = solver->grid();
   loads->clear();
-  std::vector<std::size_t> next(config.species.size(), 0);  // body of a species
-  int label = 0;
-  for (const int species : solver->bodies().species()) {
-    const SpeciesSpec &spec = config.species[species];
-    const std::size_t n = next[species]++;
-    ++label;
+  const BodyTracker &bodies = solver->bodies();
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
     if (!spec.bears_load() || spec.law == Law::rigid) continue;
-    SurfaceLoad &load = loads->emplace_back();
-    load.label = label;
-    const std::vector<BodyPlace> &places = config.places[species];
-    for (int d = 0; d < grid.dimension(); ++d)
-      load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * grid.spec().length[d];
+    std::size_t n = 0;
+    bodies.for_labels(static_cast<int>(s), bodies.bodies() + 1, [&](int label) {
+      SurfaceLoad &load = loads->emplace_back();
+      load.label = label;
+      const std::vector<NumberedPlace> &places = config.places[s].known;
+      for (int d = 0; d < grid.dimension(); ++d)
+        load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * grid.spec().length[d];
+      ++n;
+    });
   }
+  std::sort(loads->begin(), loads->end(), [](const auto &one, const auto &two) { return one.label < two.label; });
   if (loads->empty()) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver->phases_now(&phases));

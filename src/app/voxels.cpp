@@ -105,7 +105,7 @@ std::string about(const SpeciesSpec &spec, const std::string &wrong) {
   return wrong.empty() ? wrong : "-" + spec.name + "_voxels: " + wrong;
 }
 
-constexpr int most_cells = 1 << 24;  // of the box, in memory at a time
+constexpr int most_cells = 1 << 24;  // in memory at a time
 
 bool on_any_rank(bool here) {
   int any = here;
@@ -115,12 +115,15 @@ bool on_any_rank(bool here) {
 
 }  // namespace
 
-std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit) {
-  const Int3 &n = grid.cells;
-  const int step = static_cast<int>(std::clamp(most_cells / (double(n[0]) * n[1]), 1.0, double(n[2])));
+std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, const CellWindow &cells,
+                        const VisitLayers &visit) {
+  const Int3 &n = cells.size;
+  const int end = cells.begin[2] + n[2];
+  const int step =
+      std::max(1, static_cast<int>(std::min(most_cells / std::max(1.0, double(n[0]) * n[1]), double(n[2]))));
   std::vector<double> phi;
-  for (int k = begin; on_any_rank(k < end); k += step) {
-    const CellWindow window(grid, {0, 0, k}, {n[0], n[1], std::clamp(end - k, 0, step)});
+  for (int k = cells.begin[2]; on_any_rank(k < end); k += step) {
+    const CellWindow window(grid, {cells.begin[0], cells.begin[1], k}, {n[0], n[1], std::clamp(end - k, 0, step)});
     phi.resize(std::size_t(n[0]) * n[1] * window.size[2]);
     const View fraction{phi.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
     VoxelBody body;  // anew: files may have to be read from the front
@@ -142,7 +145,7 @@ std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, dou
     for (int &n : grid.cells) n = std::min(n, 64);
   const Int3 &n = grid.cells;
   double sum = 0;
-  const std::string wrong = read_voxels(spec, grid, 0, n[2], [&](const CellWindow &window, ConstView fraction) {
+  const std::string wrong = read_voxels(spec, grid, {grid, {}, n}, [&](const CellWindow &window, ConstView fraction) {
     for (int k = 0; k < window.size[2]; ++k)
       for (int j = 0; j < n[1]; ++j) sum += std::accumulate(fraction.row(j, k), fraction.row(j, k) + n[0], 0.0);
     if (mask) mask->add(window, fraction);
@@ -167,8 +170,7 @@ std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSp
   return {};
 }
 
-PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase,
-                           std::vector<BodyPlace> *places) {
+PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase, Places *places) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   const View fraction = phase->fraction[0], name = phase->label[0];
@@ -188,7 +190,7 @@ PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label,
   stretch_phase(grid, spec, phase);
   Real3 middle;
   for (int d = 0; d < 3; ++d) middle[d] = grid.spec().length[d] / 2;
-  places->assign(1, {middle, {}});
+  *places = {{middle, {}}};
   PetscFunctionReturn(0);
 }
 

@@ -12,10 +12,10 @@ namespace eulastic {
 
 using VisitLayers = std::function<void(const CellWindow &, ConstView fraction)>;
 
-/// phi of a species of shape voxels in the layers begin <= k < end of the box, some layers at a time. Collective, each
-/// rank with its layers; ends on all ranks when something is wrong on one. Returns one line on what is wrong here, or
-/// nothing.
-std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, int begin, int end, const VisitLayers &visit);
+/// phi of a species of shape voxels in some cells of the box, some layers at a time. Collective, each rank with its
+/// cells; ends on all ranks when something is wrong on one. Returns one line on what is wrong here, or nothing.
+std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, const CellWindow &cells,
+                        const VisitLayers &visit);
 
 /// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
 /// `solids`, and with `masks` their cells. Collective. Returns one line on the first that cannot be used, or nothing.
@@ -23,7 +23,6 @@ std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSp
                            SolidBodies *solids, std::vector<double> *volumes);
 
 /// Collective. One body: sets the fraction, B and the label of a phase that fill_phase() made, and its place.
-PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase,
-                           std::vector<BodyPlace> *places);
+PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase, Places *places);
 
 }  // namespace eulastic

@@ -33,12 +33,15 @@ PetscErrorCode BodyOwners::connect(MPI_Comm comm, int bodies, std::vector<int> h
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   owned_ = BodyRange::of(bodies, rank, ranks);
   here_ = std::move(here);
-  slots_.assign(static_cast<std::size_t>(bodies), -1);
+  while (std::size_t{1} << (64 - shift_) < 2 * here_.size()) --shift_;
+  slots_.assign(std::size_t{1} << (64 - shift_), -1);
   std::vector<PetscSFNode> owners;
   for (std::size_t slot = 0; slot < here_.size(); ++slot) {
     const int owner = BodyRange::owner(here_[slot], bodies, ranks);
     owners.push_back({owner, here_[slot] - BodyRange::of(bodies, owner, ranks).begin});
-    slots_[static_cast<std::size_t>(here_[slot])] = static_cast<int>(slot);
+    std::size_t n = first_look(here_[slot]);
+    while (slots_[n] >= 0) n = (n + 1) & (slots_.size() - 1);
+    slots_[n] = static_cast<int>(slot);
   }
   PetscCall(PetscSFCreate(comm, &sf_));
   PetscCall(PetscSFSetGraph(sf_, owned_.size(), static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,

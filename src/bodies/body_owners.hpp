@@ -24,7 +24,9 @@ public:
   const std::vector<int> &here() const { return here_; }
   /// Position in here(), or -1.
   int slot(int body) const {
-    return body >= 0 && body < static_cast<int>(slots_.size()) ? slots_[static_cast<std::size_t>(body)] : -1;
+    if (body < 0) return -1;
+    for (std::size_t n = first_look(body);; n = (n + 1) & (slots_.size() - 1))
+      if (slots_[n] < 0 || here_[static_cast<std::size_t>(slots_[n])] == body) return slots_[n];
   }
 
   /// Combines `width` values of every body here() with those of the owned bodies, there or on another rank; `op`:
@@ -34,8 +36,12 @@ public:
   PetscErrorCode bring(int width, const std::vector<double> &owned, std::vector<double> *here) const;
 
 private:
+  std::size_t first_look(int body) const { return static_cast<unsigned>(body) * 0x9e3779b97f4a7c15U >> shift_; }
+
   BodyRange owned_;
-  std::vector<int> here_, slots_;
+  std::vector<int> here_;
+  std::vector<int> slots_ = {-1, -1};  ///< positions by a hash of the body, at most half of them taken; -1: nobody
+  int shift_ = 63;                     ///< of 64 bits, to as many as there are slots
   PetscSF sf_ = nullptr;
 };
 

@@ -8,17 +8,17 @@
 
 namespace eulastic {
 
-int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const std::vector<BodyPlace> &places) {
-  constexpr std::size_t enough = 20000;
+int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const Places &places) {
   constexpr int corners = 3;  // cells: those that surfaces cut, and what lies within the reach along a diagonal
   if (spec.shape != Shape::sphere && spec.shape != Shape::ellipsoid && spec.shape != Shape::biconcave) return 1;
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  const std::size_t count = std::min(places.size(), enough);
+  const std::size_t count = std::min<std::size_t>(places.count, expected_colours_of);
   double spacing = 0;
   for (int d = 0; d < dimension; ++d) spacing = std::max(spacing, grid.length[d] / grid.cells[d]);
   const ConvexBody shape(spec, dimension, spacing * (contact_reach + corners) / 2);
   Crowd crowd(grid, 2 * shape.outer_radius(), count);
-  for (std::size_t b = 0; b < count; ++b) crowd.add({&shape, places[b].centre, rotation(places[b].orientation)});
+  for (std::size_t b = 0; b < count; ++b)
+    crowd.add({&shape, places.known[b].centre, rotation(places.known[b].orientation)});
   std::vector<int> bodies;
   std::vector<NearBodies> pairs;
   for (int b = 0; b < static_cast<int>(count); ++b) {

@@ -1,6 +1,7 @@
 #include "bodies/fill_phase.hpp"
 
 #include "base/events.hpp"
+#include "bodies/near_places.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "field/sides.hpp"
 #include "grid/threads.hpp"
@@ -10,18 +11,6 @@
 
 namespace eulastic {
 namespace {
-
-// The sphere around the body misses this rank's box.
-bool is_far(const Grid &grid, const BodyPlace &place, double radius) {
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const double h = grid.spacing()[d], low = grid.layout().begin[d] * h, length = grid.spec().length[d];
-    const double half = grid.owned()[d] * h / 2;
-    double distance = std::abs(place.centre[d] - (low + half));
-    if (!grid.is_wall(d)) distance = std::min(distance, length - distance);
-    if (distance > half + radius + h) return true;
-  }
-  return false;
-}
 
 void add_body(const Grid &grid, const PlacedBody &body, double name, View fraction, View label) {
   const Int3 &first = grid.layout().begin;
@@ -42,14 +31,14 @@ void add_body(const Grid &grid, const PlacedBody &body, double name, View fracti
         in_parallel(row_parts(grid), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
 }
 
-// Body b goes to *phase_of(b).
+// Body b of the species goes to *phase_of(b).
 template <class PhaseOf>
-void add_bodies(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
-                PhaseOf phase_of) {
+void add_bodies(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label, PhaseOf phase_of) {
   const Surface surface(spec, grid.dimension());
-  for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
-    Phase *phase = phase_of(b);
-    add_body(grid, PlacedBody(surface, grid.spec(), places[b]), first_label + double(b), phase->fraction[0],
+  for (const NumberedPlace &place : places.known) {
+    if (!is_near(grid, grid.rank(), surface, place)) continue;
+    Phase *phase = phase_of(place.index);
+    add_body(grid, PlacedBody(surface, grid.spec(), place), first_label + place.index, phase->fraction[0],
              phase->label[0]);
   }
 }
@@ -76,17 +65,16 @@ void for_points_of(const Grid &grid, const PlacedBody &body, const Staggering &a
 // B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
 // that has a part of them.
 template <class PhaseOf>
-void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
-                  PhaseOf phase_of) {
+void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label, PhaseOf phase_of) {
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
   const Surface surface(spec, grid.dimension());
   const auto &components = tensor_components(grid.dimension());
-  for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
-    if (places[b].orientation == Real3{}) continue;
-    const Rotation R = rotation(places[b].orientation);
-    const PlacedBody body(surface, grid.spec(), places[b]);
-    Phase &phase = *phase_of(b);
+  for (const NumberedPlace &place : places.known) {
+    if (place.orientation == Real3{} || !is_near(grid, grid.rank(), surface, place)) continue;
+    const Rotation R = rotation(place.orientation);
+    const PlacedBody body(surface, grid.spec(), place);
+    Phase &phase = *phase_of(place.index);
     for (std::size_t c = 0; c < components.size(); ++c) {
       const auto [x, y] = components[c];
       double turned = 0;
@@ -97,7 +85,7 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<B
       for_points_of(grid, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
         if (centred) {
-          if (label(p[0], p[1], p[2]) == first_label + double(b)) value = turned;
+          if (label(p[0], p[1], p[2]) == first_label + place.index) value = turned;
           return;
         }
         double sum = 0;  // of the four cells around the edge
@@ -115,15 +103,6 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<B
 
 }  // namespace
 
-std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spec,
-                                        const std::vector<BodyPlace> &places) {
-  const double radius = Surface(spec, grid.dimension()).bounding_radius();
-  std::vector<std::size_t> own;
-  for (std::size_t b = 0; b < places.size(); ++b)
-    if (!is_far(grid, places[b], radius)) own.push_back(b);
-  return own;
-}
-
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   phase->tensor = tensor_at_rest(grid);
   if (!phase->material.carries_tensor()) return;
@@ -139,23 +118,26 @@ void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   }
 }
 
-PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places,
-                          int first_label, Phase *phase) {
+PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+                          Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   phase->species = spec.name;
   phase->material = spec.material();
   phase->empty(grid, true);
-  add_bodies(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
+  add_bodies(grid, spec, places, first_label, [phase](int) { return phase; });
   stretch_phase(grid, spec, phase);
-  turn_stretch(grid, spec, places, first_label, [phase](std::size_t) { return phase; });
+  turn_stretch(grid, spec, places, first_label, [phase](int) { return phase; });
   PetscFunctionReturn(0);
 }
 
-void refill_phases(const Grid &grid, const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
-                   const std::vector<int> &colour, std::vector<Phase> *phases) {
+void refill_phases(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+                   const std::map<int, int> &colour, std::vector<Phase> *phases) {
   for (Phase &phase : *phases) phase.empty(grid, true);
-  const auto phase_of = [&](std::size_t b) { return &(*phases)[colour[b]]; };
+  const auto phase_of = [&](int b) {
+    const auto found = colour.find(b);
+    return &(*phases)[found == colour.end() ? 0 : found->second];
+  };
   add_bodies(grid, spec, places, first_label, phase_of);
   for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
   turn_stretch(grid, spec, places, first_label, phase_of);

@@ -27,23 +27,23 @@ bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layer
   return any;
 }
 
-void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::vector<int> *leaves) {
+void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::set<int> *leaves) {
   const View fraction = phase->fraction[0], label = phase->label[0];
   for_cells_at(grid, d, high, layers, [&](int i, int j, int k) {
     if (!(fraction(i, j, k) > 0)) return;
     if (label(i, j, k) > 0)
-      (*leaves)[static_cast<std::size_t>(label(i, j, k))] = 1;
+      leaves->insert(static_cast<int>(label(i, j, k)));
     else
       fraction(i, j, k) = 0;
   });
 }
 
-void take_out(const Grid &grid, const std::vector<int> &leaves, Phase *phase) {
+void take_out(const Grid &grid, const std::set<int> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
   for (const Segment &row : grid.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) {
       double &name = label(i, row.j, row.k);
-      if (!(name > 0 && leaves[static_cast<std::size_t>(name)])) continue;
+      if (!(name > 0 && leaves.count(static_cast<int>(name)) > 0)) continue;
       fraction(i, row.j, row.k) = 0;
       name = 0;
     }

@@ -256,7 +256,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   for (int b = 0; b < owners.owned().size(); ++b) {
     result->push_back(evaluate(grid, sums, b, references_[b], largest));
     result->back().label = owners.owned().begin + b + 1;
-    result->back().species = species_[result->back().label - 1];
+    result->back().species = species(result->back().label);
   }
   PetscFunctionReturn(0);
 }

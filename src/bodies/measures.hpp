@@ -10,6 +10,7 @@
 #include "bodies/placement.hpp"
 #include "field/phase.hpp"
 
+#include <algorithm>
 #include <functional>
 
 namespace eulastic {
@@ -37,16 +38,24 @@ using RowEnergy = std::function<void(const Grid &, const Phase &, const Segment 
 class BodyTracker {
 public:
   /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
-  void add_phase(const Grid &grid, const std::vector<BodyPlace> &places);
+  void add_phase(const Grid &grid, const Places &places);
   /// Another body, like the one with this label, as many cells away. Collective.
   PetscErrorCode add_like(const Grid &grid, int label, const Int3 &shift);
-  /// Labels that others were made like; those others come last, in this order.
+  /// Labels of placed bodies that others were made like; those others come last, in this order.
   const std::vector<int> &like() const { return like_; }
   /// All of them again, to be followed by set_known().
   void set_like(const std::vector<long> &like);
-  int bodies() const { return static_cast<int>(species_.size()); }
-  /// Index of the phase of every body.
-  const std::vector<int> &species() const { return species_; }
+  int bodies() const { return first_.back() + static_cast<int>(like_.size()); }
+  /// Index of the phase of a body, by its label.
+  int species(int label) const;
+  /// Calls visit(label) for all bodies of a phase with labels before `end`, ascending.
+  template <class Visit>
+  void for_labels(int species, int end, const Visit &visit) const {
+    for (int b = first_[species]; b < std::min(first_[species + 1], end - 1); ++b) visit(b + 1);
+    for (std::size_t n = 0; n < like_.size(); ++n)
+      if (const int label = first_.back() + static_cast<int>(n) + 1; label < end && this->species(label) == species)
+        visit(label);
+  }
 
   /// Who owns the bodies of which a rank has labelled cells, or that it names in `more`; `references`: of these, within
   /// the box. Collective.
@@ -68,18 +77,24 @@ public:
   void set_first_volumes(std::vector<double> owned) { first_volumes_ = std::move(owned); }
   /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
   /// Collective.
-  PetscErrorCode known(MPI_Comm comm, std::vector<Int3> *references, std::vector<double> *first_volumes) const;
+  PetscErrorCode known(const Grid &grid, std::vector<Int3> *references, std::vector<double> *first_volumes);
   /// The same, of the bodies that this rank owns.
   void set_known(std::vector<Int3> owned_references, std::vector<double> owned_first_volumes);
 
 private:
-  void share(const Grid &grid);
+  struct Known {
+    int body;
+    Int3 reference;
+    double first_volume;
+  };
+  PetscErrorCode give_to_owners(const Grid &grid, std::vector<Known> known);
+  PetscErrorCode settle(const Grid &grid);
 
-  std::vector<Int3> references_;  ///< of the bodies that this rank owns; of all while not shared_
+  std::vector<Known> placed_;     ///< until they are given to their owners
+  std::vector<Int3> references_;  ///< of the bodies that this rank owns
   std::vector<double> first_volumes_;
-  bool shared_ = false;
-  std::vector<int> species_, like_;
-  int phases_ = 0;
+  bool settled_ = false;
+  std::vector<int> first_{0}, like_;  ///< first body of every phase, and one more
 };
 
 }  // namespace eulastic

@@ -54,32 +54,29 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
   return sum;
 }
 
+// Of the bodies that a rank knows of, in the order of their labels.
 class Search {
 public:
-  Search(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-         const GridSpec &grid, const BodyRange &own)
-      : species_(species),
-        places_(places),
-        grid_(grid),
-        dimension_(grid.cells[2] == 1 ? 2 : 3),
-        own_(own),
-        candidates_(own.size()) {
+  Search(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const GridSpec &grid)
+      : species_(species), grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3) {
     double spacing = grid.length[0] / grid.cells[0];
     for (int d = 1; d < dimension_; ++d) spacing = std::min(spacing, grid.length[d] / grid.cells[d]);
+    const std::vector<int> first = first_labels(species, places);
     for (std::size_t s = 0; s < species.size(); ++s) {
       surfaces_.emplace_back(species[s], dimension_);
       shapes_.emplace_back(species[s], dimension_, -skin * spacing);
       if (has_ends(species[s])) widest_ = std::max(widest_, 2 * shapes_[s].outer_radius());
-      first_.push_back(bodies_);
-      bodies_ += species[s].shape == Shape::voxels ? 1 : static_cast<int>(places[s].size());
+      if (!has_shape(species[s])) continue;
+      for (const NumberedPlace &place : places[s].known) bodies_.push_back({first[s] + place.index, s, &place});
     }
     find_candidates();
   }
 
-  int bodies() const { return bodies_; }
+  int bodies() const { return static_cast<int>(bodies_.size()); }
+  int label(int b) const { return bodies_[b].label; }
 
-  // Bodies that may share cells with body b, one of the rank's own, ascending.
-  const std::vector<int> &candidates(int b) const { return candidates_[b - own_.begin]; }
+  // Bodies that may share cells, each pair both ways, ascending.
+  const std::vector<std::pair<int, int>> &candidates() const { return candidates_; }
 
   // What two bodies share, or the first part of it that is found.
   double shared(int one, int two, bool all) const {
@@ -100,53 +97,37 @@ public:
   }
 
 private:
-  std::size_t whose(int b) const { return std::upper_bound(first_.begin(), first_.end(), b) - first_.begin() - 1; }
+  struct Body {
+    int label;
+    std::size_t species;
+    const BodyPlace *place;
+  };
+  std::size_t whose(int b) const { return bodies_[b].species; }
   const SpeciesSpec &spec(int b) const { return species_[whose(b)]; }
-  const BodyPlace &place(int b) const { return places_[whose(b)][b - first_[whose(b)]]; }
+  const BodyPlace &place(int b) const { return *bodies_[b].place; }
   PlacedConvex convex(int b) const { return {&shapes_[whose(b)], place(b).centre, rotation(place(b).orientation)}; }
 
   void find_candidates() {
-    Crowd crowd(grid_, widest_ > 0 ? widest_ : grid_.length[0], own_.size());  // the own ones with ends
+    Crowd crowd(grid_, widest_ > 0 ? widest_ : grid_.length[0], bodies_.size());  // those with ends
     std::vector<int> in_crowd, endless;
-    Real3 low = grid_.length, high{};  // of their centres
-    for (int b = own_.begin; b < own_.end; ++b) {
-      if (!has_shape(spec(b))) continue;
-      (has_ends(spec(b)) ? in_crowd : endless).push_back(b);
-      if (!has_ends(spec(b))) continue;
-      crowd.add(convex(b));
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], place(b).centre[d]);
-        high[d] = std::max(high[d], place(b).centre[d]);
-      }
-    }
-    const auto is_far = [&](const Real3 &centre) {
-      for (int d = 0; d < dimension_; ++d) {
-        double away = std::abs(centre[d] - (low[d] + high[d]) / 2);
-        if (grid_.boundary[d] == Boundary::periodic) away = std::min(away, grid_.length[d] - away);
-        if (away > (high[d] - low[d]) / 2 + 1.0001 * widest_) return true;
-      }
-      return in_crowd.empty();
+    const auto add = [&](int one, int two) {
+      if (!is_wanted(spec(std::min(one, two)), spec(std::max(one, two)))) return;
+      candidates_.emplace_back(one, two);
+      candidates_.emplace_back(two, one);
     };
-    const auto add = [&](int own, int other) {
-      if (is_wanted(spec(std::min(own, other)), spec(std::max(own, other))))
-        candidates_[own - own_.begin].push_back(other);
-    };
-    for (int other = 0; other < bodies_; ++other) {
-      if (!has_shape(spec(other))) continue;
-      if (has_ends(spec(other))) {
-        for (const int b : endless)
+    for (int b = 0; b < bodies(); ++b) {
+      const bool ends = has_ends(spec(b));
+      for (const int other : endless)
+        if (!ends || may_meet(other, b)) add(b, other);
+      if (ends)
+        for (const int c : crowd.touching(convex(b), in_crowd.size())) add(b, in_crowd[c]);
+      else
+        for (const int other : in_crowd)
           if (may_meet(b, other)) add(b, other);
-        if (is_far(place(other).centre)) continue;
-        const auto self = std::lower_bound(in_crowd.begin(), in_crowd.end(), other) - in_crowd.begin();
-        const bool is_own = own_.has(other);
-        for (const int c : crowd.touching(convex(other), is_own ? self : in_crowd.size())) add(in_crowd[c], other);
-      } else {
-        for (const int b : in_crowd)
-          if (may_meet(other, b)) add(b, other);
-        for (const int b : endless)
-          if (b != other) add(b, other);
-      }
+      (ends ? in_crowd : endless).push_back(b);
+      if (ends) crowd.add(convex(b));
     }
+    std::sort(candidates_.begin(), candidates_.end());
   }
 
   // Whether the sphere around a body may meet a body without ends. Across its axis a tube has no images.
@@ -168,69 +149,72 @@ private:
   }
 
   const std::vector<SpeciesSpec> &species_;
-  const std::vector<std::vector<BodyPlace>> &places_;
   GridSpec grid_;
   int dimension_;
-  BodyRange own_;
   std::vector<Surface> surfaces_;   // of species
   std::vector<ConvexBody> shapes_;  // of species
-  std::vector<int> first_;          // body of a species
-  int bodies_ = 0;
+  std::vector<Body> bodies_;
   double widest_ = 0;
-  std::vector<std::vector<int>> candidates_;  // of own bodies
+  std::vector<std::pair<int, int>> candidates_;
 };
 
 }  // namespace
 
-std::vector<char> find_overlaps(const std::vector<SpeciesSpec> &species,
-                                const std::vector<std::vector<BodyPlace>> &places, const GridSpec &grid,
-                                const BodyRange &own, Overlap *first) {
-  *first = {};
-  std::vector<char> overlaps(own.size(), 0);
+std::vector<int> first_labels(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places) {
+  std::vector<int> first{1};
+  for (std::size_t s = 0; s < species.size(); ++s)
+    first.push_back(first[s] + (species[s].shape == Shape::voxels ? 1 : places[s].count));
+  return first;
+}
+
+bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places) {
   bool any = false;
   for (std::size_t t = 0; t < species.size(); ++t)
     for (std::size_t s = 0; s <= t; ++s)
-      any = any || (is_wanted(species[s], species[t]) && (s < t || places[s].size() > 1));
-  if (!any) return overlaps;
-  const Search search(species, places, grid, own);
-  for (int b = own.begin; b < own.end; ++b)
-    for (const int candidate : search.candidates(b)) {
-      const auto [one, two] = std::minmax({b, candidate});
-      if (search.shared(one, two, false) == 0) continue;
-      overlaps[b - own.begin] = 1;
-      if (first->body == 0 || std::pair(one + 1, two + 1) < std::pair(first->body, first->other))
-        *first = {one + 1, two + 1, 0};
-      break;
-    }
-  if (first->body > 0) first->volume = search.shared(first->body - 1, first->other - 1, true);
+      any = any || (is_wanted(species[s], species[t]) && (s < t || places[s].count > 1));
+  return any;
+}
+
+std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
+                               const GridSpec &grid, Overlap *first) {
+  *first = {};
+  std::pair<int, int> found;
+  std::vector<int> overlaps;
+  const Search search(species, places, grid);
+  for (const auto &[b, candidate] : search.candidates()) {
+    if (!overlaps.empty() && overlaps.back() == search.label(b)) continue;
+    const std::pair<int, int> pair = std::minmax(b, candidate);
+    if (search.shared(pair.first, pair.second, false) == 0) continue;
+    if (overlaps.empty() || pair < found) found = pair;
+    overlaps.push_back(search.label(b));
+  }
+  if (overlaps.empty()) return overlaps;
+  *first = {search.label(found.first), search.label(found.second), search.shared(found.first, found.second, true)};
   return overlaps;
 }
 
-void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, const GridSpec &grid,
-                const CellWindow &layers, ConstView fraction, std::map<int, SharedVolume> *shared) {
+void add_shared(const SpeciesSpec &spec, const Places &places, const GridSpec &grid, const CellWindow &cells,
+                ConstView fraction, std::map<int, SharedVolume> *shared) {
   const Surface surface(spec, grid.cells[2] == 1 ? 2 : 3);
-  const double radius = surface.bounding_radius(), half = layers.size[2] * layers.spacing(2) / 2;
-  const double middle = layers.begin[2] * layers.spacing(2) + half, length = grid.length[2];
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    double distance = std::abs(places[b].centre[2] - middle);
-    if (grid.boundary[2] == Boundary::periodic) distance = std::min(distance, length - distance);
-    if (distance > half + radius) continue;
-    const PlacedBody body(surface, grid, places[b]);
+  const Int3 &first = cells.begin;
+  for (const NumberedPlace &place : places.known) {
+    const PlacedBody body(surface, grid, place);
+    const auto ranges = [&](int d) { return body.ranges(d, first[d], first[d] + cells.size[d]); };
     SharedVolume with;
-    for (const PlacedBody::Range &z : body.ranges(2, layers.begin[2], layers.begin[2] + layers.size[2]))
-      for (const PlacedBody::Range &y : body.ranges(1, 0, grid.cells[1]))
-        for (const PlacedBody::Range &x : body.ranges(0, 0, grid.cells[0]))
+    for (const PlacedBody::Range &z : ranges(2))
+      for (const PlacedBody::Range &y : ranges(1))
+        for (const PlacedBody::Range &x : ranges(0))
           for (int k = z.begin; k < z.end; ++k)
             for (int j = y.begin; j < y.end; ++j)
               for (int i = x.begin; i < x.end; ++i) {
-                const double solid = fraction(i, j, k - layers.begin[2]);
+                const double solid = fraction(i - first[0], j - first[1], k - first[2]);
                 if (!(solid > 0)) continue;
                 const double more = solid + body.fraction({i + x.shift, j + y.shift, k + z.shift}) - 1;
                 if (more > excess) with.overlaps = true;
                 if (more > 0) with.volume += std::llround(std::ldexp(more, 30));
               }
     if (with.volume == 0) continue;
-    SharedVolume &all = (*shared)[static_cast<int>(b)];
+    SharedVolume &all = (*shared)[place.index];
     all.volume += with.volume;
     all.overlaps = all.overlaps || with.overlaps;
   }

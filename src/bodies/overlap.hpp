@@ -1,7 +1,6 @@
 // Bodies that are placed over each other.
 #pragma once
 
-#include "base/body_range.hpp"
 #include "bodies/placement.hpp"
 #include "grid/voxels.hpp"
 
@@ -17,13 +16,19 @@ struct Overlap {
   double volume = 0;        ///< that they share, at least: the sum of what is above 1 in a cell; area in 2-D
 };
 
-/// Whether each body of `own` (label - 1) overlaps any other: in some cell their solid fractions add up to more than
-/// 1.01, which bodies that touch do not. `first`: the first pair with one of them. No pairs of: two attached bodies,
+/// The first label of every species, and one more.
+std::vector<int> first_labels(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places);
+
+/// Whether there are any pairs to look at.
+bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places);
+
+/// Labels, ascending, of the known bodies that overlap another one: in some cell their solid fractions add up to more
+/// than 1.01, which bodies that touch do not. `first`: the first pair of them. No pairs of: two attached bodies,
 /// which is how walls are joined; bodies of one species with -NAME_contact merge, which are one; a body at random and
-/// one before it; bodies from files (add_shared). Communicates nothing; memory for bodies of `own` only.
-std::vector<char> find_overlaps(const std::vector<SpeciesSpec> &species,
-                                const std::vector<std::vector<BodyPlace>> &places, const GridSpec &grid,
-                                const BodyRange &own, Overlap *first);
+/// one before it; bodies from files (add_shared). Where ranks know what comes near their boxes (bring_near), together
+/// they find all.
+std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
+                               const GridSpec &grid, Overlap *first);
 
 /// What a body shares with a solid: volume in 2^-30 cells, to be added without round-off, and whether they overlap.
 struct SharedVolume {
@@ -31,8 +36,8 @@ struct SharedVolume {
   bool overlaps = false;
 };
 
-/// Adds what bodies of a species share with the solid of `fraction` in layers of the box, by their index in `places`.
-void add_shared(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, const GridSpec &grid,
-                const CellWindow &layers, ConstView fraction, std::map<int, SharedVolume> *shared);
+/// Adds what the known bodies of a species share with the solid of `fraction` in some cells of the box, by their index.
+void add_shared(const SpeciesSpec &spec, const Places &places, const GridSpec &grid, const CellWindow &cells,
+                ConstView fraction, std::map<int, SharedVolume> *shared);
 
 }  // namespace eulastic

@@ -59,37 +59,6 @@ std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPl
   return places->empty() ? spec.positions_file + " holds no positions" : std::string{};
 }
 
-std::string make_lattice(const SpeciesSpec &spec, const GridSpec &grid, std::vector<BodyPlace> *places) {
-  const Int3 &n = spec.count;
-  if (n[0] < 1 || n[1] < 1 || n[2] < 1) return "a lattice needs at least one body in every direction";
-  if (grid.cells[2] == 1 && n[2] != 1) return "a lattice has one layer in z in 2-D";
-  if (double(n[0]) * n[1] * n[2] > most_bodies) return "at most " + std::to_string(most_bodies) + " bodies";
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  const Surface surface(spec, dimension);
-  Random random(spec.seed, spec.name);
-  Real3 pitch, range{};
-  for (int d = 0; d < 3; ++d) {
-    pitch[d] = grid.length[d] / n[d];
-    const bool turns = spec.random_orientation;
-    const double half = turns ? surface.bounding_radius() : surface.support(rotation(spec.orientation)[d]);
-    if (d < dimension) range[d] = spec.jitter * std::max(0.0, pitch[d] / 2 - half);
-  }
-  places->reserve(std::size_t(n[0]) * n[1] * n[2]);
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j)
-      for (int i = 0; i < n[0]; ++i) {
-        BodyPlace &place = places->emplace_back();
-        const Int3 index{i, j, k};
-        place.orientation = spec.orientation;
-        for (int d = 0; d < 3; ++d) {
-          place.centre[d] = (index[d] + 0.5) * grid.length[d] / n[d];
-          if (range[d] > 0) place.centre[d] += random.between(-range[d], range[d]);
-        }
-        if (spec.random_orientation) place.orientation = random.orientation(dimension);
-      }
-  return {};
-}
-
 // Why the lumen of a tube is not in the box.
 std::string why_no_lumen(const SpeciesSpec &spec, const GridSpec &grid, const Real3 &centre) {
   const double throat = spec.shape == Shape::constricted_tube ? spec.throat_length / 2 : 0;
@@ -127,36 +96,119 @@ std::string why_not(const SpeciesSpec &spec, const Surface &surface, const GridS
   return {};
 }
 
-}  // namespace
+// Takes the bodies of a species as they come.
+class Placing {
+public:
+  Placing(const SpeciesSpec &spec, const GridSpec &grid, const KeptBodies &kept, Places *places)
+      : spec_(spec), grid_(grid), surface_(spec, grid.cells[2] == 1 ? 2 : 3), kept_(kept), places_(*places) {}
 
-std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, std::vector<BodyPlace> *places) {
-  const bool flat = grid.cells[2] == 1;
-  places->clear();
-  if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files
-  std::string reason = why_no_shape(spec, flat ? 2 : 3);
-  if (!reason.empty()) return reason;
-  Real3 middle{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2};
-  if (is_attached(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
-  if (spec.shape == Shape::slab) {
-    middle[spec.axis] = (spec.interval[0] + spec.interval[1]) / 2;
-    places->push_back({middle, spec.orientation});
-  } else if (spec.placement == Placement::one) {
-    places->push_back({spec.centre_given ? spec.centre : middle, spec.orientation});
-    if (spec.random_orientation) places->back().orientation = Random(spec.seed, spec.name).orientation(flat ? 2 : 3);
-  } else if (spec.placement == Placement::list) {
-    reason = on_rank_0([&] { return read_list(spec, flat ? 2 : 3, places); });
-    share(places);
-  } else {
-    reason = make_lattice(spec, grid, places);
+  void expect(int count) {
+    places_.count = count;
+    own_ = BodyRange::of(count, kept_.rank, kept_.ranks);
+    places_.known.reserve(own_.size());
   }
-  if (!reason.empty()) return reason;
-  const Surface surface(spec, flat ? 2 : 3);
-  for (std::size_t b = 0; b < places->size(); ++b) {
-    if (flat) (*places)[b].centre[2] = middle[2];
-    reason = why_not(spec, surface, grid, (*places)[b]);
-    if (!reason.empty()) return places->size() > 1 ? "body " + std::to_string(b + 1) + ": " + reason : reason;
+  /// The next body; what is wrong with it.
+  std::string add(BodyPlace place) {
+    const int index = next_++;
+    if (grid_.cells[2] == 1) place.centre[2] = grid_.length[2] / 2;
+    const std::string reason = why_not(spec_, surface_, grid_, place);
+    if (!reason.empty()) return places_.count > 1 ? "body " + std::to_string(index + 1) + ": " + reason : reason;
+    if (own_.has(index) || index < kept_.first) places_.known.push_back({place, index});
+    return {};
+  }
+  std::string add_only(const BodyPlace &place) {
+    expect(1);
+    return add(place);
+  }
+
+private:
+  const SpeciesSpec &spec_;
+  const GridSpec &grid_;
+  Surface surface_;
+  KeptBodies kept_;
+  Places &places_;
+  BodyRange own_;
+  int next_ = 0;
+};
+
+// Rank 0 tells the others piece by piece.
+std::string place_list(const SpeciesSpec &spec, int dimension, Placing *placing) {
+  std::vector<BodyPlace> all, piece;
+  if (std::string wrong = on_rank_0([&] { return read_list(spec, dimension, &all); }); !wrong.empty()) return wrong;
+  std::size_t count = all.size();
+  share(&count);
+  placing->expect(static_cast<int>(count));
+  for (std::size_t begin = 0; begin < count; begin += BodyRange::piece) {
+    if (!all.empty()) piece.assign(all.begin() + begin, all.begin() + std::min(count, begin + BodyRange::piece));
+    share(&piece);
+    for (const BodyPlace &place : piece)
+      if (std::string wrong = placing->add(place); !wrong.empty()) return wrong;
   }
   return {};
+}
+
+std::string make_lattice(const SpeciesSpec &spec, const GridSpec &grid, Placing *placing) {
+  const Int3 &n = spec.count;
+  if (n[0] < 1 || n[1] < 1 || n[2] < 1) return "a lattice needs at least one body in every direction";
+  if (grid.cells[2] == 1 && n[2] != 1) return "a lattice has one layer in z in 2-D";
+  if (double(n[0]) * n[1] * n[2] > most_bodies) return "at most " + std::to_string(most_bodies) + " bodies";
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  const Surface surface(spec, dimension);
+  Random random(spec.seed, spec.name);
+  Real3 pitch, range{};
+  for (int d = 0; d < 3; ++d) {
+    pitch[d] = grid.length[d] / n[d];
+    const bool turns = spec.random_orientation;
+    const double half = turns ? surface.bounding_radius() : surface.support(rotation(spec.orientation)[d]);
+    if (d < dimension) range[d] = spec.jitter * std::max(0.0, pitch[d] / 2 - half);
+  }
+  placing->expect(n[0] * n[1] * n[2]);
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) {
+        BodyPlace place{{}, spec.orientation};
+        const Int3 index{i, j, k};
+        for (int d = 0; d < 3; ++d) {
+          place.centre[d] = (index[d] + 0.5) * grid.length[d] / n[d];
+          if (range[d] > 0) place.centre[d] += random.between(-range[d], range[d]);
+        }
+        if (spec.random_orientation) place.orientation = random.orientation(dimension);
+        if (std::string wrong = placing->add(place); !wrong.empty()) return wrong;
+      }
+  return {};
+}
+
+}  // namespace
+
+Places::Places(const std::vector<BodyPlace> &all) : count(static_cast<int>(all.size())) {
+  for (int b = 0; b < count; ++b) known.push_back({all[b], b});
+}
+
+void Places::share_among(int rank, int ranks) {
+  const BodyRange own = BodyRange::of(count, rank, ranks);
+  const auto other = [&](const NumberedPlace &place) { return !own.has(place.index); };
+  known.erase(std::remove_if(known.begin(), known.end(), other), known.end());
+  known.shrink_to_fit();
+  everywhere = ranks == 1;
+}
+
+std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, Places *places, const KeptBodies &kept) {
+  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  *places = {};
+  if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files
+  if (std::string wrong = why_no_shape(spec, dimension); !wrong.empty()) return wrong;
+  BodyPlace place{{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2}, spec.orientation};
+  if (is_attached(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
+  Placing placing(spec, grid, kept, places);
+  if (spec.shape == Shape::slab) {
+    place.centre[spec.axis] = (spec.interval[0] + spec.interval[1]) / 2;
+    return placing.add_only(place);
+  }
+  if (spec.placement == Placement::list) return place_list(spec, dimension, &placing);
+  if (spec.placement != Placement::one) return make_lattice(spec, grid, &placing);
+  if (spec.centre_given) place.centre = spec.centre;
+  if (spec.random_orientation) place.orientation = Random(spec.seed, spec.name).orientation(dimension);
+  return placing.add_only(place);
 }
 
 }  // namespace eulastic

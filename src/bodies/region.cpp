@@ -5,8 +5,8 @@
 
 namespace eulastic {
 
-Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-               const SpeciesSpec *vessel, const SolidBodies &solids, const GridSpec &grid)
+Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
+               const SolidBodies &solids, const GridSpec &grid)
     : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), vessel_(vessel), solids_(solids), high_(grid.length) {
   cylinder_shapes_.reserve(species.size());  // bodies point into it
   for (int d = 0; d < dimension_; ++d) volume_ *= grid.length[d];
@@ -22,7 +22,7 @@ Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<std::v
     }
     if (other.shape == Shape::cylinder && s < places.size()) {
       cylinder_shapes_.emplace_back(other, dimension_, 0, grid.length[other.axis]);
-      for (const BodyPlace &place : places[s])
+      for (const BodyPlace &place : places[s].known)
         cylinders_.push_back({&cylinder_shapes_.back(), place.centre, rotation(place.orientation)});
     }
   }

@@ -13,8 +13,8 @@ class Region {
 public:
   /// All slabs of `species` and the cylinders among those with `places`. `vessel`: one of the tubes, or null. All must
   /// stay.
-  Region(const std::vector<SpeciesSpec> &species, const std::vector<std::vector<BodyPlace>> &places,
-         const SpeciesSpec *vessel, const SolidBodies &solids, const GridSpec &grid);
+  Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
+         const SolidBodies &solids, const GridSpec &grid);
 
   /// Volume (area in 2-D) of the lumen, or of the box less slabs; less bodies from files.
   double volume() const { return volume_; }

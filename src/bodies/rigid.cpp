@@ -21,8 +21,7 @@ int RigidBodies::image_of(int body, const Int3 &shift) {
 
 RigidBodies::RigidBodies(const Grid &grid, GhostExchange &exchange) : grid_(grid), exchange_(exchange) {}
 
-PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label,
-                                Phase *phase) {
+PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase) {
   PetscFunctionBeginUser;
   const int dimension = grid_.dimension(), motion = static_cast<int>(faces_.motions.size());
   if (!exist())
@@ -39,11 +38,11 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const std::vector<BodyP
     fill_wall_ghosts_even(grid_, at_centre, phase->fraction[0], 1);
   }
   const double volume = faces_.motions.back().travels() ? volume_in_box(spec, grid_.spec()) : 0;
-  const std::size_t count = file ? 1 : places.size();
+  const std::size_t count = file ? 1 : places.known.size();
   for (std::size_t b = 0; b < count; ++b) {
     const int index = faces_.count++;
     for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}, volume});
-    sources_.push_back({surface, nullptr, file ? BodyPlace{} : places[b]});
+    sources_.push_back({surface, nullptr, file ? NumberedPlace{} : places.known[b]});
     put(index, sources_.back().start);
     for (int a = 0; a < dimension; ++a) {
       if (file)

@@ -14,8 +14,9 @@ namespace eulastic {
 class RigidBodies {
 public:
   RigidBodies(const Grid &grid, GhostExchange &exchange);
-  /// Owned cells of `phase` are set. Collective. Bodies get their indices as they come; `first_label`: of the first.
-  PetscErrorCode add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places, int first_label, Phase *phase);
+  /// Owned cells of `phase` are set, and all `places` are known. Collective. Bodies get their indices as they come;
+  /// `first_label`: of the first.
+  PetscErrorCode add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase);
   bool exist() const { return faces_.count > 0; }
   bool travel() const { return faces_.travels; }
   /// The faces inside at a time, and links that end where surfaces are at another; nothing can be added afterwards.
@@ -40,7 +41,7 @@ private:
   };
   struct Species {
     SpeciesSpec spec;
-    std::vector<BodyPlace> places;
+    Places places;
     int first_label;
   };
   BodyPlace place_of(const BodyPlace &start, const Real3 &shift) const;

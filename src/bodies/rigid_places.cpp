@@ -87,8 +87,8 @@ PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const 
     for (Phase &phase : *phases) {
       const RigidMotion &motion = faces_.motions[s];
       if (!motion.travels() || phase.species != species_[s].spec.name) continue;
-      std::vector<BodyPlace> places = species_[s].places;
-      for (BodyPlace &place : places) place = place_of(place, motion.shift(time));
+      Places places = species_[s].places;
+      for (BodyPlace &place : places.known) place = place_of(place, motion.shift(time));
       Phase filled;
       PetscCall(fill_phase(grid_, species_[s].spec, places, species_[s].first_label, &filled));
       phase.fraction = std::move(filled.fraction);

@@ -180,8 +180,7 @@ std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t mos
 }  // namespace
 
 std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
-                        const SolidBodies &solids, const std::vector<std::vector<BodyPlace>> &earlier,
-                        std::vector<BodyPlace> *places) {
+                        const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places) {
   const SpeciesSpec &spec = species[which];
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (const std::string wrong = why_no_shape(spec, dimension); !wrong.empty())
@@ -211,12 +210,13 @@ std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t whi
                         own || species[s].placement == Placement::random ? species[s].gap / 2 : 0);
     if (!own && !is_finite(species[s].shape)) continue;
     widest = std::max(widest, 2 * shapes.back().outer_radius());
-    if (!own) all += earlier[s].size();
+    if (!own) all += earlier[s].count;
   }
   Crowd crowd(grid, widest, all);
   for (std::size_t s = 0; s < which; ++s)
     if (is_finite(species[s].shape))
-      for (const BodyPlace &place : earlier[s]) crowd.add({&shapes[s], place.centre, rotation(place.orientation)});
+      for (const BodyPlace &place : earlier[s].known)
+        crowd.add({&shapes[s], place.centre, rotation(place.orientation)});
   const std::size_t placed = Seeding(spec, grid, region, &crowd, shapes[which]).place(count, places);
   return placed < count ? too_many(spec, count, placed, body, region.volume()) : "";
 }

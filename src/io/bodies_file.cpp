@@ -41,14 +41,16 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
     if (H5Lexists(file, name, H5P_DEFAULT) > 0 && H5Ldelete(file, name, H5P_DEFAULT) < 0) return false;
   std::vector<long> ids;
   std::size_t width = 1;
-  for (const int species : bodies.of) {
-    ids.push_back(static_cast<long>(ids.size()) + 1);
-    width = std::max(width, bodies.names[species].size());
+  for (int label = 1; label <= bodies.bodies; ++label) {
+    ids.push_back(label);
+    width = std::max(width, bodies.name(label).size());
   }
   std::string names;
-  for (const int species : bodies.of)
-    names += bodies.names[species] + std::string(width - bodies.names[species].size(), '\0');
-  const hsize_t count = bodies.of.size();
+  for (int label = 1; label <= bodies.bodies; ++label) {
+    names += bodies.name(label);
+    names.resize(label * width);
+  }
+  const hsize_t count = ids.size();
   const Hdf5Space space(H5Screate_simple(1, &count, nullptr));
   const Hdf5Type text = hdf5_string(width);
   const Hdf5Dataset id(H5Dcreate2(file, "id", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -178,13 +180,13 @@ BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool membranes, bool loa
 
 PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned) {
   PetscFunctionBeginUser;
-  const bool fewer = all.of.size() < known_.of.size();
+  const bool fewer = all.bodies < known_.bodies;
   PetscCall(fail_together(comm_, fewer ? path_ + ": the number of bodies has become smaller" : std::string()));
-  if (all.of.size() > known_.of.size()) {
+  if (all.bodies > known_.bodies) {
     PetscCall(write_waiting());  // ranks will own others
     known_ = all;
   }
-  if (known_.of.empty()) PetscFunctionReturn(0);
+  if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
   const auto put = [&](const Real3 &vector) { waiting_.insert(waiting_.end(), vector.begin(), vector.end()); };
   for (const BodyRecord &b : owned) {
@@ -199,7 +201,7 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
     put(b.force);
     put(b.torque);
   }
-  const std::size_t bytes = times_.size() * (1 + width_ * known_.of.size()) * sizeof(double);
+  const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
   if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
   PetscFunctionReturn(0);
 }
@@ -246,10 +248,8 @@ PetscErrorCode BodiesFile::flush() {
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
   PetscFunctionBeginUser;
   const std::size_t rows = times_.size();
-  const auto share = [&](int rank) {
-    return BodyRange::of(static_cast<int>(known_.of.size()), rank, ranks_).within(begin, end);
-  };
-  const BodyRange own = BodyRange::of(static_cast<int>(known_.of.size()), rank_, ranks_), mine = share(rank_);
+  const auto share = [&](int rank) { return BodyRange::of(known_.bodies, rank, ranks_).within(begin, end); };
+  const BodyRange own = BodyRange::of(known_.bodies, rank_, ranks_), mine = share(rank_);
   std::vector<double> sent;
   for (int b = mine.begin - own.begin; b < mine.end - own.begin; ++b)
     for (std::size_t row = 0; row < rows; ++row) {
@@ -273,7 +273,7 @@ PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *valu
 
 // Of bodies [begin, end), as collected.
 bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<double> &values) {
-  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin), all = known_.of.size();
+  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin), all = known_.bodies;
   std::size_t first = 0;  // of the column
   for (Column &column : columns_) {
     const auto width = static_cast<std::size_t>(column.width);
@@ -295,7 +295,7 @@ PetscErrorCode BodiesFile::write_waiting() {
   PetscFunctionBeginUser;
   if (times_.empty()) PetscFunctionReturn(0);
   VerbScope scope(Verb::write);
-  const hsize_t rows = times_.size(), bodies = known_.of.size();
+  const hsize_t rows = times_.size(), bodies = known_.bodies;
   const std::string target = temporary_name(path_);
   std::error_code error;
   std::string problem;

@@ -11,15 +11,16 @@
 #include "io/hdf5_handle.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace eulastic {
 
-/// Species of all bodies: names, and the index of that of each.
+/// All bodies: how many there are, and the name of the species of each, by its label.
 struct BodySpecies {
-  std::vector<std::string> names;
-  std::vector<int> of;
+  int bodies = 0;
+  std::function<const std::string &(int label)> name;
 };
 
 class BodiesFile {

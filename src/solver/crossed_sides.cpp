@@ -59,7 +59,9 @@ PetscErrorCode Solver::check_sides(bool start) {
 }
 
 PetscErrorCode Solver::take_out_bodies() {
-  std::vector<int> leaves(static_cast<std::size_t>(bodies_.bodies()) + 1, 0);
+  std::set<int> leaves;
+  BodyOwners owners;
+  std::vector<Int3> references;
   PetscFunctionBeginUser;
   for (Phase &phase : now_.phases) {
     if (is_held(phase)) continue;
@@ -68,8 +70,13 @@ PetscErrorCode Solver::take_out_bodies() {
       for (const bool high : {false, true})
         if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, &phase, &leaves);
   }
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, leaves.data(), static_cast<int>(leaves.size()), MPI_INT, MPI_MAX, grid_->comm()));
+  PetscCall(bodies_.connect(*grid_, now_.phases, {}, &owners, &references));
+  std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
+  for (const int body : owners.here()) here.push_back(double(leaves.count(body + 1)));
+  PetscCall(owners.reduce(1, MPI_MAX, here, &owned));
+  PetscCall(owners.bring(1, owned, &here));
+  for (std::size_t n = 0; n < here.size(); ++n)
+    if (here[n] > 0) leaves.insert(owners.here()[n] + 1);
   for (Phase &phase : now_.phases) {
     if (is_held(phase)) continue;
     take_out(*grid_, leaves, &phase);
@@ -107,7 +114,7 @@ PetscErrorCode Solver::feed_bodies() {
       if (p == phases) add_colour(*grid_, copy.phase, &now_.phases);
     }
     PetscCall(bodies_.add_like(*grid_, copy.label, shift));
-    feeders_->come_in(copy.label);
+    feeders_->come_in(copy.label, bodies_.bodies());
     feeders_->forget(copy.label);
     put_body(*grid_, copy, shift, bodies_.bodies(), &now_.phases[p]);
     PetscCall(settle(now_.phases[p]));

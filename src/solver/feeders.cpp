@@ -109,54 +109,64 @@ PetscErrorCode Feeders::recall_velocity(const FieldBlock &velocity, BoxSides *si
   PetscFunctionReturn(0);
 }
 
-// Of each of these bodies, ascending, a bit for each stretch that has a cell of it.
-PetscErrorCode Feeders::find_bodies(const std::vector<Phase> &phases, const std::vector<int> &labels,
-                                    std::vector<unsigned> *where) const {
-  PetscFunctionBeginUser;
-  where->assign(labels.size(), 0);
-  for (std::size_t s = 0; s < stretches_.size(); ++s)
+// visit(stretch, label) for all cells of bodies in stretches, one after the other.
+template <class Visit>
+void Feeders::for_bodies(const std::vector<Phase> &phases, const Visit &visit) const {
+  for (int s = 0; s < static_cast<int>(stretches_.size()); ++s)
     for (const Phase &phase : phases) {
       if (!phase.label || phase.material.is_rigid()) continue;
       const BodyCells cells{phase.label[0], phase.fraction[0]};
       for_cells(stretches_[s], [&](int i, int j, int k) {
-        const int label = static_cast<int>(cells(i, j, k));
-        const auto at = std::lower_bound(labels.begin(), labels.end(), label);
-        if (at != labels.end() && *at == label) (*where)[at - labels.begin()] |= 1U << s;
+        if (const int label = static_cast<int>(cells(i, j, k)); label > 0) visit(s, label);
       });
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, where->data(), static_cast<int>(where->size()), MPI_UNSIGNED, MPI_BOR,
-                             grid_->comm()));
+}
+
+PetscErrorCode Feeders::start(const std::vector<Phase> &phases) {
+  std::map<int, int> here;
+  PetscFunctionBeginUser;
+  for_bodies(phases, [&](int stretch, int label) { here.try_emplace(label, stretch); });
+  PetscCall(set_inside(here));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::start(const std::vector<Phase> &phases, int bodies) {
-  std::vector<unsigned> where;
-  std::vector<int> all(bodies);
+PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
+  std::vector<int> some, all, counts(grid_->ranks()), begins(grid_->ranks() + 1, 0);
   PetscFunctionBeginUser;
-  std::iota(all.begin(), all.end(), 1);
-  PetscCall(find_bodies(phases, all, &where));
-  inside_.assign(bodies, 0);
-  for (int b = 0; b < bodies; ++b)
-    for (int s = static_cast<int>(stretches_.size()) - 1; s >= 0; --s)
-      if (where[b] >> s & 1U) inside_[b] = s + 1;
+  for (const auto &[label, stretch] : here) some.insert(some.end(), {label, stretch});
+  const int count = static_cast<int>(some.size());
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, grid_->comm()));
+  std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
+  all.resize(begins.back());
+  PetscCallMPI(
+      MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, grid_->comm()));
+  inside_.clear();
+  for (std::size_t n = 0; n < all.size(); n += 2) {
+    int &stretch = inside_.try_emplace(all[n], all[n + 1]).first->second;
+    stretch = std::min(stretch, all[n + 1]);
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const {
-  std::vector<unsigned> where;
   std::vector<int> inside;
   PetscFunctionBeginUser;
   labels->clear();
-  for (std::size_t b = 0; b < inside_.size(); ++b)
-    if (inside_[b] > 0) inside.push_back(static_cast<int>(b) + 1);
-  PetscCall(find_bodies(phases, inside, &where));
+  for (const auto &[label, stretch] : inside_) inside.push_back(label);
+  std::vector<int> still(inside.size(), 0);
+  for_bodies(phases, [&](int stretch, int label) {
+    const auto at = std::lower_bound(inside.begin(), inside.end(), label);
+    if (at != inside.end() && *at == label && inside_.at(label) == stretch) still[at - inside.begin()] = 1;
+  });
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, grid_->comm()));
   for (std::size_t n = 0; n < inside.size(); ++n)
-    if (!(where[n] >> (inside_[inside[n] - 1] - 1) & 1U)) labels->push_back(inside[n]);
+    if (still[n] == 0) labels->push_back(inside[n]);
   PetscFunctionReturn(0);
 }
 
 Int3 Feeders::shift_of(int label) const {
-  const Stretch &stretch = stretches_[inside_[label - 1] - 1];
+  const Stretch &stretch = stretches_[inside_.at(label)];
   Int3 shift{};
   shift[stretch.d] = stretch.high ? stretch.cells : -stretch.cells;
   return shift;

@@ -5,6 +5,7 @@
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,18 +32,19 @@ public:
   PetscErrorCode recall_velocity(const FieldBlock &velocity, BoxSides *sides) const;
 
   /// Finds out which bodies are in which stretch.
-  PetscErrorCode start(const std::vector<Phase> &phases, int bodies);
+  PetscErrorCode start(const std::vector<Phase> &phases);
   /// Those that have passed the end of theirs, ascending; they keep being named until forget().
   PetscErrorCode find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const;
   /// Where a body comes in, relative to where it is.
   Int3 shift_of(int label) const;
-  /// A body is not in a stretch any more; another one, the next in number, has come into that.
-  void forget(int label) { inside_[label - 1] = 0; }
-  void come_in(int label) { inside_.push_back(inside_[label - 1]); }
+  /// A body is not in its stretch any more; another one has come into that.
+  void forget(int label) { inside_.erase(label); }
+  void come_in(int label, int other) { inside_[other] = inside_.at(label); }
 
-  /// Of every body: 0, or 1 + which stretch it is in. All that a restart needs.
-  const std::vector<int> &inside() const { return inside_; }
-  void set_inside(const std::vector<int> &inside) { inside_ = inside; }
+  /// By the labels of bodies: which stretch each is in, if in any. All that a restart needs.
+  const std::map<int, int> &inside() const { return inside_; }
+  /// Of which every rank names some. Collective.
+  PetscErrorCode set_inside(const std::map<int, int> &here);
 
 private:
   struct Stretch {
@@ -51,12 +53,12 @@ private:
   };
   template <class Visit>
   void for_cells(const Stretch &stretch, const Visit &visit) const;  ///< owned ones, and those just beyond
-  PetscErrorCode find_bodies(const std::vector<Phase> &phases, const std::vector<int> &labels,
-                             std::vector<unsigned> *where) const;
+  template <class Visit>
+  void for_bodies(const std::vector<Phase> &phases, const Visit &visit) const;
 
   const Grid *grid_ = nullptr;
   std::vector<Stretch> stretches_;
-  std::vector<int> inside_;
+  std::map<int, int> inside_;  ///< the same on all ranks
 };
 
 }  // namespace eulastic

@@ -108,7 +108,7 @@ PetscErrorCode Solver::prepare() {
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
-    PetscCall(feeders_->start(now_.phases, bodies_.bodies()));
+    PetscCall(feeders_->start(now_.phases));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);

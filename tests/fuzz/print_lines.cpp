@@ -9,7 +9,7 @@ namespace eulastic::fuzz {
 bool small(const Config &config) {
   double cells = 1, bodies = 0;
   for (int n : config.grid.cells) cells *= n;
-  for (const auto &places : config.places) bodies += double(places.size());
+  for (const auto &places : config.places) bodies += double(places.count);
   const double rows = config.time.end / config.output.series_interval;
   return cells <= 4096 && bodies <= 100 && config.time.steps_max >= 1 && config.time.steps_max <= 3 && rows < 1e6;
 }

@@ -173,8 +173,8 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   }
   std::vector<Int3> references, others;
   std::vector<double> volumes;
-  ASSERT_EQ(scene.tracker.known(PETSC_COMM_WORLD, &references, &volumes), 0);
-  ASSERT_EQ(silent.tracker.known(PETSC_COMM_WORLD, &others, &volumes), 0);
+  ASSERT_EQ(scene.tracker.known(scene.grid, &references, &volumes), 0);
+  ASSERT_EQ(silent.tracker.known(silent.grid, &others, &volumes), 0);
   EXPECT_EQ(references, others);
   references.resize(1);
   ASSERT_EQ(MPI_Bcast(references[0].data(), 3, MPI_INT, 0, PETSC_COMM_WORLD), 0);
@@ -191,7 +191,7 @@ TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   SpeciesSpec slab = species(Shape::slab, 0);
   slab.interval = {0.2, 0.5};
   BodyScene scene(PETSC_COMM_WORLD, box({12, 10, 7}, {1.2, 1.0, 0.7}));
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(place_bodies(slab, scene.grid.spec(), &places), "");
   scene.add(slab, places);
   for (int n = 0; n < 5; ++n) ASSERT_EQ(scene.tracker.follow(scene.grid, scene.phases), 0);

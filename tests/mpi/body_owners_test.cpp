@@ -88,7 +88,8 @@ TEST(BodyOwners, WriteOneFile) {
   const auto value = [](int row, int body, int n) { return 1000. * row + 100 * body + n; };
   for (int row = 0; row < rows; ++row) {
     const int bodies = row < change ? before : after;
-    const BodySpecies all{{"cell"}, std::vector<int>(bodies, 0)};
+    static const std::string cell = "cell";
+    const BodySpecies all{bodies, [](int) -> const std::string & { return cell; }};
     const BodyRange own = BodyRange::of(bodies, world.rank, world.ranks);
     std::vector<BodyRecord> records;
     for (int b = own.begin; b < own.end; ++b) {

@@ -63,7 +63,9 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
   Solver solver;
   std::string reason;
   EXPECT_EQ(grid.create(comm, parsed.config.grid), 0);
-  EXPECT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+  EXPECT_EQ(build_scene(comm == PETSC_COMM_SELF ? test::with_all_places(parsed.config) : parsed.config, grid, &solver,
+                        &reason),
+            0);
   EXPECT_EQ(reason, "");
   outcome.phases_before = solver.state().phases.size();
   const std::vector<double> before = volumes(solver);

@@ -1,6 +1,7 @@
 // Files are what rank 0 finds. Every rank looks for them in a place of its own: nobody but rank 0 may go there.
 #include "base/rank_zero.hpp"
 #include "app/parse_options.hpp"
+#include "support/all_bodies.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>
@@ -68,8 +69,9 @@ TEST_F(RankZero, AlsoForOptionsAndWhatTheyName) {
   };
   const ParseResult fine = result("scene");
   ASSERT_EQ(fine.error, "");
-  ASSERT_EQ(fine.config.places[0].size(), 2u);
-  EXPECT_EQ(fine.config.places[0][1].orientation, (Real3{10, 20, 30}));
+  const Places places = test::with_all_places(fine.config).places[0];
+  ASSERT_EQ(places.known.size(), 2u);
+  EXPECT_EQ(places.known[1].orientation, (Real3{10, 20, 30}));
   EXPECT_EQ(fine.config.sides[0][0].given.table.size(), 2u);
   EXPECT_EQ(fine.config.solid_volumes[1], 0.25);
   EXPECT_NE(result("none").error.find("cannot be read"), std::string::npos);

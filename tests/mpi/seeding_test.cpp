@@ -1,7 +1,9 @@
 // A vessel with red cells and platelets at random: the same scene, and the same first steps, on any ranks.
 #include "app/scene.hpp"
-#include "bodies/fill_phase.hpp"
+#include "bodies/near_places.hpp"
+#include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
+#include "support/files.hpp"
 
 #include <algorithm>
 
@@ -44,7 +46,7 @@ TEST(Seeding, SameSceneOnAnyRanks) {
   const ParseResult result = parse_line(capillary);
   ASSERT_EQ(result.error, "");
   std::uint64_t alone[2] = {}, together[2] = {};
-  ASSERT_EQ(first_steps(PETSC_COMM_SELF, result.config, alone), 0);
+  ASSERT_EQ(first_steps(PETSC_COMM_SELF, test::with_all_places(result.config), alone), 0);
   ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, together), 0);
   EXPECT_EQ(alone[0], together[0]);
   EXPECT_EQ(alone[1], together[1]);
@@ -71,24 +73,29 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
   ASSERT_EQ(result.error, "");
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_WORLD, result.config.grid), 0);
-  const auto &places = result.config.places[0];
-  const auto own = bodies_of_rank(grid, result.config.species[0], places);
+  const Places all = test::with_all_places(result.config).places[0], &mine = result.config.places[0];
+  EXPECT_EQ(int(mine.known.size()), BodyRange::of(125000, test::world_rank(), grid.ranks()).size());
+  Places near;
+  ASSERT_EQ(bring_near(grid.comm(), grid, result.config.species[0], mine, &near), 0);
   double most = 1;
   for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.owned()[d] + 2 * (0.4 + 1) + 2) / 80.0);
-  EXPECT_LE(double(own.size()), most * double(places.size()));
+  EXPECT_LE(double(near.known.size()), most * 125000);
   // Nobody is left out: every body with its centre in a cell of this rank is there.
-  std::size_t inside = 0;
-  for (const BodyPlace &place : places) {
+  unsigned long sums[2] = {0, near.known.size()};
+  for (const NumberedPlace &place : all.known) {
     bool here = true;
     for (int d = 0; d < 3; ++d) {
       const int cell = static_cast<int>(place.centre[d] / 2.5) - grid.layout().begin[d];
       here = here && cell >= 0 && cell < grid.owned()[d];
     }
-    inside += here;
-    EXPECT_TRUE(!here || std::binary_search(own.begin(), own.end(), std::size_t(&place - places.data())));
+    sums[0] += here;
+    const auto found = std::lower_bound(near.known.begin(), near.known.end(), place.index,
+                                        [](const NumberedPlace &one, int index) { return one.index < index; });
+    const bool is_there = found != near.known.end() && found->index == place.index;
+    EXPECT_TRUE(!here || is_there);
+    if (is_there) EXPECT_EQ(found->centre, place.centre);
   }
-  unsigned long sums[2] = {inside, own.size()};
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UNSIGNED_LONG, MPI_SUM, PETSC_COMM_WORLD);
-  EXPECT_EQ(sums[0], places.size());
-  EXPECT_GE(sums[1], places.size());
+  EXPECT_EQ(sums[0], 125000u);
+  EXPECT_GE(sums[1], 125000u);
 }

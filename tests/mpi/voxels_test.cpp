@@ -41,10 +41,10 @@ Phase fill(const Grid &grid, const std::string &path) {
   spec.shape = Shape::voxels;
   spec.voxels.path = path;
   Phase phase;
-  std::vector<BodyPlace> places;
+  Places places;
   EXPECT_EQ(fill_phase(grid, spec, {}, 5, &phase), 0);
   EXPECT_EQ(fill_voxels(grid, spec, 5, &phase, &places), 0);
-  EXPECT_EQ(places.size(), 1u);
+  EXPECT_EQ(places.known.size(), 1u);
   return phase;
 }
 
@@ -102,7 +102,7 @@ TEST(Voxels, ErrorsOfOneRankAreEverybodys) {
   species.shape = Shape::voxels;
   species.voxels.path = room / "v.nrrd";
   Phase phase;
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(fill_phase(grid, species, {}, 1, &phase), 0);
   const std::string wrong = test::error_of([&] { return fill_voxels(grid, species, 1, &phase, &places); });
   EXPECT_NE(wrong.find("-part_voxels: "), std::string::npos) << wrong;

@@ -21,7 +21,7 @@ PetscErrorCode add_red_cells(test::Scene &scene) {
   species.shear_modulus = 0.02;
   species.placement = Placement::lattice;
   species.count = {grid.cells[0] / 64, grid.cells[1] / 32, grid.cells[2] / 64};
-  std::vector<BodyPlace> places;
+  Places places;
   const std::string problem = place_bodies(species, grid, &places);
   PetscCheck(problem.empty(), scene.grid.comm(), PETSC_ERR_USER, "%s", problem.c_str());
   Phase phase;

@@ -1,7 +1,10 @@
 // What the owners of bodies know of them, on every rank.
 #pragma once
 
+#include "app/config.hpp"
 #include "bodies/body_owners.hpp"
+
+#include <gtest/gtest.h>
 
 namespace eulastic::test {
 
@@ -13,6 +16,17 @@ PetscErrorCode all_bodies(MPI_Comm comm, int bodies, int limit, const std::vecto
   all->resize(static_cast<std::size_t>(std::min(limit, bodies)));
   PetscCallMPI(MPI_Bcast(all->data(), static_cast<int>(all->size() * sizeof(T)), MPI_BYTE, 0, comm));
   PetscFunctionReturn(0);
+}
+
+/// A scene that any rank can build alone. Collective.
+inline Config with_all_places(Config config) {
+  for (Places &places : config.places) {
+    if (places.everywhere) continue;
+    std::vector<BodyPlace> all, owned(places.known.begin(), places.known.end());
+    EXPECT_EQ(all_bodies(PETSC_COMM_WORLD, places.count, places.count, owned, &all), 0);
+    places = Places(all);
+  }
+  return config;
 }
 
 }  // namespace eulastic::test

@@ -40,13 +40,13 @@ struct BodyScene {
     EXPECT_EQ(grid.create(comm, spec), 0);
     velocity = FieldBlock(grid, grid.dimension());
   }
-  void add(const SpeciesSpec &spec, const std::vector<BodyPlace> &places) {
+  void add(const SpeciesSpec &spec, const Places &places) {
     phases.emplace_back();
     EXPECT_EQ(fill_phase(grid, spec, places, 1 + tracker.bodies(), &phases.back()), 0);
     tracker.add_phase(grid, places);
   }
   /// Only the fraction moves to `places`: what an interface scheme does.
-  void move(const SpeciesSpec &spec, const std::vector<BodyPlace> &places) {
+  void move(const SpeciesSpec &spec, const Places &places) {
     Phase moved;
     EXPECT_EQ(fill_phase(grid, spec, places, 1, &moved), 0);
     phases[0].fraction.swap(moved.fraction);

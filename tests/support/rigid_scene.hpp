@@ -17,7 +17,7 @@ inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species) {
     spec.law = Law::rigid;
     spec.name = "rigid" + std::to_string(label);
     spec.centre_given = true;
-    std::vector<BodyPlace> places;
+    Places places;
     EXPECT_EQ(place_bodies(spec, scene->grid.spec(), &places), "");
     Phase phase;
     EXPECT_EQ(fill_phase(scene->grid, spec, places, label, &phase), 0);

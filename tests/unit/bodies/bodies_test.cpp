@@ -38,7 +38,7 @@ struct Scene {
   Grid grid;
   Phase phase;
   Scene(const GridSpec &box_spec, const SpeciesSpec &spec) {
-    std::vector<BodyPlace> places;
+    Places places;
     EXPECT_EQ(place_bodies(spec, box_spec, &places), "");
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, box_spec), 0);
     EXPECT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
@@ -53,7 +53,7 @@ struct Scene {
 };
 
 std::string why_not(const SpeciesSpec &spec, const GridSpec &grid) {
-  std::vector<BodyPlace> places;
+  Places places;
   return place_bodies(spec, grid, &places);
 }
 
@@ -274,12 +274,12 @@ TEST(Placement, ReadsListsAndNamesBadLines) {
     return why_not(spec, grid);
   };
   EXPECT_EQ(with("x, y, z\r\n1,2,3\r\n\n 2 , 2 ,1, 10, 20, 30"), "");
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(place_bodies(spec, grid, &places), "");
-  ASSERT_EQ(places.size(), 2u);
-  EXPECT_EQ(places[0].centre, (Real3{1, 2, 3}));
-  EXPECT_EQ(places[0].orientation, (Real3{0, 0, 5}));
-  EXPECT_EQ(places[1].orientation, (Real3{10, 20, 30}));
+  ASSERT_EQ(places.known.size(), 2u);
+  EXPECT_EQ(places.known[0].centre, (Real3{1, 2, 3}));
+  EXPECT_EQ(places.known[0].orientation, (Real3{0, 0, 5}));
+  EXPECT_EQ(places.known[1].orientation, (Real3{10, 20, 30}));
   for (const char *bad : {"x,y,z\n1,2,3\n1,2\n", "1,1,1\n1,2,3\n1,2,3x\n", "1,1,1\n\n1,,3", "1,1,1\n1,1,2\n1,2,nan",
                           "1,1,1\n1,1,2\nx,y,z\n", "1,1,1\n1,1,2\n1,2,3,\n"})
     EXPECT_NE(with(bad).find("line 3"), std::string::npos) << bad;

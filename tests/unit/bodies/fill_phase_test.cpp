@@ -33,9 +33,9 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
   spec.initial_stretch = {2, 0.5, 1.5};
   spec.shear_modulus = 7;
   const GridSpec grid_spec = box({24, 12, 36}, {2, 1, 3});
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
-  ASSERT_EQ(places.size(), 6u);
+  ASSERT_EQ(places.known.size(), 6u);
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
@@ -61,7 +61,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
   spec.shear_modulus = 1;
   spec.orientation = {20, -35, 70};
   const GridSpec grid_spec = box({32, 32, 32}, {1, 1, 1});
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);

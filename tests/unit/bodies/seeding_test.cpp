@@ -14,10 +14,10 @@ const std::string box = "-time_end 1 -grid_cells 32,32,32 -grid_length 42,42,42 
 const std::string cells =
     "-rbc_shape biconcave -rbc_diameter 8 -rbc_shear_modulus 1 -rbc_placement random -rbc_orientation random ";
 
-std::vector<BodyPlace> seeded(const std::string &line, std::size_t species = 0) {
+std::vector<NumberedPlace> seeded(const std::string &line, std::size_t species = 0) {
   const ParseResult result = parse_line(line);
   EXPECT_EQ(result.error, "") << line;
-  return result.error.empty() ? result.config.places[species] : std::vector<BodyPlace>();
+  return result.error.empty() ? result.config.places[species].known : std::vector<NumberedPlace>();
 }
 
 // Points all over the surface of a body, in the box.
@@ -47,13 +47,13 @@ double least_level(const Config &config) {
   const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   double least = 1e9;
   for (std::size_t s = 0; s < config.species.size(); ++s)
-    for (std::size_t b = 0; b < config.places[s].size(); ++b) {
+    for (std::size_t b = 0; b < config.places[s].known.size(); ++b) {
       if (is_attached(config.species[s].shape)) continue;
-      for (const Real3 &x : surface_points(config.species[s], config.places[s][b], dimension))
+      for (const Real3 &x : surface_points(config.species[s], config.places[s].known[b], dimension))
         for (std::size_t t = 0; t < config.species.size(); ++t)
-          for (std::size_t c = 0; c < config.places[t].size(); ++c) {
+          for (std::size_t c = 0; c < config.places[t].known.size(); ++c) {
             if (t == s && c == b) continue;
-            const BodyPlace &other = config.places[t][c];
+            const BodyPlace &other = config.places[t].known[c];
             Real3 r, y{};
             for (int d = 0; d < 3; ++d) {
               r[d] = x[d] - other.centre[d];
@@ -125,7 +125,7 @@ TEST(Seeding, HematocritAsAskedWithinOneCellWithoutOverlap) {
         parse_line(box + "-boundary_y wall -species rbc " + cells + "-rbc_hematocrit " + std::to_string(h));
     ASSERT_EQ(result.error, "");
     const double cell = shape_volume(result.config.species[0], 3), whole = 42.0 * 42 * 42;
-    EXPECT_NEAR(double(result.config.places[0].size()) * cell, h * whole, 0.5001 * cell);
+    EXPECT_NEAR(double(result.config.places[0].known.size()) * cell, h * whole, 0.5001 * cell);
     EXPECT_GT(least_level(result.config), 0);
   }
   EXPECT_EQ(seeded(box + "-species rbc " + cells + "-rbc_count 17").size(), 17u);
@@ -136,7 +136,7 @@ TEST(Seeding, BodiesKeepOffSidesThatVolumeCrosses) {
   const ParseResult result = parse_line(box + open + "-species rbc " + cells + "-rbc_hematocrit 0.25");
   ASSERT_EQ(result.error, "");
   double least[2][2] = {{42, 42}, {42, 42}};  // at x and y
-  for (const BodyPlace &place : result.config.places[0])
+  for (const BodyPlace &place : result.config.places[0].known)
     for (const Real3 &x : surface_points(result.config.species[0], place, 3))
       for (int d = 0; d < 2; ++d) {
         least[d][0] = std::min(least[d][0], x[d]);
@@ -174,13 +174,13 @@ TEST(Seeding, ManyBodiesAreNoLattice) {
   ASSERT_EQ(result.error, "");
   const GridSpec &grid = result.config.grid;
   const SpeciesSpec &dot = result.config.species[0], &rbc = result.config.species[1];
-  const auto &places = result.config.places[1];
+  const auto &places = result.config.places[1].known;
   EXPECT_NEAR(double(places.size()) * shape_volume(rbc, 3), 0.2 * 300 * 240 * 180, 0.5001 * shape_volume(rbc, 3));
   EXPECT_GT(places.size(), 25000u);
   Real3 mean{};
   Crowd crowd(grid, 8.5, places.size());
   const ConvexBody shape(rbc, 3, 0), ball(dot, 3, 0);
-  for (const BodyPlace &place : result.config.places[0]) crowd.add({&ball, place.centre, rotation({})});
+  for (const BodyPlace &place : result.config.places[0].known) crowd.add({&ball, place.centre, rotation({})});
   for (const BodyPlace &place : places) crowd.add({&shape, place.centre, rotation(place.orientation)});
   std::size_t touching = 0, outside = 0, alike = 0;
   std::vector<Real3> centres;
@@ -213,8 +213,8 @@ TEST(Seeding, SeveralSpeciesInsideATube) {
   const ParseResult result = parse_line(line);
   ASSERT_EQ(result.error, "");
   const double lumen = M_PI * 13 * 13 * 50, cell = shape_volume(result.config.species[1], 3);
-  EXPECT_NEAR(double(result.config.places[1].size()) * cell, 0.2 * lumen, 0.5001 * cell);
-  EXPECT_EQ(result.config.places[2].size(), 12u);
+  EXPECT_NEAR(double(result.config.places[1].known.size()) * cell, 0.2 * lumen, 0.5001 * cell);
+  EXPECT_EQ(result.config.places[2].known.size(), 12u);
   EXPECT_GT(least_level(result.config), 0);
   EXPECT_EQ(parse_line(line + "-rbc_inside vessel").error, "");
   for (const char *wrong : {"-rbc_inside plt", "-rbc_inside nothing"})
@@ -225,7 +225,7 @@ TEST(Seeding, SeveralSpeciesInsideATube) {
   const ParseResult throat = parse_line(line);
   ASSERT_EQ(throat.error, "");
   EXPECT_GT(least_level(throat.config), 0);
-  for (const BodyPlace &place : throat.config.places[1]) EXPECT_GT(std::abs(place.centre[0] - 25), 3);
+  for (const BodyPlace &place : throat.config.places[1].known) EXPECT_GT(std::abs(place.centre[0] - 25), 3);
 }
 
 TEST(Seeding, StaysClearOfSlabsCylindersAndEarlierBodies) {
@@ -238,10 +238,10 @@ TEST(Seeding, StaysClearOfSlabsCylindersAndEarlierBodies) {
   const ParseResult result = parse_line(line);
   ASSERT_EQ(result.error, "");
   const double cell = shape_volume(result.config.species[3], 3), free = 42.0 * 42 * 33;
-  EXPECT_NEAR(double(result.config.places[3].size()) * cell, 0.2 * free, 0.5001 * cell);
+  EXPECT_NEAR(double(result.config.places[3].known.size()) * cell, 0.2 * free, 0.5001 * cell);
   Config bodies = result.config;  // the slab and the post by hand
   const SpeciesSpec rbc = bodies.species[3];
-  for (const BodyPlace &place : bodies.places[3])
+  for (const BodyPlace &place : bodies.places[3].known)
     for (Real3 x : surface_points(rbc, place, 3)) {
       for (double &c : x) c -= 42 * std::floor(c / 42);
       EXPECT_GT(x[1], 9);
@@ -276,8 +276,8 @@ TEST(Seeding, TheCountOfTheCommandLineWins) {
   const ParseResult random = parse_line(line + "random -rbc_count 5", "-rbc_count 2,2,2");
   const ParseResult lattice = parse_line(line + "lattice -rbc_count 2,2,2", "-rbc_count 5");
   EXPECT_EQ(random.error + lattice.error, "");
-  EXPECT_EQ(random.config.places[0].size(), 5u);
-  EXPECT_EQ(lattice.config.places[0].size(), 8u);
+  EXPECT_EQ(random.config.places[0].known.size(), 5u);
+  EXPECT_EQ(lattice.config.places[0].known.size(), 8u);
 }
 
 TEST(Seeding, TwoDimensions) {
@@ -287,7 +287,7 @@ TEST(Seeding, TwoDimensions) {
   const ParseResult result = parse_line(line);
   ASSERT_EQ(result.error, "");
   const double cell = shape_volume(result.config.species[0], 2);
-  EXPECT_NEAR(double(result.config.places[0].size()) * cell, 0.3 * 3600, 0.5001 * cell);
+  EXPECT_NEAR(double(result.config.places[0].known.size()) * cell, 0.3 * 3600, 0.5001 * cell);
   EXPECT_GT(least_level(result.config), 0);
 }
 

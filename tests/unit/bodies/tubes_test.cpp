@@ -37,9 +37,9 @@ SpeciesSpec constricted(int axis, double radius, const Real3 &centre, double thr
 
 // Volume of the phase; checks that it is attached and named.
 double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
-  std::vector<BodyPlace> places;
+  Places places;
   EXPECT_EQ(place_bodies(spec, grid_spec, &places), "");
-  EXPECT_EQ(places.size(), 1u);
+  EXPECT_EQ(places.known.size(), 1u);
   Grid grid;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
@@ -52,7 +52,7 @@ double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
 }
 
 std::string why_not(const SpeciesSpec &spec, const GridSpec &grid) {
-  std::vector<BodyPlace> places;
+  Places places;
   return place_bodies(spec, grid, &places);
 }
 
@@ -101,7 +101,7 @@ TEST(Tube, IsZeroInsideAndOneOutside) {
   EXPECT_DOUBLE_EQ(lumen_radius(throat, 0), 0.5);
   EXPECT_DOUBLE_EQ(lumen_radius(throat, 0.75), 0.95);
   EXPECT_DOUBLE_EQ(lumen_radius(throat, -1.6), 1.4);
-  std::vector<BodyPlace> places;
+  Places places;
   ASSERT_EQ(place_bodies(throat, spec, &places), "");
   Grid grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);

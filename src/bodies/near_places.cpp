@@ -1,0 +1,80 @@
+#include "bodies/near_places.hpp"
+
+#include "base/deliver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+// How far a body reaches along d.
+double reach(const Surface &surface, const BodyPlace &place, int d) {
+  const double radius = surface.bounding_radius();
+  return std::isfinite(radius) ? radius : surface.support(rotation(place.orientation)[d]);
+}
+
+// The places along d of ranks that a body comes near.
+std::vector<int> parts_near(const Grid &grid, int d, const Surface &surface, const BodyPlace &place) {
+  const int cells = grid.cells()[d];
+  const double h = grid.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
+  int first = 0, last = cells - 1;
+  if (d < grid.dimension() && 2 * far + h < grid.spec().length[d]) {
+    first = static_cast<int>(std::floor((centre - far) / h));
+    last = static_cast<int>(std::floor((centre + far) / h));
+    if (grid.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
+  }
+  std::vector<int> parts;
+  for (int i = first; i <= last;) {
+    const int cell = (i + cells) % cells, part = grid.owner_along(d, cell);
+    if (parts.empty() || part != parts.front()) parts.push_back(part);
+    i += grid.first_cell(d, part + 1) - cell;
+  }
+  return parts;
+}
+
+}  // namespace
+
+bool is_near(const Grid &grid, int rank, const Surface &surface, const BodyPlace &place) {
+  const Int3 at = grid.place_of(rank);
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const std::vector<int> parts = parts_near(grid, d, surface, place);
+    if (std::find(parts.begin(), parts.end(), at[d]) == parts.end()) return false;
+  }
+  return true;
+}
+
+std::vector<int> ranks_near(const Grid &grid, const Surface &surface, const BodyPlace &place) {
+  std::vector<int> ranks;
+  const std::vector<int> x = parts_near(grid, 0, surface, place), y = parts_near(grid, 1, surface, place);
+  for (const int k : parts_near(grid, 2, surface, place))
+    for (const int j : y)
+      for (const int i : x) ranks.push_back(grid.rank_at({i, j, k}));
+  return ranks;
+}
+
+PetscErrorCode bring_near(MPI_Comm comm, const Grid &grid, const SpeciesSpec &spec, const Places &places,
+                          Places *here) {
+  int rank;
+  std::vector<int> ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  here->count = places.count;
+  here->everywhere = false;
+  here->known.clear();
+  if (places.count == 0) PetscFunctionReturn(0);
+  const Surface surface(spec, grid.dimension());
+  for (const NumberedPlace &place : places.known) {
+    const std::vector<int> near = places.everywhere ? std::vector<int>() : ranks_near(grid, surface, place);
+    if (places.everywhere && is_near(grid, rank, surface, place)) here->known.push_back(place);
+    here->known.insert(here->known.end(), near.size(), place);
+    ranks.insert(ranks.end(), near.begin(), near.end());
+  }
+  if (places.everywhere) PetscFunctionReturn(0);
+  PetscCall(deliver(comm, ranks, &here->known));
+  std::sort(here->known.begin(), here->known.end(),
+            [](const NumberedPlace &a, const NumberedPlace &b) { return a.index < b.index; });
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
