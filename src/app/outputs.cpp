@@ -103,8 +103,7 @@ PetscErrorCode Outputs::measure_energy(EnergyState *energy) {
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.sides, state.time,      solver_->evolved_fraction(),
-                              viscosity};
+                              &config_.sides, state.time,      viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy->rates));
   double power = 0;
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
@@ -148,49 +147,54 @@ PetscErrorCode Outputs::write_due(bool last) {
     PetscCall(solver_->phases_now(&phases));
     PetscCall(samples_.write(state.time, series, last, {state.velocity, state.pressure, *phases}));
   }
-  if (series) {
-    PetscCall(measure());
-    EnergyState energy;
-    PetscCall(measure_energy(&energy));
-    energy_.advance(state.time, energy);
-    const FlowMeasures &flow = measured_.flow;
-    double solid = 0;
-    for (const double volume : flow.phase_volume) solid += volume;
-    std::vector<double> row{state.time,
-                            double(state.step),
-                            state.dt,
-                            flow.kinetic_energy,
-                            flow.elastic_energy,
-                            flow.viscous_dissipation,
-                            flow.bulk_velocity[0],
-                            flow.bulk_velocity[1],
-                            flow.bulk_velocity[2],
-                            flow.speed_max,
-                            flow.divergence_rms,
-                            flow.divergence_max,
-                            solid,
-                            measured_.volume_drift,
-                            energy.rates.force_power,
-                            energy.rates.wall_power,
-                            energy.rates.elastic_power,
-                            energy_.lost(),
-                            energy_.lost_elastic(),
-                            energy_.lost_extended(),
-                            energy.surface,
-                            energy.surface_power};
-    if (!sides_.empty()) row.push_back(energy.rates.side_power);
-    for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
-    for (const VesselFlow &vessel : vessel_flows(config_, state.time, flow.bulk_velocity, sides_))
-      row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
-    PetscCall(series_.write(row));
-    if (bodies_file_) {
-      BodySpecies all{{}, solver_->bodies().species()};
-      for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
-      PetscCall(bodies_file_->add(state.time, all, records(measured_.bodies, measured_.surfaces)));
-      ++bodies_rows_;
-    }
-  }
+  if (series) PetscCall(write_series());
   if (snapshot) PetscCall(snapshots_->write(config_, solver_));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_series() {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  PetscCall(measure());
+  EnergyState energy;
+  PetscCall(measure_energy(&energy));
+  energy_.advance(state.time, energy);
+  const FlowMeasures &flow = measured_.flow;
+  double solid = 0;
+  for (const double volume : flow.phase_volume) solid += volume;
+  std::vector<double> row{state.time,
+                          double(state.step),
+                          state.dt,
+                          flow.kinetic_energy,
+                          flow.elastic_energy,
+                          flow.viscous_dissipation,
+                          flow.bulk_velocity[0],
+                          flow.bulk_velocity[1],
+                          flow.bulk_velocity[2],
+                          flow.speed_max,
+                          flow.divergence_rms,
+                          flow.divergence_max,
+                          solid,
+                          measured_.volume_drift,
+                          energy.rates.force_power,
+                          energy.rates.wall_power,
+                          energy.rates.elastic_power,
+                          energy_.lost(),
+                          energy_.lost_elastic(),
+                          energy_.lost_extended(),
+                          energy.surface,
+                          energy.surface_power};
+  if (!sides_.empty()) row.push_back(energy.rates.side_power);
+  for (const SideFlow &side : sides_) row.insert(row.end(), {side.flow_rate, side.pressure});
+  for (const VesselFlow &vessel : vessel_flows(config_, state.time, flow.bulk_velocity, sides_))
+    row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
+  PetscCall(series_.write(row));
+  if (bodies_file_) {
+    BodySpecies all{{}, solver_->bodies().species()};
+    for (const SpeciesSpec &spec : config_.species) all.names.push_back(spec.name);
+    PetscCall(bodies_file_->add(state.time, all, records(measured_.bodies, measured_.surfaces)));
+    ++bodies_rows_;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -259,7 +263,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   PetscCall(list_bodies(&summary));
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
   counted[0] = double(solver_->bytes());
-  for (const Phase &phase : state.phases) counted[1] += phase.solid.points();
+  for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 2, MPI_DOUBLE, MPI_SUM, grid_->comm()));
   summary.bytes_per_cell = counted[0] / grid_->cell_count();
   summary.active_fraction = counted[1] / grid_->cell_count();

@@ -59,6 +59,7 @@ private:
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
   PetscErrorCode measure_energy(EnergyState *energy);
+  PetscErrorCode write_series();
 
   Config config_;
   bool membranes_ = false;

@@ -81,22 +81,20 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const std::vector<B
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
   const Surface surface(spec, grid.dimension());
-  const auto &components = tensor_components(grid.dimension());
   for (const std::size_t b : bodies_of_rank(grid, spec, places)) {
     if (places[b].orientation == Real3{}) continue;
     const Rotation R = rotation(places[b].orientation);
     const PlacedBody body(surface, grid.spec(), places[b]);
     Phase &phase = *phase_of(b);
-    for (std::size_t c = 0; c < components.size(); ++c) {
-      const auto [x, y] = components[c];
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
+      const TensorComponent &component = phase.tensor.components()[c];
+      const auto [x, y, at] = component;
       double turned = 0;
       for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
-      const View B = phase.tensor[static_cast<int>(c)], label = phase.label[0];
-      const bool centred = x == y || spec.is_membrane();
-      const Staggering at = staggering_of(components[c], spec.is_membrane());
+      const View B = phase.tensor.field[c], label = phase.label[0];
       for_points_of(grid, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
-        if (centred) {
+        if (!component.on_edge()) {
           if (label(p[0], p[1], p[2]) == first_label + double(b)) value = turned;
           return;
         }
@@ -125,14 +123,12 @@ std::vector<std::size_t> bodies_of_rank(const Grid &grid, const SpeciesSpec &spe
 }
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
-  phase->tensor = tensor_at_rest(grid);
+  phase->tensor.field = tensor_at_rest(grid);
   if (!phase->material.carries_tensor()) return;
-  const auto &components = tensor_components(grid.dimension());
   const ConstView fraction = phase->fraction[0];
-  for (std::size_t c = 0; c < components.size(); ++c) {
-    if (components[c].a != components[c].b) continue;
-    const double stretch = spec.initial_stretch[components[c].a];
-    const View tensor = phase->tensor[static_cast<int>(c)];
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const double stretch = spec.initial_stretch[d];
+    const View tensor = phase->tensor.field[d];
     for (const Segment &row : grid.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;

@@ -43,8 +43,8 @@ void for_each_strain(const Grid &grid, const RowPart &part, const std::vector<Ph
                      const RowEnergy &energy, Visit &&visit) {
   std::vector<double> density(grid.owned()[0]);
   for (const Phase &phase : phases) {
-    const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor[0], yy = phase.tensor[1],
-                    zz = phase.tensor[grid.dimension() == 3 ? 2 : 0];
+    const ConstView fraction = phase.fraction[0], label = phase.label[0], xx = phase.tensor.field[0],
+                    yy = phase.tensor.field[1], zz = phase.tensor.field[grid.dimension() == 3 ? 2 : 0];
     for (const Segment &whole : part.rows(grid)) {
       const Segment row = phase.rows.within(whole, label);
       energy(grid, phase, row, density.data());
@@ -155,6 +155,37 @@ struct Largest {
   std::vector<double> trace;
 };
 
+double centred(ConstView v, int d, int i, int j, int k) {
+  const double *face = &v(i, j, k);
+  return (face[0] + face[v.stride(d)]) / 2;
+}
+
+// Speed and energy density of all, tr B of every body. `slots`: of bodies, here.
+PetscErrorCode find_largest(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+                            BodyOwners &owners, std::size_t slots, const RowEnergy &energy, Largest *largest) {
+  PetscFunctionBeginUser;
+  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0));
+  std::vector<std::vector<double>> traces(found.size(), std::vector<double>(slots, 0.0));
+  in_row_parts(grid, [&](const RowPart &part) {
+    std::vector<double> &some = found[part.number], &trace_of = traces[part.number];
+    for_each_cell(grid, part, phases, owners, [&](const Phase &, int, double, int i, int j, int k) {
+      for (int d = 0; d < velocity.count(); ++d)
+        some[0] = std::max(some[0], std::abs(centred(velocity[d], d, i, j, k)));
+    });
+    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double trace) {
+      some[1] = std::max(some[1], std::abs(density));
+      trace_of[b] = std::max(trace_of[b], trace);
+    });
+  });
+  std::vector<double> most;
+  PetscCall(reduce_maxima(grid.comm(), found, &most));
+  *largest = {most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
+  for (const std::vector<double> &some : traces)
+    for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
+  PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest->trace));
+  PetscFunctionReturn(0);
+}
+
 BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
   BodyMeasure body;
   const Real3 &h = grid.spacing();
@@ -213,32 +244,11 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   const int dimension = grid.dimension();
-  const auto centred = [&](int d, int i, int j, int k) {
-    const double *face = &velocity[d](i, j, k);
-    return (face[0] + face[velocity[d].stride(d)]) / 2;
-  };
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(grid, phases, {}, &owners, &references));
-  // Speed and energy density of all, tr B of every body.
-  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0));
-  std::vector<std::vector<double>> traces(found.size(), std::vector<double>(references.size(), 0.0));
-  in_row_parts(grid, [&](const RowPart &part) {
-    std::vector<double> &some = found[part.number], &trace_of = traces[part.number];
-    for_each_cell(grid, part, phases, owners, [&](const Phase &, int, double, int i, int j, int k) {
-      for (int d = 0; d < dimension; ++d) some[0] = std::max(some[0], std::abs(centred(d, i, j, k)));
-    });
-    for_each_strain(grid, part, phases, owners, energy, [&](int b, double density, double trace) {
-      some[1] = std::max(some[1], std::abs(density));
-      trace_of[b] = std::max(trace_of[b], trace);
-    });
-  });
-  std::vector<double> most;
-  PetscCall(reduce_maxima(grid.comm(), found, &most));
-  Largest largest{most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
-  for (const std::vector<double> &some : traces)
-    for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
-  PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest.trace));
+  Largest largest;
+  PetscCall(find_largest(grid, phases, velocity, owners, references.size(), energy, &largest));
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     for_each_cell(grid, part, phases, owners, [&](const Phase &phase, int b, double phi, int i, int j, int k) {
@@ -247,16 +257,16 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       for (int d = 0; d < dimension; ++d) {
         some.add(b, first_moment + d, phi * x[d]);
         some.add(b, second_moment + d, phi * x[d] * x[d]);
-        if (largest.speed > 0) some.add(b, momentum + d, phi * (centred(d, i, j, k) / largest.speed));
+        if (largest.speed > 0) some.add(b, momentum + d, phi * (centred(velocity[d], d, i, j, k) / largest.speed));
       }
       some.add(b, second_moment + 3, phi * x[1] * x[2]);
       some.add(b, second_moment + 4, phi * x[0] * x[2]);
       some.add(b, second_moment + 5, phi * x[0] * x[1]);
       if (!(phi > full_cell) || phase.material.is_membrane()) return;  // B_s says nothing of the inside
       some.add(b, full_cells, 1);
-      for (int f = 0; f < phase.tensor.count(); ++f) {
-        const auto [p, q] = tensor_components(dimension)[f];
-        const ConstView B = phase.tensor[f];
+      for (int f = 0; f < phase.tensor.field.count(); ++f) {
+        const auto [p, q, at] = phase.tensor.components()[f];
+        const ConstView B = phase.tensor.field[f];
         const double value = p == q ? B(i, j, k) : kernels::average4(&B(i, j, k), B.stride(p), B.stride(q));
         some.add(b, mean_tensor + (p == q ? p : 6 - p - q), value);
       }
