@@ -74,21 +74,19 @@ PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std:
     if (phase.material.is_membrane()) {
       PetscCall(exchange.update({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
     }
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const Int3 at{i, row.j, row.k};
-        const int label = whose(phase, dimension, at, labels);
-        if (label == 0) continue;
-        const BodyCells cells{phase.label[0], phase.fraction[0]};
-        mine.insert(mine.end(),
-                    {double(label), double(p), double(begin[0] + i), double(begin[1] + row.j), double(begin[2] + row.k),
-                     cells(i, row.j, row.k) > 0 ? phase.fraction[0](i, row.j, row.k) : -1});
-        const std::size_t end = mine.size() + BodyCopy::points;
-        for_each_point(phase.tensor, [&](int c, const Int3 &o) {
-          mine.push_back(phase.tensor.field[c](i + o[0], row.j + o[1], row.k + o[2]));
-        });
-        mine.resize(end, 0);
-      }
+    for_points(grid.rows(), [&](int i, int j, int k) {
+      const Int3 at{i, j, k};
+      const int label = whose(phase, dimension, at, labels);
+      if (label == 0) return;
+      const BodyCells cells{phase.label[0], phase.fraction[0]};
+      mine.insert(mine.end(), {double(label), double(p), double(begin[0] + i), double(begin[1] + j),
+                               double(begin[2] + k), cells(i, j, k) > 0 ? phase.fraction[0](i, j, k) : -1});
+      const std::size_t end = mine.size() + BodyCopy::points;
+      for_each_point(phase.tensor, [&](int c, const Int3 &o) {
+        mine.push_back(phase.tensor.field[c](i + o[0], j + o[1], k + o[2]));
+      });
+      mine.resize(end, 0);
+    });
   }
   int ranks, count = static_cast<int>(mine.size());
   PetscCallMPI(MPI_Comm_size(grid.comm(), &ranks));

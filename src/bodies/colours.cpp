@@ -105,16 +105,15 @@ void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vect
   for (const bool arrive : {false, true})
     for (int from = 0; from < count; ++from) {
       if (ways[from].empty()) continue;
-      for (const Segment &row : grid.rows())
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const double name = label[from][0](i, row.j, row.k), phi = fraction[from][0](i, row.j, row.k);
-          const int to = name > 0 ? ways[from].of(name) : -1;
-          if (to < 0) continue;
-          Phase &phase = (*phases)[arrive ? to : from];
-          double &there = phase.fraction[0](i, row.j, row.k);
-          if (!arrive || phi >= there) phase.label[0](i, row.j, row.k) = arrive ? name : 0;
-          there = arrive ? std::min(there + phi, 1.0) : 0;
-        }
+      for_points(grid.rows(), [&](int i, int j, int k) {
+        const double name = label[from][0](i, j, k), phi = fraction[from][0](i, j, k);
+        const int to = name > 0 ? ways[from].of(name) : -1;
+        if (to < 0) return;
+        Phase &phase = (*phases)[arrive ? to : from];
+        double &there = phase.fraction[0](i, j, k);
+        if (!arrive || phi >= there) phase.label[0](i, j, k) = arrive ? name : 0;
+        there = arrive ? std::min(there + phi, 1.0) : 0;
+      });
     }
 }
 

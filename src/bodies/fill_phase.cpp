@@ -129,9 +129,9 @@ void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   for (int d = 0; d < grid.dimension(); ++d) {
     const double stretch = spec.initial_stretch[d];
     const View tensor = phase->tensor.field[d];
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i)
-        if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;
+    for_points(grid.rows(), [&](int i, int j, int k) {
+      if (fraction(i, j, k) > 0) tensor(i, j, k) = stretch * stretch;
+    });
   }
 }
 

@@ -20,13 +20,12 @@ void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, 
 
 void take_out(const Grid &grid, const std::vector<int> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      double &name = label(i, row.j, row.k);
-      if (!(name > 0 && leaves[static_cast<std::size_t>(name)])) continue;
-      fraction(i, row.j, row.k) = 0;
-      name = 0;
-    }
+  for_points(grid.rows(), [&](int i, int j, int k) {
+    double &name = label(i, j, k);
+    if (!(name > 0 && leaves[static_cast<std::size_t>(name)])) return;
+    fraction(i, j, k) = 0;
+    name = 0;
+  });
 }
 
 }  // namespace eulastic

@@ -168,8 +168,8 @@ PetscErrorCode Solver::start_flow() {
   PetscFunctionBeginUser;
   PetscCall(project_start(false, now_.velocity, unused));
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
-  for (const Segment &row : grid_->rows())
-    for (int i = 0; i < row.i_end; ++i) largest = std::max(largest, std::fabs(now_.pressure[0](i, row.j, row.k)));
+  for_points(grid_->rows(),
+             [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now_.pressure[0](i, j, k))); });
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, grid_->comm()));
   if (largest > 0) PetscFunctionReturn(0);  // of a file
   fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time, spec_.fluid.density, now_.velocity, now_.pressure[0]);
