@@ -61,7 +61,7 @@ PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const Rig
     return cells->all.data() + OpenCells::values * cell;
   };
   Int3 first{}, last = n;
-  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) last = {};
+  if (!grid.touches(d, high)) last = {};
   first[d] = high ? n[d] : 0;
   last[d] = last[d] > 0 ? first[d] + 1 : 0;
   for (int k = first[2]; k < last[2]; ++k)

@@ -144,8 +144,7 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   if (!solver.crowded().empty()) *stop = crowded(solver);
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
-  PetscCall(measure_extremes(solver.grid(), solver.state().velocity, solver.state().phases, solver.evolved_fraction(),
-                             &extremes));
+  PetscCall(measure_extremes(solver.grid(), solver.state().velocity, solver.state().phases, &extremes));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }

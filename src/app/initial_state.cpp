@@ -18,15 +18,7 @@ namespace {
 constexpr double overshoot = 0.1;
 const std::vector<TensorComponent> all_components = tensor_components(3);
 
-std::string tensor_name(const TensorComponent &c) {
-  return std::string("left_cauchy_green_") + "xyz"[c.a] + "xyz"[c.b];
-}
-
-template <class Visit>
-void for_cells(const Grid &grid, Visit visit) {
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) visit(i, row.j, row.k);
-}
+std::string tensor_name(const TensorComponent &c) { return "left_cauchy_green_" + c.name(); }
 
 std::int64_t global_index(const Grid &grid, int i, int j, int k) {
   const Int3 &b = grid.layout().begin, &n = grid.cells();
@@ -121,7 +113,7 @@ PetscErrorCode InitialState::read(const std::string &name, const Staggering &sta
   };
   std::int64_t bad = std::numeric_limits<std::int64_t>::max();
   double value = 0;
-  for_cells(*grid_, [&](int i, int j, int k) {
+  for_points(grid_->rows(), [&](int i, int j, int k) {
     const std::int64_t index = global_index(*grid_, i, j, k);
     if (fine(field(i, j, k)) || index > bad) return;
     bad = index;
@@ -148,7 +140,7 @@ PetscErrorCode InitialState::read_constant(const std::string &name, double value
   FieldBlock field(*grid_, 1);
   PetscCall(read(name, at_centre, Wanted::finite, field[0]));
   bool same = true;
-  for_cells(*grid_, [&](int i, int j, int k) { same = same && field[0](i, j, k) == value; });
+  for_points(grid_->rows(), [&](int i, int j, int k) { same = same && field[0](i, j, k) == value; });
   PetscCall(fail(same ? std::string() : "dataset " + name + " must be " + to_text(value) + " everywhere in 2-D"));
   PetscFunctionReturn(0);
 }
@@ -171,15 +163,15 @@ PetscErrorCode InitialState::read_tensor(const SpeciesSpec &species, Phase *phas
   for (const TensorComponent &c : all_components) {
     const std::string name = name_for(tensor_name(c), species);
     if (name.empty()) continue;
-    if (grid_->dimension() == 2 && c.b == 2) {
-      PetscCall(read_constant(name, c.a == c.b));
+    const auto &components = phase->tensor.components();
+    const auto own = std::find_if(components.begin(), components.end(),
+                                  [&](const TensorComponent &other) { return other.a == c.a && other.b == c.b; });
+    if (own == components.end()) {  // in 2-D
+      PetscCall(read_constant(name, c.rest()));
       continue;
     }
-    const auto &components = tensor_components(grid_->dimension());
-    int position = 0;
-    while (components[position].a != c.a || components[position].b != c.b) ++position;
-    const View field = phase->tensor[position];
-    const Staggering at = c.staggering();
+    const View field = phase->tensor.field[static_cast<int>(own - components.begin())];
+    const Staggering &at = own->at;
     // Edges on the high wall are part of the state; a file without them has them extrapolated.
     for (int d = 0; d < 3; ++d) for_high_wall(*grid_, at, d, field, [](double *q) { *q = missing; });
     PetscCall(read(name, at, c.a == c.b ? Wanted::positive : Wanted::finite, field));
@@ -199,8 +191,8 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
   if (!open_) PetscFunctionReturn(0);
   if (!fraction.empty()) {
     PetscCall(read(fraction, at_centre, Wanted::fraction, phase->fraction[0]));
-    for_cells(*grid_,
-              [phi = phase->fraction[0]](int i, int j, int k) { phi(i, j, k) = std::clamp(phi(i, j, k), 0.0, 1.0); });
+    for_points(grid_->rows(),
+               [phi = phase->fraction[0]](int i, int j, int k) { phi(i, j, k) = std::clamp(phi(i, j, k), 0.0, 1.0); });
     stretch_phase(*grid_, species, phase);
     PetscCall(read_bodies(species, first_label, phase, places));
   }
@@ -214,10 +206,10 @@ PetscErrorCode InitialState::read_bodies(const SpeciesSpec &species, int first_l
   const std::string name = name_for("body", species);
   int range[2] = {first_label, -first_label};  // the largest label, minus the smallest
   if (name.empty()) {
-    for_cells(*grid_, [&](int i, int j, int k) { label(i, j, k) = phi(i, j, k) > 0 ? first_label : 0; });
+    for_points(grid_->rows(), [&](int i, int j, int k) { label(i, j, k) = phi(i, j, k) > 0 ? first_label : 0; });
   } else {
     PetscCall(read(name, at_centre, Wanted::label, label));
-    for_cells(*grid_, [&](int i, int j, int k) {
+    for_points(grid_->rows(), [&](int i, int j, int k) {
       const int body = static_cast<int>(label(i, j, k));
       if (body == 0) return;
       range[0] = std::max(range[0], body);
@@ -240,7 +232,7 @@ PetscErrorCode InitialState::find_bodies(int first_label, int bodies, const Phas
   PetscFunctionBeginUser;
   const double cells = grid_->cell_count();
   std::map<int, double> first;
-  for_cells(*grid_, [&](int i, int j, int k) {
+  for_points(grid_->rows(), [&](int i, int j, int k) {
     const int body = static_cast<int>(phase.label[0](i, j, k)) - first_label;
     if (body < 0) return;
     const double rank = double(global_index(*grid_, i, j, k)) + (phase.fraction[0](i, j, k) > 0.5 ? 0 : cells);

@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
+int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
 
 /// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
 /// the output.
 double phase_fields(const Config &config, bool carries_tensor = true) {
-  const int tensor = !carries_tensor ? 0 : dimension_of(config) == 2 ? 3 : 6;
-  return (1 + config.body_series + tensor) * (config.method.staggered() ? 2 : 1);
+  return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
 }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
@@ -58,7 +58,7 @@ double fields(const Config &config) {
   double tensor = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const bool carries = config.species[s].material().carries_tensor();
-    if (carries) tensor = dimension == 2 ? 3 : 6;
+    if (carries) tensor = tensor_fields(config);
     sum += config.colours[s] * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
@@ -67,7 +67,7 @@ double fields(const Config &config) {
   if (method.interface == InterfaceScheme::weno5) sum += 1;
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
-  if (contrast.exists()) sum += viscosity_fields(dimension) + (dimension == 2 ? 3 : 6);
+  if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
   if (contrast.settles() && method.staggered() && method.viscous == ViscousScheme::rkl) sum += 1;  // pressure before
   return sum;
 }
@@ -136,7 +136,7 @@ PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *ref
   const Int3 parts = Grid::decompose(config.grid, ranks);
   const double share = config.guard.memory, limit = memory_limit();
   const double needed = bytes_per_rank(config, parts) * node_ranks;
-  const double values = ghosted_cells(config, parts) * (dimension_of(config) == 2 ? 3 : 6);
+  const double values = ghosted_cells(config, parts) * tensor_fields(config);
   std::string problem;
   if (share > 0 && needed > share * limit) {
     problem = too_little(node_ranks, needed, limit, share);

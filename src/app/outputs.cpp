@@ -184,7 +184,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   PetscCall(list_bodies(&summary));
   double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
   counted[0] = double(solver_->bytes());
-  for (const Phase &phase : state.phases) counted[1] += phase.solid.points();
+  for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 2, MPI_DOUBLE, MPI_SUM, grid_->comm()));
   summary.bytes_per_cell = counted[0] / grid_->cell_count();
   summary.active_fraction = counted[1] / grid_->cell_count();

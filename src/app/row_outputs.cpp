@@ -53,8 +53,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.sides, state.time,      solver_->evolved_fraction(),
-                              viscosity};
+                              &config_.sides, state.time,      viscosity};
   PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy.rates));
   double power = 0;
   PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));

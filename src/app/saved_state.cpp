@@ -16,15 +16,13 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   if (state.pressure_before) fields.push_back({"pressure_before", at_centre, state.pressure_before[0]});
   for (int d = 0; d < state.advection.count(); ++d)
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
-  const auto &components = tensor_components(solver.grid().dimension());
   for (Phase &phase : state.phases) {
     // No species has a dot in its name.
     const std::string species = "_" + phase.species + (phase.colour > 0 ? "." + std::to_string(phase.colour) : "");
     fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
-    for (int c = 0; c < phase.tensor.count(); ++c) {
-      const std::string name{"xyz"[components[c].a], "xyz"[components[c].b]};
-      fields.push_back({"left_cauchy_green_" + name + species,
-                        staggering_of(components[c], phase.material.is_membrane()), phase.tensor[c]});
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
+      const TensorComponent &component = phase.tensor.components()[c];
+      fields.push_back({"left_cauchy_green_" + component.name() + species, component.at, phase.tensor.field[c]});
     }
     if (phase.label) fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
   }

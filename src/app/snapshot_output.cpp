@@ -46,11 +46,10 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || (spec->law == Law::rigid) != rigid) continue;
     if (!*solid) *solid = FieldBlock(grid, 1);
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        double &sum = (*solid)[0](i, row.j, row.k);
-        sum = std::min(1.0, sum + phase.fraction[0](i, row.j, row.k));
-      }
+    for_points(grid.rows(), [&](int i, int j, int k) {
+      double &sum = (*solid)[0](i, j, k);
+      sum = std::min(1.0, sum + phase.fraction[0](i, j, k));
+    });
   }
   if (!*solid) PetscFunctionReturn(0);
   PetscCall(solver->exchange().update(*solid, 3));

@@ -178,13 +178,12 @@ PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label,
   PetscCall(fail_together(grid.comm(), about(spec, body.open(spec, grid.spec()))));
   PetscCall(fail_together(grid.comm(), about(spec, body.fill(grid, fraction))));
   int any = 0;
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      double &phi = fraction(i, row.j, row.k);
-      if (spec.voxels.invert) phi = 1 - phi;
-      if (phi > 0) name(i, row.j, row.k) = label;
-      any |= phi > 0;
-    }
+  for_points(grid.rows(), [&](int i, int j, int k) {
+    double &phi = fraction(i, j, k);
+    if (spec.voxels.invert) phi = 1 - phi;
+    if (phi > 0) name(i, j, k) = label;
+    any |= phi > 0;
+  });
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));
   PetscCall(fail_together(grid.comm(), about(spec, any ? "" : spec.voxels.path + " has nothing solid in the box")));
   stretch_phase(grid, spec, phase);

@@ -12,15 +12,13 @@ constexpr int margin = 2;  // cells around a membrane where its tensor may evolv
 
 // visit(component, offset of a point) for all points of B that a cell touches.
 template <class Visit>
-void for_each_point(int dimension, bool membrane, const Visit &visit) {
-  const auto &components = tensor_components(dimension);
-  for (int c = 0; c < static_cast<int>(components.size()); ++c) {
-    const auto [a, b] = components[c];
-    const bool edge = a != b && !membrane;
-    for (int corner = 0; corner < (edge ? 4 : 1); ++corner) {
+void for_each_point(const CarriedTensor &tensor, const Visit &visit) {
+  for (int c = 0; c < tensor.field.count(); ++c) {
+    const TensorComponent &component = tensor.components()[c];
+    for (int corner = 0; corner < (component.on_edge() ? 4 : 1); ++corner) {
       Int3 offset{};
-      offset[a] += corner & 1;
-      offset[b] += corner >> 1;
+      offset[component.a] += corner & 1;
+      offset[component.b] += corner >> 1;
       visit(c, offset);
     }
   }
@@ -43,12 +41,6 @@ int whose(const Phase &phase, int dimension, const Int3 &c, const std::vector<in
   return 0;
 }
 
-// Global index along a direction, in the box where it is periodic.
-int in_box(const Grid &grid, int d, int index) {
-  const int n = grid.cells()[d];
-  return grid.is_wall(d) ? index : (index % n + n) % n;
-}
-
 template <class Visit>
 void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, const Int3 &reach, const Visit &visit) {
   const Int3 &begin = grid.layout().begin, &n = grid.owned();
@@ -60,7 +52,7 @@ void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, 
           Int3 local;
           bool own = true;
           for (int d = 0; d < 3; ++d) {
-            local[d] = in_box(grid, d, cell.at[d] + shift[d] + away[d]) - begin[d];
+            local[d] = grid.image(d, cell.at[d] + shift[d] + away[d]) - begin[d];
             own = own && local[d] >= 0 && local[d] < n[d];
           }
           if (own) visit(cell, local);
@@ -82,21 +74,19 @@ PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std:
     if (phase.material.is_membrane()) {
       PetscCall(exchange.update({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
     }
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const Int3 at{i, row.j, row.k};
-        const int label = whose(phase, dimension, at, labels);
-        if (label == 0) continue;
-        const BodyCells cells{phase.label[0], phase.fraction[0]};
-        mine.insert(mine.end(),
-                    {double(label), double(p), double(begin[0] + i), double(begin[1] + row.j), double(begin[2] + row.k),
-                     cells(i, row.j, row.k) > 0 ? phase.fraction[0](i, row.j, row.k) : -1});
-        const std::size_t end = mine.size() + BodyCopy::points;
-        for_each_point(dimension, phase.material.is_membrane(), [&](int c, const Int3 &o) {
-          mine.push_back(phase.tensor[c](i + o[0], row.j + o[1], row.k + o[2]));
-        });
-        mine.resize(end, 0);
-      }
+    for_points(grid.rows(), [&](int i, int j, int k) {
+      const Int3 at{i, j, k};
+      const int label = whose(phase, dimension, at, labels);
+      if (label == 0) return;
+      const BodyCells cells{phase.label[0], phase.fraction[0]};
+      mine.insert(mine.end(), {double(label), double(p), double(begin[0] + i), double(begin[1] + j),
+                               double(begin[2] + k), cells(i, j, k) > 0 ? phase.fraction[0](i, j, k) : -1});
+      const std::size_t end = mine.size() + BodyCopy::points;
+      for_each_point(phase.tensor, [&](int c, const Int3 &o) {
+        mine.push_back(phase.tensor.field[c](i + o[0], j + o[1], k + o[2]));
+      });
+      mine.resize(end, 0);
+    });
   }
   int ranks, count = static_cast<int>(mine.size());
   PetscCallMPI(MPI_Comm_size(grid.comm(), &ranks));
@@ -147,19 +137,18 @@ void put_body(const Grid &grid, const BodyCopy &body, const Int3 &shift, int lab
     phase->fraction[0](at[0], at[1], at[2]) = cell.phi;
     phase->label[0](at[0], at[1], at[2]) = label;
   });
-  const bool membrane = phase->material.is_membrane();
   if (!phase->material.carries_tensor()) return;
   for (const BodyCopy::Cell &cell : body.cells) {
     int point = 0;
-    for_each_point(grid.dimension(), membrane, [&](int c, const Int3 &offset) {
-      const Staggering staggered = staggering_of(tensor_components(grid.dimension())[c], membrane);
+    for_each_point(phase->tensor, [&](int c, const Int3 &offset) {
+      const Staggering &staggered = phase->tensor.components()[c].at;
       const double value = cell.B[point++];
       Int3 at;
       for (int d = 0; d < 3; ++d) {
-        at[d] = in_box(grid, d, cell.at[d] + shift[d] + offset[d]) - begin[d];
+        at[d] = grid.image(d, cell.at[d] + shift[d] + offset[d]) - begin[d];
         if (at[d] < 0 || at[d] >= grid.points_end(d, staggered[d])) return;
       }
-      phase->tensor[c](at[0], at[1], at[2]) = value;
+      phase->tensor.field[c](at[0], at[1], at[2]) = value;
     });
   }
 }

@@ -50,10 +50,10 @@ EULASTIC_CLONES void add_up(const Grid &grid, const Run &run, const Int3 &refere
   if (run.phase.material.is_membrane()) return;  // B_s says nothing of the inside
   sums->full_cells = lane.sum([=](int i) EULASTIC_BODY { return phi[i] > full_cell ? 1.0 : 0.0; });
   if (sums->full_cells == 0) return;
-  for (int f = 0; f < run.phase.tensor.count(); ++f) {
-    const auto [a, b] = tensor_components(grid.dimension())[f];
-    const double *B = run.of(run.phase.tensor, f);
-    const std::ptrdiff_t sa = run.phase.tensor[f].stride(a), sb = run.phase.tensor[f].stride(b);
+  for (int f = 0; f < run.phase.tensor.field.count(); ++f) {
+    const auto [a, b, at] = run.phase.tensor.components()[f];
+    const double *B = run.of(run.phase.tensor.field, f);
+    const std::ptrdiff_t sa = run.phase.tensor.field[f].stride(a), sb = run.phase.tensor.field[f].stride(b);
     sums->tensor[f] = a == b ? lane.sum([=](int i) EULASTIC_BODY { return phi[i] > full_cell ? B[i] : 0; })
                              : lane.sum([=](int i) EULASTIC_BODY {
                                  const double mean = kernels::average4(B + i, sa, sb);

@@ -30,17 +30,15 @@ private:
 
 // `tensor`: the component in the phase that `ways` lead away from, before any body has moved.
 void copy_component(const Grid &grid, const Ways &ways, const BodyCells &cells, const TensorComponent &c, int f,
-                    bool membrane, ConstView tensor, std::vector<Phase> *phases) {
-  const Staggering at = staggering_of(c, membrane);
-  const bool edge = c.a != c.b && !membrane;
-  const std::ptrdiff_t a = edge ? cells.label.stride(c.a) : 0, b = edge ? cells.label.stride(c.b) : 0;
-  for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, at[1]); ++j)
-      for (int i = 0; i < grid.points_end(0, at[0]); ++i) {
+                    ConstView tensor, std::vector<Phase> *phases) {
+  const std::ptrdiff_t a = c.on_edge() ? cells.label.stride(c.a) : 0, b = c.on_edge() ? cells.label.stride(c.b) : 0;
+  for (int k = 0; k < grid.points_end(2, c.at[2]); ++k)
+    for (int j = 0; j < grid.points_end(1, c.at[1]); ++j)
+      for (int i = 0; i < grid.points_end(0, c.at[0]); ++i) {
         const double *name = &cells.label.row(j, k)[i], *phi = &cells.fraction.row(j, k)[i];
         for (const std::ptrdiff_t cell : {std::ptrdiff_t(0), -a, -b, -a - b}) {
           const int to = phi[cell] > BodyCells::threshold && name[cell] > 0 ? ways.of(name[cell]) : -1;
-          if (to >= 0) (*phases)[to].tensor[f](i, j, k) = tensor(i, j, k);
+          if (to >= 0) (*phases)[to].tensor.field[f](i, j, k) = tensor(i, j, k);
         }
       }
 }
@@ -63,6 +61,7 @@ void add_colour(const Grid &grid, int like, std::vector<Phase> *phases) {
   colour.material = phase.material;
   for (const Phase &other : *phases) colour.colour += other.species == phase.species;
   colour.separate = phase.separate;
+  colour.tensor.rule = phase.tensor.rule;
   colour.empty(grid, bool(phase.label));
   phases->push_back(std::move(colour));
 }
@@ -91,32 +90,30 @@ bool set_colours(const Grid &grid, const std::vector<long> &first, std::vector<P
 
 // Bodies may change places: every field is copied before it is written.
 void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vector<Phase> *phases) {
-  const auto &components = tensor_components(grid.dimension());
   const int count = static_cast<int>(phases->size());
   std::vector<Ways> ways;
   for (int from = 0; from < count; ++from) ways.emplace_back(moves, from);
   const auto label = copies(ways, phases, [](Phase &phase) { return phase.label.part(0, 1); });
   const auto fraction = copies(ways, phases, [](Phase &phase) { return phase.fraction.part(0, 1); });
-  for (int c = 0; c < static_cast<int>(components.size()); ++c) {
-    const auto tensor = copies(ways, phases, [c](Phase &phase) { return phase.tensor.part(c, 1); });
+  for (int c = 0; c < static_cast<int>(tensor_components(grid.dimension()).size()); ++c) {
+    const auto tensor = copies(ways, phases, [c](Phase &phase) { return phase.tensor.field.part(c, 1); });
     for (int from = 0; from < count; ++from)
       if (!ways[from].empty())
-        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, components[c], c,
-                       (*phases)[from].material.is_membrane(), tensor[from][0], phases);
+        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, (*phases)[from].tensor.components()[c], c,
+                       tensor[from][0], phases);
   }
   for (const bool arrive : {false, true})
     for (int from = 0; from < count; ++from) {
       if (ways[from].empty()) continue;
-      for (const Segment &row : grid.rows())
-        for (int i = row.i_begin; i < row.i_end; ++i) {
-          const double name = label[from][0](i, row.j, row.k), phi = fraction[from][0](i, row.j, row.k);
-          const int to = name > 0 ? ways[from].of(name) : -1;
-          if (to < 0) continue;
-          Phase &phase = (*phases)[arrive ? to : from];
-          double &there = phase.fraction[0](i, row.j, row.k);
-          if (!arrive || phi >= there) phase.label[0](i, row.j, row.k) = arrive ? name : 0;
-          there = arrive ? std::min(there + phi, 1.0) : 0;
-        }
+      for_points(grid.rows(), [&](int i, int j, int k) {
+        const double name = label[from][0](i, j, k), phi = fraction[from][0](i, j, k);
+        const int to = name > 0 ? ways[from].of(name) : -1;
+        if (to < 0) return;
+        Phase &phase = (*phases)[arrive ? to : from];
+        double &there = phase.fraction[0](i, j, k);
+        if (!arrive || phi >= there) phase.label[0](i, j, k) = arrive ? name : 0;
+        there = arrive ? std::min(there + phi, 1.0) : 0;
+      });
     }
 }
 

@@ -69,22 +69,20 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &place
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
   const Surface surface(spec, grid.dimension());
-  const auto &components = tensor_components(grid.dimension());
   for (const NumberedPlace &place : places.known) {
     if (place.orientation == Real3{} || !is_near(grid, grid.rank(), surface, place)) continue;
     const Rotation R = rotation(place.orientation);
     const PlacedBody body(surface, grid.spec(), place);
     Phase &phase = *phase_of(place.index);
-    for (std::size_t c = 0; c < components.size(); ++c) {
-      const auto [x, y] = components[c];
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
+      const TensorComponent &component = phase.tensor.components()[c];
+      const auto [x, y, at] = component;
       double turned = 0;
       for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
-      const View B = phase.tensor[static_cast<int>(c)], label = phase.label[0];
-      const bool centred = x == y || spec.is_membrane();
-      const Staggering at = staggering_of(components[c], spec.is_membrane());
+      const View B = phase.tensor.field[c], label = phase.label[0];
       for_points_of(grid, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
-        if (centred) {
+        if (!component.on_edge()) {
           if (label(p[0], p[1], p[2]) == first_label + place.index) value = turned;
           return;
         }
@@ -104,17 +102,15 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &place
 }  // namespace
 
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
-  phase->tensor = tensor_at_rest(grid);
+  phase->tensor.field = tensor_at_rest(grid);
   if (!phase->material.carries_tensor()) return;
-  const auto &components = tensor_components(grid.dimension());
   const ConstView fraction = phase->fraction[0];
-  for (std::size_t c = 0; c < components.size(); ++c) {
-    if (components[c].a != components[c].b) continue;
-    const double stretch = spec.initial_stretch[components[c].a];
-    const View tensor = phase->tensor[static_cast<int>(c)];
-    for (const Segment &row : grid.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i)
-        if (fraction(i, row.j, row.k) > 0) tensor(i, row.j, row.k) = stretch * stretch;
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const double stretch = spec.initial_stretch[d];
+    const View tensor = phase->tensor.field[d];
+    for_points(grid.rows(), [&](int i, int j, int k) {
+      if (fraction(i, j, k) > 0) tensor(i, j, k) = stretch * stretch;
+    });
   }
 }
 

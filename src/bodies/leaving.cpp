@@ -1,35 +1,15 @@
 #include "bodies/leaving.hpp"
 
-#include <algorithm>
-
 namespace eulastic {
-namespace {
-
-// work(i, j, k) for the owned cells within so many of a side, if this rank touches it.
-template <class Work>
-void for_cells_at(const Grid &grid, int d, bool high, int layers, const Work &work) {
-  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) return;
-  Int3 begin{}, end = grid.owned();
-  if (high)
-    begin[d] = std::max(0, end[d] - layers);
-  else
-    end[d] = std::min(layers, end[d]);
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i) work(i, j, k);
-}
-
-}  // namespace
-
 bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than) {
   bool any = false;
-  for_cells_at(grid, d, high, layers, [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
+  for_points(grid.cells_at(d, high, layers), [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
   return any;
 }
 
 void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::set<int> *leaves) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for_cells_at(grid, d, high, layers, [&](int i, int j, int k) {
+  for_points(grid.cells_at(d, high, layers), [&](int i, int j, int k) {
     if (!(fraction(i, j, k) > 0)) return;
     if (label(i, j, k) > 0)
       leaves->insert(static_cast<int>(label(i, j, k)));
@@ -40,13 +20,12 @@ void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, 
 
 void take_out(const Grid &grid, const std::set<int> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      double &name = label(i, row.j, row.k);
-      if (!(name > 0 && leaves.count(static_cast<int>(name)) > 0)) continue;
-      fraction(i, row.j, row.k) = 0;
-      name = 0;
-    }
+  for_points(grid.rows(), [&](int i, int j, int k) {
+    double &name = label(i, j, k);
+    if (!(name > 0 && leaves.count(static_cast<int>(name)) > 0)) return;
+    fraction(i, j, k) = 0;
+    name = 0;
+  });
 }
 
 }  // namespace eulastic

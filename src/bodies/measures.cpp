@@ -26,8 +26,9 @@ double largest_of(const double *values, int n, double so_far) {
 
 // The largest tr B where phi >= 1/2.
 double largest_trace(const Run &run, int dimension, double so_far) {
-  const double *phi = run.of(run.phase.fraction, 0), *xx = run.of(run.phase.tensor, 0),
-               *yy = run.of(run.phase.tensor, 1), *zz = dimension == 3 ? run.of(run.phase.tensor, 2) : nullptr;
+  const double *phi = run.of(run.phase.fraction, 0), *xx = run.of(run.phase.tensor.field, 0),
+               *yy = run.of(run.phase.tensor.field, 1),
+               *zz = dimension == 3 ? run.of(run.phase.tensor.field, 2) : nullptr;
   for (int i = 0; i < run.size(); ++i)
     if (phi[i] >= 0.5) so_far = std::max(so_far, xx[i] + yy[i] + (zz ? zz[i] : 1));
   return so_far;
@@ -129,6 +130,43 @@ struct Largest {
   std::vector<double> trace;
 };
 
+// Scales, the largest tr B of every body, and energy densities along the pieces of rows of every part. Collective.
+PetscErrorCode find_largest(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+                            const BodyOwners &owners, const RowEnergy &energy,
+                            std::vector<std::vector<double>> *energies, Largest *largest) {
+  PetscFunctionBeginUser;
+  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0)),
+      traces(found.size(), std::vector<double>(owners.here().size(), 0.0));
+  energies->resize(found.size());
+  in_row_parts(grid, [&](const RowPart &part) {
+    std::vector<double> &some = found[part.number], &trace_of = traces[part.number],
+                        &density = (*energies)[part.number];
+    std::vector<double> of_row(grid.owned()[0]);
+    for_each_run(
+        grid, part, phases, owners,
+        [&](const Phase &phase, const Segment &row) {
+          energy(grid, phase, row, of_row.data());
+          density.insert(density.end(), of_row.begin() + row.i_begin, of_row.begin() + row.i_end);
+        },
+        [&](const Run &run) {
+          for (int d = 0; d < grid.dimension(); ++d) {
+            const double *face = run.of(velocity, d);
+            some[0] = largest_of(face, run.size(), some[0]);
+            some[0] = largest_of(face + velocity[d].stride(d), run.size(), some[0]);
+          }
+          some[1] = largest_of(of_row.data() + run.begin, run.size(), some[1]);
+          trace_of[run.body] = largest_trace(run, grid.dimension(), trace_of[run.body]);
+        });
+  });
+  std::vector<double> most;
+  PetscCall(reduce_maxima(grid.comm(), found, &most));
+  *largest = {most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
+  for (const std::vector<double> &some : traces)
+    for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
+  PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest->trace));
+  PetscFunctionReturn(0);
+}
+
 BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
   BodyMeasure body;
   const Real3 &h = grid.spacing();
@@ -190,38 +228,13 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
                                     const RowEnergy &energy, std::vector<BodyMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dimension = grid.dimension(), parts = row_parts(grid);
+  const int dimension = grid.dimension();
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(grid, phases, {}, &owners, &references));
-  // Speed and energy density of all, tr B of every body, and energy densities along the pieces of rows.
-  std::vector<std::vector<double>> found(parts, std::vector<double>(2, 0.0)), energies(parts);
-  std::vector<std::vector<double>> traces(parts, std::vector<double>(references.size(), 0.0));
-  in_row_parts(grid, [&](const RowPart &part) {
-    std::vector<double> &some = found[part.number], &trace_of = traces[part.number], &density = energies[part.number];
-    std::vector<double> of_row(grid.owned()[0]);
-    for_each_run(
-        grid, part, phases, owners,
-        [&](const Phase &phase, const Segment &row) {
-          energy(grid, phase, row, of_row.data());
-          density.insert(density.end(), of_row.begin() + row.i_begin, of_row.begin() + row.i_end);
-        },
-        [&](const Run &run) {
-          for (int d = 0; d < dimension; ++d) {
-            const double *face = run.of(velocity, d);
-            some[0] = largest_of(face, run.size(), some[0]);
-            some[0] = largest_of(face + velocity[d].stride(d), run.size(), some[0]);
-          }
-          some[1] = largest_of(of_row.data() + run.begin, run.size(), some[1]);
-          trace_of[run.body] = largest_trace(run, dimension, trace_of[run.body]);
-        });
-  });
-  std::vector<double> most;
-  PetscCall(reduce_maxima(grid.comm(), found, &most));
-  Largest largest{most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
-  for (const std::vector<double> &some : traces)
-    for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
-  PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest.trace));
+  std::vector<std::vector<double>> energies;
+  Largest largest;
+  PetscCall(find_largest(grid, phases, velocity, owners, energy, &energies, &largest));
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     const double *density = energies[part.number].data(), *of_row = nullptr;  // of cell 0 of the row
@@ -231,9 +244,9 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
     };
     for_each_run(grid, part, phases, owners, start, [&](const Run &run) {
       const int b = run.body;
-      const Real3 at = offset(grid, references[b], {run.begin, run.j, run.k});
+      const Real3 begin = offset(grid, references[b], {run.begin, run.j, run.k});
       const RunSums of_run = sum_all(grid, run, references[b], velocity);
-      const double cells = of_run.fraction, x = of_run.first_moment, y = at[1], z = at[2];
+      const double cells = of_run.fraction, x = of_run.first_moment, y = begin[1], z = begin[2];
       const std::array first{x, cells * y, cells * z};
       const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
       some.add(b, 0, cells);
@@ -245,8 +258,8 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
         some.add(b, strain,
                  lane_sum(of_row + run.begin, run.size(), grid.layout().begin[0] + run.begin) / largest.energy);
       some.add(b, full_cells, of_run.full_cells);
-      for (int f = 0; f < run.phase.tensor.count() && of_run.full_cells > 0; ++f) {
-        const auto [p, q] = tensor_components(dimension)[f];
+      for (int f = 0; f < run.phase.tensor.field.count() && of_run.full_cells > 0; ++f) {
+        const auto [p, q, at] = run.phase.tensor.components()[f];
         some.add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
       }
     });

@@ -170,9 +170,8 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   double diagonal = 0, regular = 0;
   Real3 least{}, place{};  // wrapped into the box, like that of the owner
   for (int d = 0; d < grid_.dimension(); ++d) {
-    const int g = begin[d] + local[d];
     least[d] = (d == a ? 0 : 0.5) - 0.5 * N[d];
-    place[d] = least[d] + (grid_.is_wall(d) ? g : (g % N[d] + N[d]) % N[d]);
+    place[d] = least[d] + grid_.image(d, begin[d] + local[d]);
   }
   for (int d = 0; d < grid_.dimension(); ++d)
     for (int high = 0; high < 2; ++high) {

@@ -89,7 +89,6 @@ struct SpeciesSpec {
     const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
     return {at_rest,
             attached.value_or(is_attached(shape)),
-            false,
             is_membrane() ? Law::membrane : law,
             c1,
             c2,

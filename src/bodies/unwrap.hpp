@@ -10,10 +10,7 @@ namespace eulastic {
 /// References, those along periodic directions within the box: what offset() starts from.
 inline std::vector<Int3> within_box(const Grid &grid, std::vector<Int3> references) {
   for (Int3 &cell : references)
-    for (int d = 0; d < grid.dimension(); ++d) {
-      const int n = grid.cells()[d];
-      if (!grid.is_wall(d)) cell[d] = (cell[d] % n + n) % n;
-    }
+    for (int d = 0; d < grid.dimension(); ++d) cell[d] = grid.image(d, cell[d]);
   return references;
 }
 

@@ -21,7 +21,7 @@ struct CellTensor {
 inline double edge_stress(int dimension, const Phase &phase, int a, int b, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
-  const CellTensor B(phase.tensor, i, j, k);
+  const CellTensor B(phase.tensor.field, i, j, k);
   const double *fraction = &phi(i, j, k);
   return with_law(phase.material, [&](const auto &law) {
     return dimension == 2 ? law.shear_stress(fraction, kernels::tensor_at<2>(B.component, stride, a, b), 0)
@@ -33,7 +33,7 @@ inline double edge_stress(int dimension, const Phase &phase, int a, int b, int i
 inline double centre_stress(int dimension, const Phase &phase, int a, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
-  const CellTensor B(phase.tensor, i, j, k);
+  const CellTensor B(phase.tensor.field, i, j, k);
   const double fraction = phi(i, j, k);
   return with_law(phase.material, [&](const auto &law) {
     const int b = (a + 1) % dimension;

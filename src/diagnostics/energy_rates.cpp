@@ -21,7 +21,7 @@ struct Row {
 
   Row(const Phase &phase, const Segment &row)
       : phi(phase.fraction[0].row(row.j, row.k)),
-        B(phase.tensor, 0, row.j, row.k),
+        B(phase.tensor.field, 0, row.j, row.k),
         begin(row.i_begin),
         end(row.i_end),
         material(phase.material) {
@@ -126,7 +126,7 @@ private:
   EdgeViscosity viscosity_;
 };
 
-void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase, double evolved,
+void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase,
                  ExactSums *sums) {
   if (!phase.material.elastic()) return;
   std::vector<double> power(grid.owned()[0]), energy(power.size());
@@ -140,7 +140,7 @@ void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &veloci
     stress_power(grid, phase, velocity, row, power.data());
     add(elastic_power, power);
     for (int i = row.i_begin; i < row.i_end; ++i)
-      if (phi[i] >= evolved) power[i] = energy[i] = 0;
+      if (phi[i] >= phase.tensor.rule.centre) power[i] = energy[i] = 0;
     add(extended_power, power);
     add(extended_energy, energy);
   }
@@ -161,13 +161,11 @@ PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity
     for (int c = 0; c < grid.dimension(); ++c)
       if (numbers.force[c] != 0)
         for (const Segment &row : part.rows(grid)) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
-    for (std::size_t p = 0; p < phases.size(); ++p)
-      add_elastic(grid, part, velocity, phases[p], numbers.evolved[p], &all);
+    for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(grid, part, velocity, phases[p], &all);
     const WallPower walls(grid, velocity, phases, {grid, numbers.viscosity, numbers.density, numbers.local_viscosity});
-    for (int d = 0; part.first && numbers.sides && d < grid.dimension(); ++d)
-      for (const bool high : {false, true})
-        if (high ? grid.touches_high(d) : grid.touches_low(d))
-          walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
+    if (!part.first || !numbers.sides) return;
+    for (const auto [d, high] : grid.sides())
+      if (grid.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
   };
   double sum[sums];
   PetscCall(sum_row_parts(grid, sums, add, sum));

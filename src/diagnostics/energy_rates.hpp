@@ -16,7 +16,6 @@ struct EnergyNumbers {
   Real3 force{};                      ///< body force per mass, now
   const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
-  std::vector<double> evolved;  ///< least phi where B of a phase is evolved, per phase; below, it is extended
   const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
 };
 

@@ -110,18 +110,13 @@ public:
 
   void add(int d, bool high) const {
     const ConstView v = velocity_[d];
-    Int3 begin{}, end = grid_.owned();
-    begin[d] = high ? end[d] : 0;
-    end[d] = begin[d] + 1;
-    for (int k = begin[2]; k < end[2]; ++k)
-      for (int j = begin[1]; j < end[1]; ++j)
-        for (int i = begin[0]; i < end[0]; ++i) {
-          const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
-          sums_->add(speed_squared, half * q[0] * q[0]);
-          sums_->add(momentum_x + d, half * q[0]);
-          for (int e = 0; e < grid_.dimension(); ++e)
-            if (e != d) add_shear(q, v.stride(e), e, Int3{i, j, k}[e]);
-        }
+    for_points(grid_.faces_on(d, high), [&](int i, int j, int k) {
+      const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
+      sums_->add(speed_squared, half * q[0] * q[0]);
+      sums_->add(momentum_x + d, half * q[0]);
+      for (int e = 0; e < grid_.dimension(); ++e)
+        if (e != d) add_shear(q, v.stride(e), e, Int3{i, j, k}[e]);
+    });
   }
 
 private:
@@ -141,6 +136,27 @@ private:
 double largest(const double *values, int n, double so_far) {
   for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
   return so_far;
+}
+
+// `sum`, `maximum`: of all ranks, as the enumerations above number them.
+FlowMeasures evaluate(const Grid &grid, const FlowNumbers &numbers, const double *sum,
+                      const std::vector<double> &maximum) {
+  FlowMeasures m;
+  const double volume = grid.cell_volume(), cells = grid.cell_count();
+  m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
+  for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
+  // Maxima drop NaN; 0 * sum brings it back.
+  for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
+  m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
+  const Real3 &h = grid.spacing();
+  const double smallest = *std::min_element(h.begin(), h.begin() + grid.dimension());
+  const double speed = std::max(m.speed_max, numbers.force * numbers.dt);
+  const double scale = speed > 0 ? smallest / speed : 0;
+  m.divergence_rms = std::sqrt(sum[divergence_squared] / cells) * scale;
+  m.divergence_max = maximum[max_divergence] * scale + 0 * sum[divergence_squared];
+  m.viscous_dissipation =
+      (numbers.local_viscosity ? numbers.density : numbers.viscosity) * sum[gradient_squared] * volume;
+  return m;
 }
 
 }  // namespace
@@ -174,12 +190,9 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   };
   const auto add_all = [&](const RowPart &part, ExactSums &sums) {
     add(part, sums);
-    for (int d = 0; part.first && numbers.sides && d < dimension; ++d)
-      for (const bool high : {false, true}) {
-        const SideKind kind = (*numbers.sides)[d][high].kind;
-        if ((high ? grid.touches_high(d) : grid.touches_low(d)) && (is_open(kind) || kind == SideKind::inflow))
-          SideFaces(grid, velocity, &sums).add(d, high);
-      }
+    if (!part.first || !numbers.sides) return;
+    for (const auto [d, high] : grid.sides())
+      if (volume_crosses((*numbers.sides)[d][high].kind)) SideFaces(grid, velocity, &sums).add(d, high);
   };
   scope.flops(grid.owned_count() * dimension * (10 + 4 * dimension));
   double sum[flow_sums];
@@ -187,21 +200,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   std::vector<double> maximum;
   PetscCall(reduce_maxima(grid.comm(), found, &maximum));
 
-  FlowMeasures &m = *measures;
-  const double volume = grid.cell_volume(), cells = grid.cell_count();
-  m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
-  for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
-  // Maxima drop NaN; 0 * sum brings it back.
-  for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
-  m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
-  const Real3 &h = grid.spacing();
-  const double smallest = *std::min_element(h.begin(), h.begin() + dimension);
-  const double speed = std::max(m.speed_max, numbers.force * numbers.dt);
-  const double scale = speed > 0 ? smallest / speed : 0;
-  m.divergence_rms = std::sqrt(sum[divergence_squared] / cells) * scale;
-  m.divergence_max = maximum[max_divergence] * scale + 0 * sum[divergence_squared];
-  m.viscous_dissipation =
-      (numbers.local_viscosity ? numbers.density : numbers.viscosity) * sum[gradient_squared] * volume;
+  *measures = evaluate(grid, numbers, sum, maximum);
   PetscFunctionReturn(0);
 }
 

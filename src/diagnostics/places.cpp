@@ -12,13 +12,12 @@ PetscErrorCode largest(const Grid &grid, Value value, Real3 *place) {
   PetscFunctionBeginUser;
   const Int3 &begin = grid.layout().begin, &N = grid.cells();
   double most = -1, here = -1, first = std::numeric_limits<double>::infinity();
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) {
-      const double q = value(i, row.j, row.k);
-      if (!(q > here)) continue;
-      here = q;
-      first = begin[0] + i + double(N[0]) * (begin[1] + row.j + double(N[1]) * (begin[2] + row.k));
-    }
+  for_points(grid.rows(), [&](int i, int j, int k) {
+    const double q = value(i, j, k);
+    if (!(q > here)) return;
+    here = q;
+    first = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
+  });
   PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, grid.comm()));
   if (here < most) first = std::numeric_limits<double>::infinity();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, grid.comm()));

@@ -17,23 +17,17 @@ public:
   /// `profile`: of an inflow side, 0 where it is covered; or null.
   void add(const SideFlow &side, const SideProfile *profile, int first, ExactSums *all) const {
     const int d = side.direction;
-    if (!(side.high ? grid_.touches_high(d) : grid_.touches_low(d))) return;
-    Int3 begin{}, end = grid_.owned();
-    begin[d] = side.high ? end[d] - 1 : 0;
-    end[d] = begin[d] + 1;
-    for (int k = begin[2]; k < end[2]; ++k)
-      for (int j = begin[1]; j < end[1]; ++j)
-        for (int i = begin[0]; i < end[0]; ++i) {
-          const double along = (&velocity_[d](i, j, k))[side.high ? velocity_[d].stride(d) : 0];
-          const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
-          const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
-          all->add(first + into_box, inward);
-          if (!profile || profile->empty() || (*profile)[index_on_side(d, {i, j, k})] != 0) {
-            all->add(first + pressure_sum, p);
-            all->add(first + faces_sum, 1);
-          }
-          all->add(first + power_sum, inward * (p + 0.5 * density_ * speed_squared));
-        }
+    for_points(grid_.cells_at(d, side.high, 1), [&](int i, int j, int k) {
+      const double along = (&velocity_[d](i, j, k))[side.high ? velocity_[d].stride(d) : 0];
+      const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
+      const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
+      all->add(first + into_box, inward);
+      if (!profile || profile->empty() || (*profile)[index_on_side(d, {i, j, k})] != 0) {
+        all->add(first + pressure_sum, p);
+        all->add(first + faces_sum, 1);
+      }
+      all->add(first + power_sum, inward * (p + 0.5 * density_ * speed_squared));
+    });
   }
 
 private:
@@ -70,16 +64,15 @@ private:
 
 std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Grid &grid) {
   std::vector<SideFlow> flows;
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      const SideKind kind = sides[d][high].kind;
-      if (!grid.is_wall(d) || !(is_open(kind) || kind == SideKind::inflow)) continue;
-      SideFlow flow;
-      flow.direction = d;
-      flow.high = high;
-      flow.kind = kind;
-      flows.push_back(flow);
-    }
+  for (const auto [d, high] : grid.sides()) {
+    const SideKind kind = sides[d][high].kind;
+    if (!volume_crosses(kind)) continue;
+    SideFlow flow;
+    flow.direction = d;
+    flow.high = high;
+    flow.kind = kind;
+    flows.push_back(flow);
+  }
   return flows;
 }
 

@@ -80,15 +80,14 @@ public:
   // Adds traction(cell, plane), which need not be tangential.
   template <class Traction>
   void add_to(FieldBlock &stress, const Traction &traction) const {
-    for (const Segment &row : grid_.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i) {
-        const Int3 cell{i, row.j, row.k};
-        SurfacePlane plane;
-        if (!is_cut(cell) || !find_plane(cell, &plane)) continue;
-        const Real3 t = traction(cell, plane), &n = plane.normal;
-        const double along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
-        for (int c = 0; c < dimension_; ++c) stress[c](i, row.j, row.k) += t[c] - along * n[c];
-      }
+    for_points(grid_.rows(), [&](int i, int j, int k) {
+      const Int3 cell{i, j, k};
+      SurfacePlane plane;
+      if (!is_cut(cell) || !find_plane(cell, &plane)) return;
+      const Real3 t = traction(cell, plane), &n = plane.normal;
+      const double along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
+      for (int c = 0; c < dimension_; ++c) stress[c](i, j, k) += t[c] - along * n[c];
+    });
   }
 
   // visit(r, cell) for points of a field within `radius` cells of the surface, but those on sides: r from there, in
@@ -220,7 +219,7 @@ void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field
     for (int a = 0; a < dimension; ++a)
       for (int b = a; b < dimension; ++b) {
         Fit fit;
-        cells.for_places(TensorComponent{a, b}.staggering(), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+        cells.for_places(at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
           const double t[] = {1, r[0], r[1], r[2]};
           fit.add(t, dimension + 1, 1, known.at(a, b, place));
         });

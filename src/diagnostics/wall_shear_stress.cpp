@@ -65,26 +65,25 @@ std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &side
                                           const std::vector<Phase> &phases) {
   const VerbScope scope(Verb::sums);
   std::vector<WallStress> all;
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      if (!grid.is_wall(d) || sides[d][high].kind != SideKind::wall) continue;
-      WallStress &stress = all.emplace_back();
-      stress.direction = d;
-      stress.high = high;
-      Int3 n = grid.owned();
-      n[d] = (high ? grid.touches_high(d) : grid.touches_low(d)) ? 1 : 0;
-      stress.sy = n[0];
-      stress.sz = std::ptrdiff_t(n[0]) * n[1];
-      for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
-      if (n[d] == 0) continue;
-      const OneWall wall(grid, d, high);
-      const Real3 speed = sides[d][high].motion.at(time);
-      for (int c = 0; c < grid.dimension(); ++c) {
-        if (c == d) continue;
-        wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);
-        for (const Phase &phase : phases) wall.add_elastic(c, phase, &stress);
-      }
+  for (const auto [d, high] : grid.sides()) {
+    if (sides[d][high].kind != SideKind::wall) continue;
+    WallStress &stress = all.emplace_back();
+    stress.direction = d;
+    stress.high = high;
+    Int3 n = grid.owned();
+    n[d] = grid.touches(d, high) ? 1 : 0;
+    stress.sy = n[0];
+    stress.sz = std::ptrdiff_t(n[0]) * n[1];
+    for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
+    if (n[d] == 0) continue;
+    const OneWall wall(grid, d, high);
+    const Real3 speed = sides[d][high].motion.at(time);
+    for (int c = 0; c < grid.dimension(); ++c) {
+      if (c == d) continue;
+      wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);
+      for (const Phase &phase : phases) wall.add_elastic(c, phase, &stress);
     }
+  }
   return all;
 }
 

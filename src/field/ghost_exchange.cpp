@@ -19,7 +19,7 @@ std::vector<Point> points_along(const Grid &grid, int d, int ghosts) {
   std::vector<Point> points;
   for (int i = -ghosts; i < cells + ghosts; ++i) {
     if (grid.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
-    const int image = grid.is_wall(d) ? begin + i : ((begin + i) % n + n) % n, place = grid.owner_along(d, image);
+    const int image = grid.image(d, begin + i), place = grid.owner_along(d, image);
     points.push_back({i, place, image - grid.first_cell(d, place)});
   }
   return points;

@@ -21,7 +21,6 @@ struct StretchForce {
 struct Material {
   double shear_modulus = 0;  ///< G at rest, pressure units
   bool attached = false;     ///< to a wall, hardly moving (slab, tube)
-  bool linear = false;       ///< B is extended linearly: attached, and the grid sees its waves damped
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressure units; neo-Hookean: unused
   double viscosity = 0;           ///< dynamic; 0: the fluid's

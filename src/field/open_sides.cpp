@@ -13,8 +13,8 @@ double inflow_shape(const Grid &grid, const Side &side, int d, const Int3 &local
   std::size_t place = 0;
   for (int e = 2; e >= 0; --e) {
     if (e == d) continue;
-    const int n = grid.cells()[e], g = grid.layout().begin[e] + local[e];
-    place = place * n + std::size_t(grid.is_wall(e) ? std::clamp(g, 0, n - 1) : (g % n + n) % n);
+    const int n = grid.cells()[e];
+    place = place * n + std::size_t(std::clamp(grid.image(e, grid.layout().begin[e] + local[e]), 0, n - 1));
   }
   return (*side.profile)[place];
 }
@@ -52,44 +52,38 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
 }
 
 void fill_ghosts_of_increment(const Grid &grid, View field, int width) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true})
-      if (grid.is_wall(d)) reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
+  for (const auto [d, high] : grid.sides())
+    reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
 }
 
 void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, double time, double density,
                                    const FieldBlock &velocity, View pressure) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      if (!grid.is_open(d, high) || !(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
-      const bool outflow = sides[d][high].kind == SideKind::outflow;
-      const double given = outflow ? 0 : sides[d][high].given.at(time);
-      Int3 begin{}, end = grid.owned();
-      begin[d] = high ? end[d] - 1 : 0;
-      end[d] = begin[d] + 1;
-      const std::ptrdiff_t outward = high ? pressure.stride(d) : -pressure.stride(d);
-      const std::ptrdiff_t to_face = high ? velocity[d].stride(d) : 0;
-      for (int k = begin[2]; k < end[2]; ++k)
-        for (int j = begin[1]; j < end[1]; ++j)
-          for (int i = begin[0]; i < end[0]; ++i) {
-            const double speed = (&velocity[d](i, j, k))[to_face], inward = high ? -speed : speed;
-            const double back = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
-            double *p = &pressure(i, j, k);
-            p[outward] = 2 * (given - back) - p[0];
-          }
-    }
+  for (const auto [d, high] : grid.sides()) {
+    if (!grid.is_open(d, high)) continue;
+    const bool outflow = sides[d][high].kind == SideKind::outflow;
+    const double given = outflow ? 0 : sides[d][high].given.at(time);
+    const ConstView normal = velocity[d];
+    const std::ptrdiff_t outward = high ? pressure.stride(d) : -pressure.stride(d),
+                         to_face = high ? normal.stride(d) : 0;
+    const double sign = high ? -1 : 1;
+    for_points(grid.cells_at(d, high, 1), [&](int i, int j, int k) {
+      const double inward = sign * (&normal(i, j, k))[to_face];
+      const double back = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
+      double *p = &pressure(i, j, k);
+      p[outward] = 2 * (given - back) - p[0];
+    });
+  }
 }
 
 void clear_open_ghosts(const Grid &grid, View field, int width) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true})
-      if (grid.is_open(d, high)) reflect(grid, field, d, high, false, {0.0, 0.0}, width);
+  for (const auto [d, high] : grid.sides())
+    if (grid.is_open(d, high)) reflect(grid, field, d, high, false, {0.0, 0.0}, width);
 }
 
 bool volume_crosses(const BoxSides &sides) {
   for (const auto &pair : sides)
     for (const Side &side : pair)
-      if (is_open(side.kind) || side.kind == SideKind::inflow) return true;
+      if (volume_crosses(side.kind)) return true;
   return false;
 }
 

@@ -1,12 +1,11 @@
 #include "field/phase.hpp"
 
-#include "field/sides.hpp"
-
 namespace eulastic {
 
 void Phase::empty(const Grid &grid, bool labels) {
   fraction = FieldBlock::at_rest(grid, 1);
-  tensor = tensor_at_rest(grid);
+  tensor.field = tensor_at_rest(grid);
+  tensor.centred = material.is_membrane();
   label = labels ? FieldBlock::at_rest(grid, 1) : FieldBlock();
 }
 
@@ -15,9 +14,11 @@ void Phase::copy_from(const Phase &other) {
   material = other.material;
   colour = other.colour;
   fraction.copy_from(other.fraction);
-  tensor.copy_from(other.tensor);
+  tensor.field.copy_from(other.tensor.field);
+  tensor.centred = other.tensor.centred;
+  tensor.rule = other.tensor.rule;
   rows = other.rows;
-  strained = other.strained;
+  tensor.strained = other.tensor.strained;
   if (other.label) label.copy_from(other.label);
 }
 

@@ -2,9 +2,9 @@
 // and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp).
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/carried_tensor.hpp"
 #include "field/material.hpp"
-#include "grid/active_segments.hpp"
+#include "grid/occupied_rows.hpp"
 
 #include <string>
 
@@ -13,15 +13,12 @@ namespace eulastic {
 struct Phase {
   std::string species;  ///< name of the species it belongs to
   Material material;
-  int colour = 0;           ///< 0: the first phase of the species; the others come after the first ones of all species
-  bool separate = false;    ///< bodies that come near get phases of their own; needs labels
-  FieldBlock fraction;      ///< phi, one centred field, 0 ... 1
-  OccupiedRows rows;        ///< of phi; once they are known B is I in all others
-  FieldBlock tensor;        ///< B, see tensor_components(): diagonal at centres, off-diagonal on edges
-  FieldBlock label;         ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
-  ActiveSegments solid;     ///< points where B may evolve
-  ActiveSegments strained;  ///< points where B may differ from I: those and the layers it is extended over
-  ActiveSegments stressed;  ///< faces that feel the elastic stress
+  int colour = 0;         ///< 0: the first phase of the species; the others come after the first ones of all species
+  bool separate = false;  ///< bodies that come near get phases of their own; needs labels
+  FieldBlock fraction;    ///< phi, one centred field, 0 ... 1
+  OccupiedRows rows;      ///< of phi; once they are known the tensor is I in all others
+  CarriedTensor tensor;   ///< B
+  FieldBlock label;       ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
 
   /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (FieldBlock::at_rest).
   void empty(const Grid &grid, bool labels);

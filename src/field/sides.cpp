@@ -1,5 +1,7 @@
 #include "field/sides.hpp"
 
+#include "field/carried_tensor.hpp"
+
 #include "base/events.hpp"
 #include "field/open_sides.hpp"
 #include "field/reflection.hpp"
@@ -85,17 +87,6 @@ double wall_speed(const BoxSides &sides) {
   return speed;
 }
 
-const std::vector<TensorComponent> &tensor_components(int dimension) {
-  static const std::vector<TensorComponent> flat{{0, 0}, {1, 1}, {0, 1}};
-  static const std::vector<TensorComponent> full{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
-  return dimension == 2 ? flat : full;
-}
-
-FieldBlock tensor_at_rest(const Grid &grid) {
-  const int dimension = grid.dimension();
-  return FieldBlock::at_rest(grid, static_cast<int>(tensor_components(dimension).size()), dimension);
-}
-
 void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = grid.dimension();
@@ -107,7 +98,7 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
     for (int e = 0; e < dimension; ++e) {
       const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
       for (const bool high : {false, true}) {
-        if (!(high ? grid.touches_high(d) : grid.touches_low(d))) continue;
+        if (!grid.touches(d, high)) continue;
         const Side &side = sides[d][high];
         Reflection rule{-1, 0};
         if (is_open(side.kind) || (c != d && side.kind == SideKind::symmetry))
@@ -124,9 +115,7 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
 
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true})
-      if (grid.is_wall(d)) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
+  for (const auto [d, high] : grid.sides()) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
@@ -135,33 +124,26 @@ void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock
   clear_symmetry_planes(grid, sides, tensor);
   const auto &components = tensor_components(grid.dimension());
   for (int c = 0; c < tensor.count(); ++c) {
-    const Staggering at = components[c].staggering();
-    for (int d = 0; d < grid.dimension(); ++d)
-      for (const bool high : {false, true}) {
-        if (!grid.is_wall(d)) continue;
-        const bool odd = at[d] && sides[d][high].kind == SideKind::symmetry;
-        reflect(grid, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
-      }
+    const Staggering at = components[c].at;
+    for (const auto [d, high] : grid.sides()) {
+      const bool odd = at[d] && sides[d][high].kind == SideKind::symmetry;
+      reflect(grid, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
+    }
   }
 }
 
 void fill_wall_ghosts_centred_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
   const auto &components = tensor_components(grid.dimension());
   for (int c = 0; c < tensor.count(); ++c)
-    for (int d = 0; d < grid.dimension(); ++d)
-      for (const bool high : {false, true})
-        if (grid.is_wall(d))
-          reflect(grid, tensor[c], d, high, false, {components[c].staggering()[d] ? -1.0 : 1.0, 0.0}, width, rows);
+    for (const auto [d, high] : grid.sides())
+      reflect(grid, tensor[c], d, high, false, {components[c].at[d] ? -1.0 : 1.0, 0.0}, width, rows);
 }
 
 void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor) {
   const auto &components = tensor_components(grid.dimension());
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      if (!grid.is_wall(d) || sides[d][high].kind != SideKind::symmetry) continue;
-      for (int c = 0; c < tensor.count(); ++c)
-        if (components[c].staggering()[d]) clear_face(grid, tensor[c], d, high);
-    }
+  for (const auto [d, high] : grid.sides())
+    for (int c = 0; sides[d][high].kind == SideKind::symmetry && c < tensor.count(); ++c)
+      if (components[c].at[d]) clear_face(grid, tensor[c], d, high);
 }
 
 }  // namespace eulastic

@@ -28,6 +28,7 @@ struct WallMotion {
 enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
 /// Whether the pressure is given there, so that volume may cross it either way.
 constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
+constexpr bool volume_crosses(SideKind kind) { return is_open(kind) || kind == SideKind::inflow; }
 
 /// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
 using SideProfile = std::vector<double>;
@@ -54,29 +55,6 @@ struct Side {
 using BoxSides = std::array<std::array<Side, 2>, 3>;
 /// The largest speed of any wall.
 double wall_speed(const BoxSides &sides);
-
-/// In which directions a field sits on the low side of its cell.
-using Staggering = std::array<bool, 3>;
-inline constexpr Staggering at_centre{false, false, false};
-inline constexpr std::array<Staggering, 3> at_face{{{true, false, false}, {false, true, false}, {false, false, true}}};
-
-/// Components of the left Cauchy-Green tensor in the order of their block: xx, yy, xy in 2-D (zz stays 1) and
-/// xx, yy, zz, yz, xz, xy in 3-D.
-struct TensorComponent {
-  int a, b;
-  Staggering staggering() const {
-    Staggering s{};
-    if (a != b) s[a] = s[b] = true;
-    return s;
-  }
-};
-const std::vector<TensorComponent> &tensor_components(int dimension);
-/// Where a component of the B of a phase lives: all of a membrane's at centres.
-inline Staggering staggering_of(const TensorComponent &component, bool membrane) {
-  return membrane ? at_centre : component.staggering();
-}
-/// I everywhere.
-FieldBlock tensor_at_rest(const Grid &grid);
 
 /// No flow through the sides of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
 /// face of a neighbour whose three cells are this rank's ghosts.

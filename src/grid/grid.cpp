@@ -43,6 +43,14 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
   return true;
 }
 
+std::vector<Segment> rows_between(const Int3 &begin, const Int3 &end) {
+  std::vector<Segment> rows;
+  rows.reserve(std::size_t(end[1] - begin[1]) * std::size_t(end[2] - begin[2]));
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j) rows.push_back({begin[0], end[0], j, k});
+  return rows;
+}
+
 }  // namespace
 
 Int3 Grid::decompose(const GridSpec &spec, int ranks) {
@@ -163,24 +171,32 @@ bool Grid::any_open() const {
   return any;
 }
 
-std::vector<Segment> Grid::high_faces(int d) const {
-  std::vector<Segment> faces;
-  if (!touches_high(d)) return faces;
-  const Int3 &n = layout_.cells;
-  const int k0 = d == 2 ? n[2] : 0, k1 = d == 2 ? n[2] + 1 : n[2], j0 = d == 1 ? n[1] : 0,
-            j1 = d == 1 ? n[1] + 1 : n[1];
-  for (int k = k0; k < k1; ++k)
-    for (int j = j0; j < j1; ++j) faces.push_back({d == 0 ? n[0] : 0, d == 0 ? n[0] + 1 : n[0], j, k});
-  return faces;
+std::vector<Segment> Grid::faces_on(int d, bool high) const {
+  Int3 begin{}, end = owned();
+  begin[d] = high ? end[d] : 0;
+  end[d] = begin[d] + 1;
+  return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
 }
 
-std::vector<Segment> Grid::rows() const {
-  std::vector<Segment> rows;
-  rows.reserve(static_cast<std::size_t>(layout_.cells[1]) * layout_.cells[2]);
-  for (int k = 0; k < layout_.cells[2]; ++k)
-    for (int j = 0; j < layout_.cells[1]; ++j) rows.push_back({0, layout_.cells[0], j, k});
-  return rows;
+std::vector<Segment> Grid::cells_at(int d, bool high, int layers) const {
+  Int3 begin{}, end = owned();
+  (high ? begin : end)[d] = high ? std::max(0, end[d] - layers) : std::min(layers, end[d]);
+  return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
 }
+
+std::vector<Grid::SideOfBox> Grid::sides() const {
+  std::vector<SideOfBox> all;
+  for (int d = 0; d < 3; ++d)
+    for (int high = 0; high < 2 && is_wall(d); ++high) all.push_back({d, high == 1});
+  return all;
+}
+
+int Grid::image(int d, int i) const {
+  const int n = cells()[d];
+  return is_wall(d) ? i : (i % n + n) % n;
+}
+
+std::vector<Segment> Grid::rows() const { return rows_between({}, owned()); }
 
 Grid Grid::planned(const GridSpec &spec, int ranks) {
   Grid grid;

@@ -17,6 +17,12 @@ enum class Boundary : unsigned char { periodic, wall };
 
 using Int3 = std::array<int, 3>;
 using Real3 = std::array<double, 3>;
+/// In which directions a field sits on the low side of its cell.
+using Staggering = std::array<bool, 3>;
+inline constexpr Staggering at_centre{false, false, false};
+inline constexpr std::array<Staggering, 3> at_face{{{true, false, false}, {false, true, false}, {false, false, true}}};
+/// Between four centres of the plane ab.
+constexpr Staggering at_edge(int a, int b) { return {a == 0 || b == 0, a == 1 || b == 1, a == 2 || b == 2}; }
 
 struct GridSpec {
   Int3 cells{64, 64, 64};              ///< N_x, N_y, N_z; N_z = 1 is 2-D
@@ -27,7 +33,7 @@ struct GridSpec {
   Int3 processors{0, 0, 0};  ///< ranks per direction, 0 = chosen here
   /// First cell of each rank along every direction, and N at the end, in place of the even split; empty: that
   std::array<std::vector<int>, 3> starts;
-  int ghosts = 5;            ///< layers in memory: WENO5 reads three, B outside bodies takes five
+  int ghosts = 5;  ///< layers in memory: WENO5 reads three, B outside bodies takes five
 };
 
 /// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the
@@ -88,12 +94,22 @@ public:
   InverseSquares inverse_squares() const;
   double cell_volume() const;  ///< area in 2-D
   Boundary boundary(int d) const { return spec_.boundary[d]; }
+  /// Whether the box has sides there, of whatever kind (field/sides.hpp): not periodic.
   bool is_wall(int d) const { return d < dimension() && spec_.boundary[d] == Boundary::wall; }
   bool is_open(int d, bool high) const { return is_wall(d) && spec_.open[d][high]; }
   /// Whether the pressure is given anywhere; elsewhere its mean is free.
   bool any_open() const;
   bool touches_low(int d) const { return is_wall(d) && layout_.begin[d] == 0; }
   bool touches_high(int d) const { return is_wall(d) && layout_.begin[d] + layout_.cells[d] == spec_.cells[d]; }
+  bool touches(int d, bool high) const { return high ? touches_high(d) : touches_low(d); }
+  struct SideOfBox {
+    int d;
+    bool high;
+  };
+  /// All sides of the box, low before high.
+  std::vector<SideOfBox> sides() const;
+  /// A global index along d, back in the box where that is periodic.
+  int image(int d, int i) const;
   /// Ranks along direction d.
   int processors(int d) const { return static_cast<int>(starts_[d].size()) - 1; }
 
@@ -124,13 +140,15 @@ public:
   /// Local indices along d of the points a field really has here, with `layers` of ghosts, or as many as there are:
   /// none behind walls, those of a neighbour too.
   Range points_near(int d, bool staggered, int layers) const;
-  /// The faces on the high side of direction d, index N, if this rank touches it: no verb that goes through owned rows
-  /// comes there.
-  std::vector<Segment> high_faces(int d) const;
-  /// The same of an open side, else none.
+  /// The faces on a side, if this rank touches it. No verb that goes through owned rows comes to those on a high one,
+  /// index N.
+  std::vector<Segment> faces_on(int d, bool high) const;
+  /// Those on the high side of direction d if it is open, else none.
   std::vector<Segment> open_high_faces(int d) const {
-    return is_open(d, true) ? high_faces(d) : std::vector<Segment>();
+    return is_open(d, true) ? faces_on(d, true) : std::vector<Segment>();
   }
+  /// The owned cells within so many layers of a side, if this rank touches it.
+  std::vector<Segment> cells_at(int d, bool high, int layers) const;
   /// All owned rows, whole.
   std::vector<Segment> rows() const;
   /// One past the last owned face of component a along d: with the face on the high side.
@@ -149,5 +167,12 @@ private:
   std::array<std::vector<int>, 3> starts_;  ///< first cell of every rank along a direction, and N at the end
   Layout layout_;
 };
+
+/// visit(i, j, k) for all points of these rows.
+template <class Visit>
+void for_points(const std::vector<Segment> &rows, Visit visit) {
+  for (const Segment &row : rows)
+    for (int i = row.i_begin; i < row.i_end; ++i) visit(i, row.j, row.k);
+}
 
 }  // namespace eulastic

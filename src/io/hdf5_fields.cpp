@@ -106,7 +106,7 @@ PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &for
   if (const int d = format.plane; d >= 0) {
     box.total[2 - d] = 1;
     box.begin[2 - d] = 0;
-    box.count[2 - d] = (format.plane_high ? grid.touches_high(d) : grid.touches_low(d)) ? 1 : 0;
+    box.count[2 - d] = grid.touches(d, format.plane_high) ? 1 : 0;
   }
   std::vector<T> values;
   values.reserve(box.count[0] * box.count[1] * box.count[2] * components.size());

@@ -7,16 +7,10 @@ namespace {
 
 constexpr const char *axes = "xyz";
 
-template <class Body>
-void for_each_point(const Grid &grid, Body body) {
-  for (const Segment &row : grid.rows())
-    for (int i = row.i_begin; i < row.i_end; ++i) body(i, row.j, row.k);
-}
-
 // A centred field where component (a, b) of the tensor of a phase lives.
-double at_component(ConstView q, const TensorComponent &c, bool membrane, int i, int j, int k) {
+double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) {
   const double *p = &q.row(j, k)[i];
-  if (c.a == c.b || membrane) return p[0];
+  if (!c.on_edge()) return p[0];
   const std::ptrdiff_t a = q.stride(c.a), b = q.stride(c.b);
   return 0.25 * ((p[0] + p[-a - b]) + (p[-a] + p[-b]));
 }
@@ -29,7 +23,7 @@ void SnapshotFields::centre_velocity(const FieldBlock &velocity) {
     const ConstView from = velocity[c];
     const View to = velocity_[c];
     const std::ptrdiff_t s = from.stride(c);
-    for_each_point(*grid_, [&](int i, int j, int k) {
+    for_points(grid_->rows(), [&](int i, int j, int k) {
       const double *p = &from.row(j, k)[i];
       to(i, j, k) = 0.5 * (p[0] + p[s]);
     });
@@ -66,28 +60,27 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
   }
   const auto fullest = [&](const TensorComponent &at, int i, int j, int k) {
     return *std::max_element(colours.begin(), colours.end(), [&](const Phase *p, const Phase *q) {
-      const bool membrane = p->material.is_membrane();
-      return at_component(p->fraction[0], at, membrane, i, j, k) < at_component(q->fraction[0], at, membrane, i, j, k);
+      return at_component(p->fraction[0], at, i, j, k) < at_component(q->fraction[0], at, i, j, k);
     });
   };
   if (selection.body) {
     merged->label.copy_from(colours[0]->label);
-    for_each_point(*grid_, [&](int i, int j, int k) {
+    for_points(grid_->rows(), [&](int i, int j, int k) {
       merged->label[0](i, j, k) = fullest({0, 0}, i, j, k)->label[0](i, j, k);
     });
   }
   if (!selection.left_cauchy_green) return;
-  merged->tensor.copy_from(colours[0]->tensor);
-  const auto &components = tensor_components(grid_->dimension());
-  for (int c = 0; c < merged->tensor.count(); ++c)
-    for_each_point(*grid_, [&](int i, int j, int k) {
-      merged->tensor[c](i, j, k) = fullest(components[c], i, j, k)->tensor[c](i, j, k);
+  merged->tensor.centred = colours[0]->tensor.centred;
+  merged->tensor.field.copy_from(colours[0]->tensor.field);
+  for (int c = 0; c < merged->tensor.field.count(); ++c)
+    for_points(grid_->rows(), [&](int i, int j, int k) {
+      merged->tensor.field[c](i, j, k) = fullest(merged->tensor.components()[c], i, j, k)->tensor.field[c](i, j, k);
     });
 }
 
 void SnapshotFields::mix_fractions(const Phases &phases) {
   if (!fraction_) fraction_ = FieldBlock(*grid_, 1);
-  for_each_point(*grid_, [&](int i, int j, int k) {
+  for_points(grid_->rows(), [&](int i, int j, int k) {
     double sum = 0;
     for (const Phase *phase : phases) sum += phase->fraction[0](i, j, k);
     fraction_[0](i, j, k) = sum;
@@ -97,7 +90,7 @@ void SnapshotFields::mix_fractions(const Phases &phases) {
 // The label of the phase that fills most of the cell.
 void SnapshotFields::mix_labels(const Phases &phases) {
   if (!label_) label_ = FieldBlock(*grid_, 1);
-  for_each_point(*grid_, [&](int i, int j, int k) {
+  for_points(grid_->rows(), [&](int i, int j, int k) {
     const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase *p, const Phase *q) {
       return p->fraction[0](i, j, k) < q->fraction[0](i, j, k);
     });
@@ -107,17 +100,16 @@ void SnapshotFields::mix_labels(const Phases &phases) {
 
 // I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
 void SnapshotFields::mix_tensors(const Phases &phases) {
-  const auto &components = tensor_components(grid_->dimension());
-  if (!tensor_) tensor_ = FieldBlock(*grid_, static_cast<int>(components.size()));
-  for (int c = 0; c < tensor_.count(); ++c) {
-    const double identity = components[c].a == components[c].b ? 1 : 0;
-    for_each_point(*grid_, [&](int i, int j, int k) {
-      double sum = identity;
+  if (!tensor_.field) tensor_.field = FieldBlock(*grid_, phases[0]->tensor.field.count());
+  for (int c = 0; c < tensor_.field.count(); ++c) {
+    const TensorComponent &component = tensor_.components()[c];
+    for_points(grid_->rows(), [&](int i, int j, int k) {
+      double sum = component.rest();
       for (const Phase *phase : phases)
         if (!phase->material.is_membrane())
-          sum +=
-              at_component(phase->fraction[0], components[c], false, i, j, k) * (phase->tensor[c](i, j, k) - identity);
-      tensor_[c](i, j, k) = sum;
+          sum += at_component(phase->fraction[0], component, i, j, k) *
+                 (phase->tensor.field[c](i, j, k) - component.rest());
+      tensor_.field[c](i, j, k) = sum;
     });
   }
 }
@@ -130,11 +122,10 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     field.format = {name, staggering, stored};
     field.components = {view};
   };
-  const auto add_tensor = [&](const FieldBlock &tensor, bool membrane, const std::string &suffix) {
-    const auto &components = tensor_components(grid_->dimension());
-    for (int c = 0; c < tensor.count(); ++c)
-      add(std::string("left_cauchy_green_") + axes[components[c].a] + axes[components[c].b] + suffix, tensor[c],
-          staggering_of(components[c], membrane), selection.precision);
+  const auto add_tensor = [&](const CarriedTensor &tensor, const std::string &suffix) {
+    for (int c = 0; c < tensor.field.count(); ++c)
+      add("left_cauchy_green_" + tensor.components()[c].name() + suffix, tensor.field[c], tensor.components()[c].at,
+          selection.precision);
   };
   const FieldBlock &flow = velocity_;
   if (selection.velocity) {
@@ -153,16 +144,15 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     if (selection.left_cauchy_green) mix_tensors(species);
     if (selection.body) mix_labels(species);
   }
-  const auto add_phase = [&](const FieldBlock &fraction, const FieldBlock &tensor, const FieldBlock &label,
-                             bool membrane, const std::string &suffix) {
+  const auto add_phase = [&](const FieldBlock &fraction, const CarriedTensor &tensor, const FieldBlock &label,
+                             const std::string &suffix) {
     if (selection.solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, selection.precision);
-    if (selection.left_cauchy_green) add_tensor(tensor, membrane, suffix);
+    if (selection.left_cauchy_green) add_tensor(tensor, suffix);
     if (selection.body) add("body" + suffix, label[0], at_centre, Stored::int32);
   };
-  if (several) add_phase(fraction_, tensor_, label_, false, "");
+  if (several) add_phase(fraction_, tensor_, label_, "");
   for (const Phase *phase : species)
-    add_phase(phase->fraction, phase->tensor, phase->label, phase->material.is_membrane(),
-              several ? "_" + phase->species : "");
+    add_phase(phase->fraction, phase->tensor, phase->label, several ? "_" + phase->species : "");
   return fields;
 }
 

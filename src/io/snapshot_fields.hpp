@@ -35,7 +35,8 @@ private:
   void mix_tensors(const Phases &phases);
 
   const Grid *grid_;
-  FieldBlock velocity_, fraction_, label_, tensor_;
+  FieldBlock velocity_, fraction_, label_;
+  CarriedTensor tensor_;
   std::map<std::string, Phase> merged_;
 };
 

@@ -16,13 +16,13 @@ struct Rows {
 // Asks for what the batches do not: beside the vectors of a segment two planes on, and phi up to its last cache line.
 void prefetch_beside(const Phase &phase, const Segment &s) {
   const ConstView phi = phase.fraction[0];
-  const FieldBlock &B = phase.tensor;
+  const FieldBlock &B = phase.tensor.field;
   const int i = s.i_begin - 1, length = s.size() + 2 + 7, k = s.k + 2;
   prefetch(phi.row(s.j, k) + i, length);
   for (int f = 0; f < B.count(); ++f)
     for (const int end : {i, s.i_end}) prefetch(B[f].row(s.j, k) + end, 1);
   for (const int j : {s.j - 1, s.j + 1}) {
-    if (!phase.stressed.idle(j, s.k)) continue;
+    if (!phase.tensor.stressed.idle(j, s.k)) continue;
     prefetch(phi.row(j, k) + i, length);
     for (int f = 0; f < B.count(); ++f) prefetch(B[f].row(j, k) + i, length);
   }
@@ -36,7 +36,7 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
   const double *B[6] = {};
-  for (int f = 0; f < phase.tensor.count(); ++f) B[f] = phase.tensor[f].origin;
+  for (int f = 0; f < phase.tensor.field.count(); ++f) B[f] = phase.tensor.field[f].origin;
   const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
     for (int a = 0; a < Dim; ++a) {
       if (Dim == 3) {  // two planes on
@@ -54,7 +54,7 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
   };
   kernels::Batch batch;
   for (int j = rows.j_begin; j < rows.j_end; ++j)
-    for (const Segment &s : phase.stressed.row(j, rows.k)) {
+    for (const Segment &s : phase.tensor.stressed.row(j, rows.k)) {
       if (Dim == 3) prefetch_beside(phase, s);
       kernels::gather(batch, j * phi.sy + rows.k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
     }
@@ -86,7 +86,7 @@ EULASTIC_CLONES void add_force_3d(const Grid &grid, const Phase &phase, double s
 void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
                        FieldBlock &force, const ForceSlope &slope) {
   for (const Phase &phase : phases)
-    if (phase.material.elastic() && !phase.stressed.idle_rows(j_begin, j_end, k))
+    if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(j_begin, j_end, k))
       (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, phase, scale, {j_begin, j_end, k}, force, slope);
 }
 
@@ -113,7 +113,7 @@ PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::
 double elastic_flops(int dimension, const std::vector<Phase> &phases) {
   double sum = 0;
   for (const Phase &phase : phases)
-    sum += dimension * phase.stressed.points() *
+    sum += dimension * phase.tensor.stressed.points() *
            with_law(phase.material, [&](const auto &law) { return law.flops(dimension); });
   return sum;
 }

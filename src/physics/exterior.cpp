@@ -121,6 +121,39 @@ double extend_fields(const Entries &entries, Piece piece, int dimension, const s
   return Fields * static_cast<double>(flops);
 }
 
+// What of a row in a box a body is near to: of owned rows that is known.
+OccupiedRows::Span near_part(const Phase &phase, const Reach &box, int j, int k) {
+  const ActiveSegments &strained = phase.tensor.strained;
+  if (j >= 0 && k >= 0 && j < strained.rows_y() && k < strained.rows_z()) {
+    const ActiveSegments::Range range = strained.row(j, k);
+    if (range.first == range.last) return {0, 0};
+  }
+  const OccupiedRows::Span span = phase.rows.span(j, k);
+  return {std::max(span.begin, box.begin[0]), std::min(span.end, box.end[0])};
+}
+
+// 0 in `mask` where points at `at` evolve.
+void flag_evolving(const Grid &grid, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
+                   const Reach &all, unsigned char *mask) {
+  const ConstView fraction = phase.fraction[0];
+  const EvolveRule &rule = phase.tensor.rule;
+  std::ptrdiff_t step[2] = {0, 0};
+  int steps = 0;
+  for (int d = 0; d < 3; ++d)
+    if (at[d]) step[steps++] = fraction.stride(d);
+  for (int k = all.begin[2]; k < all.end[2]; ++k)
+    for (int j = all.begin[1]; j < all.end[1]; ++j) {
+      const auto [begin, end] = near_part(phase, all, j, k);
+      if (begin >= end) continue;
+      const double *phi = fraction.row(j, k) + begin;
+      unsigned char *row = mask + grid.layout().offset(begin, j, k);
+      flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
+      if (rule.linear && steps == 0)
+        for (int i = 0; i < end - begin; ++i)
+          if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
+    }
+}
+
 double kinematic_viscosity(const Fluid &fluid, const Material &material) {
   return viscosity_of(material, fluid) / fluid.density;
 }
@@ -144,10 +177,10 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
     for (const TensorComponent &c : tensor_components(grid.dimension()))
       if (c.a != c.b) {
         locations_.emplace_back();
-        locations_.back().staggering = c.staggering();
+        locations_.back().staggering = c.at;
       }
   }
-  linear_ = phase.material.linear;
+  linear_ = phase.tensor.rule.linear;
   const int team = row_parts(grid);
   masks_.resize(team > 1 ? locations_.size() : 1);
   in_parallel(team, static_cast<int>(locations_.size()),
@@ -156,39 +189,14 @@ PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
 }
 
 void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *layer_of, Location *location) const {
-  const ConstView fraction = phase.fraction[0];
-  const EvolveRule &rule = evolve_rule_of(phase.material);
   const Layout &layout = grid.layout();
   const Staggering &at = location->staggering;
   layer_of->assign(layout.size + whole_vectors(1), outside);
   unsigned char *mask = layer_of->data();
-  std::ptrdiff_t step[2] = {0, 0};
-  int steps = 0;
   const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
-  for (int d = 0; d < 3; ++d)
-    if (at[d]) step[steps++] = fraction.stride(d);
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
   const Reach all(grid, at, layers);
-  // What of a row in a box a body is near to: of owned rows that is known.
-  const auto part = [&](const Reach &box, int j, int k) -> OccupiedRows::Span {
-    if (j >= 0 && k >= 0 && j < phase.strained.rows_y() && k < phase.strained.rows_z()) {
-      const ActiveSegments::Range range = phase.strained.row(j, k);
-      if (range.first == range.last) return {0, 0};
-    }
-    const OccupiedRows::Span span = phase.rows.span(j, k);
-    return {std::max(span.begin, box.begin[0]), std::min(span.end, box.end[0])};
-  };
-  for (int k = all.begin[2]; k < all.end[2]; ++k)
-    for (int j = all.begin[1]; j < all.end[1]; ++j) {
-      const auto [begin, end] = part(all, j, k);
-      if (begin >= end) continue;
-      const double *phi = fraction.row(j, k) + begin;
-      unsigned char *row = mask + layout.offset(begin, j, k);
-      flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
-      if (linear_ && steps == 0)
-        for (int i = 0; i < end - begin; ++i)
-          if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
-    }
+  flag_evolving(grid, phase, at, stride, all, mask);
   const Reach owned(grid, at, 0);
   // A row is marked once the next one has been looked at, which would wait for the marks.
   struct Row {
@@ -222,7 +230,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
     int turn = 0;
     for (int k = box.begin[2]; k < box.end[2]; ++k)
       for (int j = box.begin[1]; j < box.end[1]; ++j) {
-        const auto [begin, end] = part(box, j, k);
+        const auto [begin, end] = near_part(phase, box, j, k);
         if (begin >= end) continue;
         Row &row = rows[turn];
         row.begin = begin;

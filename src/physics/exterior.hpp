@@ -18,10 +18,7 @@ namespace eulastic {
 inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30, 4};
 /// Attached bodies: only where all is solid. With linear extension, of the smaller of two slopes, that is second order
 /// wherever the surface lies.
-inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30, 4};
-inline constexpr const EvolveRule &evolve_rule_of(const Material &material) {
-  return material.linear ? evolve_where_full : evolve_above_half;
-}
+inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30, 4, 2, true};
 
 /// Whether the body's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
 /// attached body amplifies those that it does not.

@@ -63,7 +63,7 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
 
 // Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
 std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, const FieldBlock &velocity,
-                                     const std::vector<Phase> &phases, const std::vector<double> &least) {
+                                     const std::vector<Phase> &phases) {
   const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
   const RowPart rows = row_part(grid, part, parts);
   std::vector<double> largest(4 + phases.size());
@@ -85,20 +85,21 @@ std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, cons
         if (r.bad) mark(row, 0, n[0], j, k);
       }
   for (int d = 0; d < velocity.count() && part == 0; ++d)
-    for (const Segment &row : grid.high_faces(d))
+    for (const Segment &row : grid.faces_on(d, true))
       largest[d] = std::max(largest[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const Phase &phase = phases[p];
-    const std::vector<Segment> &solid = phase.solid.all();
+    const std::vector<Segment> &solid = phase.tensor.evolving.all();
     const Piece piece(solid.size(), part, parts);
     double most = 3;
     for (std::size_t at = piece.begin; at < piece.end; ++at) {
       const Segment &s = solid[at];
       if (s.j >= n[1] || s.k >= n[2]) continue;
       const int end = std::min(s.i_end, n[0]);
-      const auto row = [&](int f) { return phase.tensor[f].row(s.j, s.k); };
+      const auto row = [&](int f) { return phase.tensor.field[f].row(s.j, s.k); };
       const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
-      const RowExtremes r = trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), least[p], s.i_begin, end);
+      const RowExtremes r =
+          trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), phase.tensor.rule.centre, s.i_begin, end);
       most = std::max(most, r.largest);
       if (r.bad) {
         mark(xx, s.i_begin, end, s.j, s.k);
@@ -141,12 +142,11 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
 }
 
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                                const std::vector<double> &least, FlowExtremes *extremes) {
+                                FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   const int parts = row_parts(grid);
   std::vector<std::vector<double>> found(parts);
-  in_parallel(parts, parts,
-              [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases, least); });
+  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases); });
   std::vector<double> largest;
   PetscCall(reduce_maxima(grid.comm(), found, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};

@@ -18,7 +18,7 @@ struct FlowExtremes {
 
 /// `least`: the solid fraction of each phase from which on B is evolved.
 PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
-                                const std::vector<double> &least, FlowExtremes *extremes);
+                                FlowExtremes *extremes);
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
 double stretch_squared(double trace, int dimension);

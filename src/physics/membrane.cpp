@@ -120,17 +120,17 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
     if (!cell.owned) continue;
     const auto set = [&](auto dim) {
       Tensor<dim> value =
-          kernels::surface_part<dim>(tensor_at<dim>(phase->tensor, cell.at), normal_of<dim>(cell.normal));
+          kernels::surface_part<dim>(tensor_at<dim>(phase->tensor.field, cell.at), normal_of<dim>(cell.normal));
       for (auto &row : value)
         for (double &entry : row) entry *= stretch;
-      set_tensor<dim>(phase->tensor, cell.at, value);
+      set_tensor<dim>(phase->tensor.field, cell.at, value);
     };
     if (grid_->dimension() == 2)
       set(std::integral_constant<int, 2>());
     else
       set(std::integral_constant<int, 3>());
   }
-  PetscCall(surface_.extend(*phase, phase->tensor));
+  PetscCall(surface_.extend(*phase, phase->tensor.field));
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +140,7 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
   WorkSpace::Lease surface;
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(*phase, surface.fields()));
-  PetscCall(surface_.extend(*phase, phase->tensor));
+  PetscCall(surface_.extend(*phase, phase->tensor.field));
   PetscFunctionReturn(0);
 }
 
@@ -153,7 +153,7 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
   std::vector<long> kept(row_parts(*grid_));
   const Local<Dim> local(*grid_, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
-  FieldBlock &tensor = phase->tensor;
+  FieldBlock &tensor = phase->tensor.field;
   const auto stage = [&](bool second, std::size_t c, long *lost) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) return;
@@ -207,14 +207,14 @@ void MembraneTransport::recall(double dt, const FieldBlock &velocity,
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
                   grid_->spacing()[d];
       const double share = std::min(passed, 1.0);
-      for (int f = 0; f < phase->tensor.count(); ++f) {
-        double &B = phase->tensor[f].origin[cell.at];
+      for (int f = 0; f < phase->tensor.field.count(); ++f) {
+        double &B = phase->tensor.field[f].origin[cell.at];
         B = kernels::fma(share, strain.B[f] - B, B);
       }
-      Tensor<dim> value = tensor_at<dim>(phase->tensor, cell.at);
+      Tensor<dim> value = tensor_at<dim>(phase->tensor.field, cell.at);
       if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
       ++unresolved_;
-      set_tensor<dim>(phase->tensor, cell.at, value);
+      set_tensor<dim>(phase->tensor.field, cell.at, value);
     }
   };
   if (grid_->dimension() == 2)
@@ -241,14 +241,14 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
     if (marked) markers_.find_strain(surface_, static_cast<int>(p), &strains);
     {
       WorkSpace::Lease next;
-      PetscCall(work_->take("first stage of B_s", phase.tensor.count(), &next));
+      PetscCall(work_->take("first stage of B_s", phase.tensor.field.count(), &next));
       if (grid_->dimension() == 2)
         PetscCall(heun<2>(dt, velocity, &phase, next.fields()));
       else
         PetscCall(heun<3>(dt, velocity, &phase, next.fields()));
     }
     recall(dt, velocity, strains, &phase);
-    PetscCall(surface_.extend(phase, phase.tensor));
+    PetscCall(surface_.extend(phase, phase.tensor.field));
     if (marked) markers_.settle(surface_, surface.fields(), static_cast<int>(p), memory->markers);
     if (memory) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
   }

@@ -70,11 +70,13 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &st
   for (const SurfaceCells::Cell &cell : surface_.all()) {
     if (!cell.owned) continue;
     if (dim == 2)
-      set_tensor<2>(stress, cell.at,
-                    set(cell, tensor_at<2>(phase.tensor, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
+      set_tensor<2>(
+          stress, cell.at,
+          set(cell, tensor_at<2>(phase.tensor.field, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
     else
-      set_tensor<3>(stress, cell.at,
-                    set(cell, tensor_at<3>(phase.tensor, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
+      set_tensor<3>(
+          stress, cell.at,
+          set(cell, tensor_at<3>(phase.tensor.field, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
   }
   PetscCall(exchange_->update(stress, force_reach, &phase.rows));
   fill_wall_ghosts_centred_tensor(*grid_, stress, force_reach, &phase.rows);
@@ -94,7 +96,7 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
     WorkSpace::Lease lease;
     FieldBlock &fields = lease.fields();
     PetscCall(work_->take(bending ? "bending" : "stress of a membrane",
-                          bending ? MembraneBending::work_fields : phase.tensor.count(), &lease));
+                          bending ? MembraneBending::work_fields : phase.tensor.field.count(), &lease));
     if (bending)
       PetscCall(bending_.find(phase, smooth, fields));
     else

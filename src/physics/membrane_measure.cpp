@@ -17,7 +17,7 @@ struct Energies {
 };
 template <int Dim>
 Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
-  const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor, cell.at));
+  const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
   const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
   const double area = kernels::area_energy(phase.material.membrane, strain), weight = cell.delta / state.area;
   return {weight * (state.energy - area), weight * area};

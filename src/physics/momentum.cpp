@@ -150,7 +150,7 @@ void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
   scope.flops(dim * t.grid.owned_count() * per_face + elastic_flops(dim, t.phases));
   if (t.slope.field)
-    for (const Phase &phase : t.phases) scope.flops(dim * 2 * phase.stressed.points());
+    for (const Phase &phase : t.phases) scope.flops(dim * 2 * phase.tensor.stressed.points());
 }
 
 // v + dt rate, in place of the rate.

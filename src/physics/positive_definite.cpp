@@ -32,23 +32,21 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
 
 }  // namespace
 
-PetscErrorCode limit_shear(const Grid &grid, const EvolveRule &rule, const Phase &phase, FieldBlock &tensor) {
+PetscErrorCode limit_shear(const Grid &grid, const Phase &phase, FieldBlock &tensor) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
-  const auto &components = tensor_components(grid.dimension());
   for (int f = 0; f < tensor.count(); ++f) {
-    const auto [a, b] = components[f];
+    const auto [a, b, at] = phase.tensor.components()[f];
     if (a == b) continue;
-    const Staggering at = components[f].staggering();
-    const Edges edges{phase.fraction[0],   tensor[a],           tensor[b], tensor[f],
-                      tensor[f].stride(a), tensor[f].stride(b), rule.edge};
-    in_parts_of(phase.solid.all(), grid, [&](const Segment *begin, const Segment *end) {
+    const Edges edges{phase.fraction[0],     tensor[a], tensor[b], tensor[f], tensor[f].stride(a), tensor[f].stride(b),
+                      phase.tensor.rule.edge};
+    in_parts_of(phase.tensor.evolving.all(), grid, [&](const Segment *begin, const Segment *end) {
       for (const Segment *s = begin; s < end; ++s) {
         if (s->j >= grid.points_end(1, at[1]) || s->k >= grid.points_end(2, at[2])) continue;
         limit_row(edges, {s->i_begin, std::min(s->i_end, grid.points_end(0, at[0])), s->j, s->k});
       }
     });
-    scope.flops(phase.solid.points() * 16);
+    scope.flops(phase.tensor.evolving.points() * 16);
   }
   PetscFunctionReturn(0);
 }

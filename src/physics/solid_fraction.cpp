@@ -78,16 +78,17 @@ PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &ve
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase) {
+PetscErrorCode find_solid(const Grid &grid, Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const ConstView phi = phase.fraction[0];
-  phase.solid.build(grid, phi, phase.rows, rule.centre, 1, 0);
+  const EvolveRule &rule = phase.tensor.rule;
+  phase.tensor.evolving.build(grid, phi, phase.rows, rule.centre, 1, 0);
   if (rule.layers > 0)
-    phase.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
+    phase.tensor.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
   else
-    phase.strained = phase.solid;
-  phase.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
+    phase.tensor.strained = phase.tensor.evolving;
+  phase.tensor.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
   PetscFunctionReturn(0);
 }
 

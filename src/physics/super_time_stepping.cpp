@@ -17,7 +17,7 @@ std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phas
   std::vector<char> stressed;
   for (const Segment &row : grid.rows()) {
     const auto stresses = [&](const Phase &phase) {
-      return !phase.stressed.idle(row.j, row.k) ||
+      return !phase.tensor.stressed.idle(row.j, row.k) ||
              (phase.material.surface_tension > 0 && !phase.rows.idle(row.j, row.k));
     };
     stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
@@ -250,6 +250,21 @@ int rkl_stages(double dt, double dt_explicit) {
   return stages % 2 ? stages : stages + 1;
 }
 
+namespace {
+
+// Stage s of a pass reads what is behind sides at a time `now`, less what was there at the start.
+void set_sides(const BoxSides &box, double start, double now, int s, Pass *pass) {
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const Side &at = box[d][side];
+      const Real3 u = at.motion.at(start), v = at.motion.at(now);
+      for (int a = 0; a < 3; ++a) pass->twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
+      pass->inflow[s][d][side] = at.kind == SideKind::inflow ? at.given.at(now) - at.given.at(start) : 0;
+    }
+}
+
+}  // namespace
+
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
@@ -267,12 +282,10 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
       double *row = work.slope[d].row(face.j, face.k);
       std::fill(row + face.i_begin, row + face.i_end, 0.0);
     }
-  if (work.slope) {
-    PetscCall(exchange.update({{&work.rate, depth, nullptr, false}, {&work.slope, depth, nullptr, false}}));
-    stressed = stressed_rows(grid, phases);
-  } else {
-    PetscCall(exchange.update({{&work.rate, depth, nullptr, false}}));
-  }
+  std::vector<WantedGhosts> forces{{&work.rate, depth, nullptr, false}};
+  if (work.slope) forces.push_back({&work.slope, depth, nullptr, false});
+  if (work.slope) stressed = stressed_rows(grid, phases);
+  PetscCall(exchange.update(forces));
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
   for (int d = 0; d < 3; ++d)
@@ -292,21 +305,13 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     for (int s = 0; s < pass.depth; ++s) {
       if (rigid) rigid_stages.emplace_back(*rigid, 1, time, time_of(j + s - 1));
       pass.stage[s] = rkl_stage_coefficients(j + s, stages, dt, kinematic_viscosity);
-      for (int d = 0; d < 3; ++d)
-        for (int side = 0; side < 2; ++side) {
-          const WallMotion &wall = box[d][side].motion;
-          const Real3 u = wall.at(time), v = wall.at(time_of(j + s - 1));
-          for (int a = 0; a < 3; ++a) pass.twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
-          pass.inflow[s][d][side] = 0;
-          if (const Side &way_in = box[d][side]; way_in.kind == SideKind::inflow)
-            pass.inflow[s][d][side] = way_in.given.at(time_of(j + s - 1)) - way_in.given.at(time);
-        }
+      set_sides(box, time, time_of(j + s - 1), s, &pass);
     }
-    if (!pass.starts && pass.depth > 2)
-      PetscCall(
-          exchange.update({{&work.now, pass.depth, nullptr, false}, {&work.before, pass.depth - 1, nullptr, false}}));
-    else if (!pass.starts)
-      PetscCall(exchange.update({{&work.now, pass.depth, nullptr, false}}));
+    if (!pass.starts) {
+      std::vector<WantedGhosts> read{{&work.now, pass.depth, nullptr, false}};
+      if (pass.depth > 2) read.push_back({&work.before, pass.depth - 1, nullptr, false});
+      PetscCall(exchange.update(read));
+    }
     const StageFields fields{&work.rate,     &work.slope,  work.slope ? &stressed : nullptr,
                              &work.now,      &work.before, &velocity,
                              &velocity_star, rigid,        &rigid_stages};

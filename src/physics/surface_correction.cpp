@@ -31,7 +31,7 @@ struct Terms {
     stride[0] = 1;
     stride[1] = layout.sy;
     stride[2] = layout.sz;
-    for (int f = 0; f < phase.tensor.count(); ++f) B[f] = phase.tensor.data() + f * layout.size;
+    for (int f = 0; f < phase.tensor.field.count(); ++f) B[f] = phase.tensor.field.data() + f * layout.size;
     for (int d = 0; d < dimension; ++d) gradient[d] = measured.data() + d * layout.size;
     rate = measured.data() + dimension * layout.size;
     phi = phase.fraction.data();
@@ -302,7 +302,7 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
         Location &edges = locations_.back();
         edges.a = c.a;
         edges.b = c.b;
-        edges.at = c.staggering();
+        edges.at = c.at;
       }
   }
   in_parallel(team, static_cast<int>(locations_.size()) - 1,
@@ -322,7 +322,7 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
   for (const Location &location : locations_) {
     const int fields = location.a == location.b ? dimension : 1;
     const double *next = location.next.data();
-    double *B = phase.tensor.data() + first * size;
+    double *B = phase.tensor.field.data() + first * size;
     for (const PetscInt p : location.points)
       for (int f = 0; f < fields; ++f) B[f * size + p] = *next++;
     first += fields;

@@ -17,7 +17,7 @@ constexpr double least_label = 0.5;  // of a cell that has one
 
 int in_box(const Grid &grid, int d, int index) {
   const int n = grid.cells()[d];
-  return grid.is_wall(d) ? std::clamp(index, 0, n - 1) : (index % n + n) % n;
+  return std::clamp(grid.image(d, index), 0, n - 1);
 }
 
 // Into the cell where it is; at a wall not beyond.
@@ -118,8 +118,8 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields
     marker.label = own;
     marker.phase = number;
     marker.metric = grid_->dimension() == 2
-                        ? metric_of<2>(tensor_at<2>(phase.tensor, cell.at), normal_of<2>(cell.normal))
-                        : metric_of<3>(tensor_at<3>(phase.tensor, cell.at), normal_of<3>(cell.normal));
+                        ? metric_of<2>(tensor_at<2>(phase.tensor.field, cell.at), normal_of<2>(cell.normal))
+                        : metric_of<3>(tensor_at<3>(phase.tensor.field, cell.at), normal_of<3>(cell.normal));
     renew_cell(*grid_, &marker);
     markers->push_back(marker);
   }

@@ -131,7 +131,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const auto advance = [&](kernels::Batch &batch)
                            EULASTIC_BODY { advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
-  if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.solid.idle_rows(j_begin, j_end, k)) return;
+  if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.tensor.evolving.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
     int done = 0;  // so far
     const auto set_exterior = [&](int begin, int stop) {
@@ -157,7 +157,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
       for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + at_first + i, centre, da, db) >= threshold;
       return any;
     };
-    for (const Segment &s : phase.solid.row(j, k)) {
+    for (const Segment &s : phase.tensor.evolving.row(j, k)) {
       if (Dim == 3) {  // the next plane, what is beside its vectors
         const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
         const auto prefetch_ends = [&](ConstView q, int plane) {
@@ -170,7 +170,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
           for (int d = 0; d < Dim; ++d) prefetch_ends((*t.velocity)[d], k + 2);
         }
         for (const int side : {-1, 1})
-          for (int n = 1; phase.solid.idle(j + side, k) && n <= reach; ++n)
+          for (int n = 1; phase.tensor.evolving.idle(j + side, k) && n <= reach; ++n)
             for (int f = first; f < last; ++f) prefetch(B[f].row(j + n * side, k + 1 + reach) + i, length);
       }
       leave_to(s.i_begin);
@@ -201,8 +201,8 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &p
   kernels::Batch left[count];  // filled through all planes
   Evolved sum;
   const Int3 &n = t.grid->owned();  // rows at high walls belong to the last part
-  const int j_end = part.j_end == n[1] ? phase.solid.rows_y() : part.j_end;
-  const int k_end = part.k_end == n[2] ? phase.solid.rows_z() : part.k_end;
+  const int j_end = part.j_end == n[1] ? phase.tensor.evolving.rows_y() : part.j_end;
+  const int k_end = part.k_end == n[2] ? phase.tensor.evolving.rows_z() : part.k_end;
   for (int j = part.j_begin; j < j_end; j += block)
     for (int k = part.k_begin; k < k_end; ++k)
       for (int l = 0; l < count; ++l)
@@ -231,7 +231,7 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   VerbScope scope(Verb::left_cauchy_green);
   const Real3 &h = grid.spacing();
   const TransportTerms terms{
-      &grid, stage.dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, stage.rule, stage.second_of_heun, stage.stale};
+      &grid, stage.dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun, stage.stale};
   const bool flat = grid.dimension() == 2;
   const int parts = row_parts(grid);
   std::vector<Evolved> found(parts);
@@ -248,20 +248,20 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, const OccupiedRows &before, Phase &phase) {
+PetscErrorCode reset_exterior(const Grid &grid, const OccupiedRows &before, Phase &phase) {
   PetscFunctionBeginUser;
   const ConstView phi = phase.fraction[0];
-  const auto &components = tensor_components(grid.dimension());
-  for (int f = 0; f < phase.tensor.count(); ++f) {
-    const auto [a, b] = components[f];
-    const Staggering at = components[f].staggering();
-    const View B = phase.tensor[f];
+  const EvolveRule &rule = phase.tensor.rule;
+  for (int f = 0; f < phase.tensor.field.count(); ++f) {
+    const TensorComponent &c = phase.tensor.components()[f];
+    const auto [a, b, at] = c;
+    const View B = phase.tensor.field[f];
     for (int k = 0; k < grid.points_end(2, at[2]); ++k)
       for (int j = 0; j < grid.points_end(1, at[1]); ++j) {
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < grid.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            if (const double rest = a == b ? 1.0 : 0.0; B(i, j, k) != rest) B(i, j, k) = rest;  // FieldBlock::at_rest
+            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // FieldBlock::at_rest
       }
   }
   PetscFunctionReturn(0);

@@ -6,17 +6,8 @@
 
 namespace eulastic {
 
-/// Where B evolves; elsewhere it is I, or extrapolated afterwards (exterior.hpp).
-struct EvolveRule {
-  double centre, edge;  ///< least solid fraction, at centres and (mean of four) on edges
-  double stressed;      ///< least solid fraction that makes stress
-  int layers = 0;       ///< how far B is extended outside, in points
-  int reach = 2;        ///< how far from such solid faces feel stress, that of a step before included
-};
 /// The paper's: B is reset to I below one per cent. No stress there, as dev(I) = 0.
 inline constexpr EvolveRule reset_below_one_per_cent{0.01, 0.01, 0.01};
-/// Bodies without modulus: B is I.
-inline constexpr EvolveRule evolve_nowhere{2, 2, 2};
 
 /// WENO5 makes tails without end. Below this they are cut off: round-off of phi = 1, and rows without solid stay empty.
 inline constexpr double negligible_fraction = 1e-16;
@@ -28,11 +19,10 @@ PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &ve
 
 /// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of
 /// phi, or one more than there are layers.
-PetscErrorCode find_solid(const Grid &grid, const EvolveRule &rule, Phase &phase);
+PetscErrorCode find_solid(const Grid &grid, Phase &phase);
 
 /// One Runge-Kutta stage of B.
 struct TensorStage {
-  EvolveRule rule;
   double dt;
   bool second_of_heun;                    ///< next = (next + B + dt rate)/2, else next = B + dt rate
   const ActiveSegments *stale = nullptr;  ///< where `next` is set to I if B does not evolve there; null: everywhere
@@ -45,6 +35,6 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next);
 
 /// B = I where it does not evolve, without transport, on rows that were or are occupied. One ghost of phi.
-PetscErrorCode reset_exterior(const Grid &grid, const EvolveRule &rule, const OccupiedRows &before, Phase &phase);
+PetscErrorCode reset_exterior(const Grid &grid, const OccupiedRows &before, Phase &phase);
 
 }  // namespace eulastic

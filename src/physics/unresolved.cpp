@@ -50,18 +50,19 @@ bool may_be_unresolved(double trace, int dimension) {
   return (dimension == 2 ? mean * mean : mean * mean * mean) > 0.99 * largest_determinant;  // round-off aside
 }
 
-PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase &phase, long *count) {
+PetscErrorCode forget_unresolved(const Grid &grid, Phase &phase, long *count) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   const Layout &layout = grid.layout();
   const Int3 n = grid.owned();
   const int dimension = grid.dimension(), deep = dimension == 3 ? 1 : 0;
   const ConstView phi = phase.fraction[0];
+  const EvolveRule &rule = phase.tensor.rule;
   const bool extended = rule.layers > 0;
   // Of B that is reset outside. With one layer of ghosts: an edge looks at the four centres around it.
   std::vector<unsigned char> forgotten;  // empty while there is none
   const auto centre = [&](int i, int j, int k) {
-    return Centre(phase.tensor.data() + layout.offset(i, j, k), layout.size, layout.sy, layout.sz, dimension);
+    return Centre(phase.tensor.field.data() + layout.offset(i, j, k), layout.size, layout.sy, layout.sz, dimension);
   };
   long found = 0;
   for (int k = -deep; !extended && k < n[2] + deep; ++k)
@@ -78,21 +79,20 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
         found += i >= 0 && i < n[0] && j >= 0 && j < n[1] && k >= 0 && k < n[2];
       }
     }
-  const auto &components = tensor_components(dimension);
-  for (int f = 0; !forgotten.empty() && f < phase.tensor.count(); ++f) {
-    const auto [a, b] = components[f];
-    const View B = phase.tensor[f];
+  for (int f = 0; !forgotten.empty() && f < phase.tensor.field.count(); ++f) {
+    const TensorComponent &c = phase.tensor.components()[f];
+    const auto [a, b, at] = c;  // the last edge in a ghost layer too: its centre is ours
+    const View B = phase.tensor.field[f];
     const std::ptrdiff_t low_a = a == b ? 0 : B.stride(a), low_b = a == b ? 0 : B.stride(b);
-    const Staggering at = components[f].staggering();  // the last edge in a ghost layer too: its centre is ours
     for (int k = 0; k < n[2] + at[2]; ++k)
       for (int j = 0; j < n[1] + at[1]; ++j)
         for (int i = 0; i < n[0] + at[0]; ++i) {
           const unsigned char *here = forgotten.data() + layout.offset(i, j, k);
-          if (here[0] | here[-low_a] | here[-low_b] | here[-low_a - low_b]) B(i, j, k) = a == b ? 1 : 0;
+          if (here[0] | here[-low_a] | here[-low_b] | here[-low_a - low_b]) B(i, j, k) = c.rest();
         }
   }
-  // Where B is extended, all that evolve. Else full neighbours: they have lost part of their off-diagonals, and det B is
-  // larger for it.
+  // Where B is extended, all that evolve. Else full neighbours: they have lost part of their off-diagonals, and det B
+  // is larger for it.
   const double solid = extended ? rule.centre : full_cell;
   for (int k = 0; (extended || !forgotten.empty()) && k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
@@ -101,7 +101,7 @@ PetscErrorCode forget_unresolved(const Grid &grid, const EvolveRule &rule, Phase
         const Centre here = centre(i, j, k);
         if (!(here.determinant() > largest_determinant)) continue;
         const double factor = here.isochoric_factor(dimension);
-        for (int d = 0; d < dimension; ++d) phase.tensor[d](i, j, k) *= factor;
+        for (int d = 0; d < dimension; ++d) phase.tensor.field[d](i, j, k) *= factor;
         ++found;
       }
   PetscCallMPI(MPI_Allreduce(&found, count, 1, MPI_LONG, MPI_SUM, grid.comm()));

@@ -123,16 +123,15 @@ EULASTIC_CLONES void along_surface_3d(const Segment &row, const Mixture &mixture
 // Beside sides of the box nothing: no edge on a side feels it. Behind planes of symmetry all is mirrored.
 void clear_beside_sides(const Grid &grid, const BoxSides &sides, const Segment &row, double *values) {
   const int place[3] = {0, row.j, row.k};
-  for (int d = 0; d < grid.dimension(); ++d)
-    for (const bool high : {false, true}) {
-      if (!(high ? grid.touches_high(d) : grid.touches_low(d)) || sides[d][high].kind == SideKind::symmetry) continue;
-      const int first = grid.owned()[d] - 1;
-      if (d > 0 && (high ? place[d] >= first : place[d] <= 0)) std::fill(values + row.i_begin, values + row.i_end, 0.0);
-      if (d > 0) continue;
-      const int begin = high ? std::max(row.i_begin, first) : row.i_begin;
-      const int end = high ? row.i_end : std::min(row.i_end, 1);
-      if (begin < end) std::fill(values + begin, values + end, 0.0);
-    }
+  for (const auto [d, high] : grid.sides()) {
+    if (!grid.touches(d, high) || sides[d][high].kind == SideKind::symmetry) continue;
+    const int first = grid.owned()[d] - 1;
+    if (d > 0 && (high ? place[d] >= first : place[d] <= 0)) std::fill(values + row.i_begin, values + row.i_end, 0.0);
+    if (d > 0) continue;
+    const int begin = high ? std::max(row.i_begin, first) : row.i_begin;
+    const int end = high ? row.i_end : std::min(row.i_end, 1);
+    if (begin < end) std::fill(values + begin, values + end, 0.0);
+  }
 }
 
 // Beside rigid bodies neither: what faces inside of them hold is nobody's.

@@ -35,19 +35,17 @@ PetscErrorCode Solver::check_sides(bool start) {
   int found[2] = {-1, 0};  // what is held and where, whether any leave
   PetscFunctionBeginUser;
   for (int p = 0; p < static_cast<int>(now_.phases.size()); ++p)
-    for (int d = 0; d < grid_->dimension(); ++d)
-      for (const int high : {0, 1}) {
-        const SideKind kind = spec_.sides[d][high].kind;
-        if (now_.phases[p].material.is_rigid() || !grid_->is_wall(d) || !(is_open(kind) || kind == SideKind::inflow))
-          continue;
-        const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
-        if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
-          continue;
-        if (stops)
-          found[0] = std::max(found[0], p * 6 + 2 * d + high);
-        else
-          found[1] = 1;
-      }
+    for (const auto [d, high] : grid_->sides()) {
+      const SideKind kind = spec_.sides[d][high].kind;
+      if (now_.phases[p].material.is_rigid() || !volume_crosses(kind)) continue;
+      const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
+      if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
+        continue;
+      if (stops)
+        found[0] = std::max(found[0], p * 6 + 2 * d + high);
+      else
+        found[1] = 1;
+    }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, grid_->comm()));
   const int held = found[0];
   if (held >= 0)
@@ -66,9 +64,8 @@ PetscErrorCode Solver::take_out_bodies() {
   for (Phase &phase : now_.phases) {
     if (is_held(phase)) continue;
     PetscCall(carry_labels(*grid_, *exchange_, &phase));
-    for (int d = 0; d < grid_->dimension(); ++d)
-      for (const bool high : {false, true})
-        if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, &phase, &leaves);
+    for (const auto [d, high] : grid_->sides())
+      if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, &phase, &leaves);
   }
   PetscCall(bodies_.connect(*grid_, now_.phases, {}, &owners, &references));
   std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
@@ -178,8 +175,8 @@ PetscErrorCode Solver::start_flow() {
   PetscFunctionBeginUser;
   PetscCall(project_start(false, now_.velocity, unused));
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
-  for (const Segment &row : grid_->rows())
-    for (int i = 0; i < row.i_end; ++i) largest = std::max(largest, std::fabs(now_.pressure[0](i, row.j, row.k)));
+  for_points(grid_->rows(),
+             [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now_.pressure[0](i, j, k))); });
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, grid_->comm()));
   if (largest > 0) PetscFunctionReturn(0);  // of a file
   fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time, spec_.fluid.density, now_.velocity, now_.pressure[0]);

@@ -14,16 +14,16 @@ PetscErrorCode Solver::settle(Phase &phase) {
   const OccupiedRows before = phase.rows;
   PetscCall(find_rows(phase));
   if (phase.material.is_membrane()) {
-    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    PetscCall(find_solid(*grid_, phase));
     PetscCall(membranes_->extend(&phase));
     PetscFunctionReturn(0);
   }
-  PetscCall(reset_exterior(*grid_, evolve_rule(phase), before, phase));
-  PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+  PetscCall(reset_exterior(*grid_, before, phase));
+  PetscCall(find_solid(*grid_, phase));
   if (!phase.material.elastic()) PetscFunctionReturn(0);
   if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
-  PetscCall(extend_exterior(phase, phase.tensor, &phase.rows));
-  PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
+  PetscCall(extend_exterior(phase, phase.tensor.field, &phase.rows));
+  PetscCall(update_tensor_ghosts(phase.tensor.field, Grid::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
 
@@ -39,8 +39,8 @@ PetscErrorCode Solver::find_rows(Phase &phase) {
   fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
   const Int3 &n = grid_->owned();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
-    for (FieldBlock *block : {&phase.fraction, &phase.tensor, &next_fraction_, &next_tensor_})
-      if (block != &phase.tensor || phase.material.carries_tensor()) block->leave_rest();
+    for (FieldBlock *block : {&phase.fraction, &phase.tensor.field, &next_fraction_, &next_tensor_})
+      if (block != &phase.tensor.field || phase.material.carries_tensor()) block->leave_rest();
   PetscFunctionReturn(0);
 }
 
@@ -49,7 +49,7 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
   for (std::size_t p = 0; p < now_.phases.size(); ++p) {
     long count = 0;
     if (!now_.phases[p].material.elastic()) continue;
-    PetscCall(find_and_forget(*grid_, evolve_rule(now_.phases[p]), extremes.trace[p], now_.phases[p], &count));
+    PetscCall(find_and_forget(*grid_, extremes.trace[p], now_.phases[p], &count));
     now_.forgotten += count;
     if (count > 0) PetscCall(settle(now_.phases[p]));
   }
@@ -70,7 +70,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   phases_now_.resize(now_.phases.size());
   for (std::size_t p = 0; flow_ && p < phases_now_.size(); ++p)
     if (now_.phases[p].material.carries_tensor()) {
-      phases_now_[p].tensor = idle_tensor(now_.phases[p].tensor.count());
+      phases_now_[p].tensor.field = idle_tensor(now_.phases[p].tensor.field.count());
       break;
     }
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);

@@ -7,23 +7,11 @@
 namespace eulastic {
 namespace {
 
-// work(i, j, k) for the faces of this rank on a side.
-template <class Work>
-void for_faces(const Grid &grid, int d, bool high, const Work &work) {
-  if (!(high ? grid.touches_high(d) : grid.touches_low(d))) return;
-  Int3 begin{}, end = grid.owned();
-  begin[d] = high ? end[d] : 0;
-  end[d] = begin[d] + 1;
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i) work(i, j, k);
-}
-
 // Behind the side it stands on, a pressure of 1 there.
 void raise_ghosts(const Grid &grid, int d, bool high, View pressure) {
   const std::ptrdiff_t inward = high ? -pressure.stride(d) : pressure.stride(d);
   const std::ptrdiff_t ghost = high ? 0 : -pressure.stride(d);  // of the cell above the face
-  for_faces(grid, d, high, [&](int i, int j, int k) {
+  for_points(grid.faces_on(d, high), [&](int i, int j, int k) {
     double *at = &pressure(i, j, k) + ghost;
     *at = 2 - at[inward];
   });
@@ -38,7 +26,7 @@ PetscErrorCode Solver::measure_loads(const FieldBlock &velocity, std::vector<dou
     const auto [d, high] = loads_->side(n);
     const ConstView v = velocity[d];
     const int outward = high ? 1 : -1;
-    for_faces(*grid_, d, high, [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
+    for_points(grid_->faces_on(d, high), [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
   }
   flow->resize(loads_->count());
   PetscCall(sums.reduce(grid_->comm(), flow->data()));
@@ -53,7 +41,7 @@ PetscErrorCode Solver::find_responses() {
     FieldBlock pressure(*grid_, 1), velocity(*grid_, grid_->dimension());
     const double push = (high ? -2 : 2) / (spec_.fluid.density * grid_->spacing()[d]);
     View v = velocity[d];
-    for_faces(*grid_, d, high, [&](int i, int j, int k) { v(i, j, k) = push; });
+    for_points(grid_->faces_on(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
     if (rigid_) open_faces(*grid_, rigid_->faces(), velocity);
     PetscCall(project_start(true, velocity, pressure));
     PetscCall(exchange_->update(pressure, 1));

@@ -99,8 +99,7 @@ PetscErrorCode Solver::prepare() {
   else
     next_fraction_ = FieldBlock::at_rest(*grid_, 1);
   for (Phase &phase : now_.phases) {
-    phase.material.linear =
-        phase.material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, phase.material);
+    phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
     if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
   }
@@ -143,36 +142,32 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
-    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    PetscCall(find_solid(*grid_, phase));
     if (phase.material.is_membrane())
       PetscCall(membranes_->extend(&phase));
     else if (phase.material.elastic())
-      PetscCall(update_tensor_ghosts(phase.tensor, Grid::stencil_width, &phase.rows));
+      PetscCall(update_tensor_ghosts(phase.tensor.field, Grid::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
 
-EvolveRule Solver::evolve_rule(const Phase &phase) const {
-  if (phase.material.is_membrane()) return around_membranes;
-  if (!phase.material.elastic()) return evolve_nowhere;
+EvolveRule Solver::evolve_rule(const Material &material) const {
+  if (material.is_membrane()) return around_membranes;
+  if (!material.elastic()) return {};
   const bool reset = spec_.exterior == SolidExterior::identity;
-  EvolveRule rule = reset ? reset_below_one_per_cent : evolve_rule_of(phase.material);
+  const bool linear =
+      material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, material);
+  EvolveRule rule = reset ? reset_below_one_per_cent : linear ? evolve_where_full : evolve_above_half;
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
-  const bool edges = with_law(phase.material, [](const auto &law) { return law.couples_edges; });
+  const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
   if (!spec_.staggered() && !edges) rule.reach = 1;
   if (!reset && spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
   return rule;
 }
 
-std::vector<double> Solver::evolved_fraction() const {
-  std::vector<double> least;
-  for (const Phase &phase : now_.phases) least.push_back(evolve_rule(phase).centre);
-  return least;
-}
-
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, evolved_fraction(), extremes));
+  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, extremes));
   for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->faces().speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
@@ -193,7 +188,7 @@ std::size_t Solver::bytes() const {
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
-      if (phase.material.carries_tensor()) sum += phase.tensor.bytes();  // else nobody writes there
+      if (phase.material.carries_tensor()) sum += phase.tensor.field.bytes();  // else nobody writes there
     }
   return sum;
 }

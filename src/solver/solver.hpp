@@ -11,6 +11,7 @@
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/membrane.hpp"
+#include "physics/momentum.hpp"
 #include "physics/rigid.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
@@ -99,8 +100,6 @@ public:
   /// pressure is that of the step. The state is then what it was. Only with the staggered integrator, after step() and
   /// before phases_now().
   PetscErrorCode look_back(const std::vector<double> &times, const Look &look);
-  /// Least phi at a centre where B of each phase is evolved.
-  std::vector<double> evolved_fraction() const;
   /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near
   /// each other (bodies/contact.hpp), or if a body is at a side that volume crosses and cannot leave.
   const std::string &crowded() const { return crowded_; }
@@ -138,10 +137,13 @@ private:
   /// Whether a step begins with the pressure expected in its middle, rather than with that of the last one.
   bool expects_pressure() const;
   void expect_pressure(double dt);
-  EvolveRule evolve_rule(const Phase &phase) const;
+  EvolveRule evolve_rule(const Material &material) const;
   bool drifts() const;  ///< no wall holds the fluid
   PetscErrorCode transport_to_middle(double dt);
   PetscErrorCode predict(double dt);
+  PetscErrorCode predict_explicitly(const Fluid &fluid, const MomentumStep &step);
+  PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step);
+  PetscErrorCode add_local_viscous_force(double scale, FieldBlock &to);
   PetscErrorCode add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate);
   PetscErrorCode project(double dt);
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its

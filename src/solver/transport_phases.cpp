@@ -63,12 +63,12 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
     if (!phase.material.carries_tensor()) continue;
-    const ActiveSegments before = std::move(phase.strained);
-    PetscCall(find_solid(*grid_, evolve_rule(phase), phase));
+    const ActiveSegments before = std::move(phase.tensor.strained);
+    PetscCall(find_solid(*grid_, phase));
     if (phase.material.is_membrane()) continue;  // with the others of its kind
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
-    tensors.push_back({&phase.tensor, Grid::stencil_width, &rows[p].joined, true, true});
+    tensors.push_back({&phase.tensor.field, Grid::stencil_width, &rows[p].joined, true, true});
   }
   if (membranes_) {
     MembraneTransport::Memory memory{&now_.markers};
@@ -87,28 +87,27 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                    const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  const EvolveRule rule = evolve_rule(phase);
   const bool identity = spec_.exterior == SolidExterior::identity;
   if (spec_.staggered()) {
-    const ActiveSegments *first = identity ? nullptr : &phase.strained;
+    const ActiveSegments *first = identity ? nullptr : &phase.tensor.strained;
     WorkSpace::Lease stage;
-    PetscCall(work_->take("first stage of B", phase.tensor.count(), &stage));
+    PetscCall(work_->take("first stage of B", phase.tensor.field.count(), &stage));
     FieldBlock &next = stage.fields();
-    PetscCall(transport_tensor(*grid_, {rule, dt, false, first}, now_.velocity, phase, phase.tensor, next));
+    PetscCall(transport_tensor(*grid_, {dt, false, first}, now_.velocity, phase, phase.tensor.field, next));
     PetscCall(extend_exterior(phase, next, rows));
     PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
-    PetscCall(transport_tensor(*grid_, {rule, dt, true, &before}, now_.velocity, phase, next, phase.tensor));
+    PetscCall(transport_tensor(*grid_, {dt, true, &before}, now_.velocity, phase, next, phase.tensor.field));
     // Over two steps at once, in every second: their rates are slow against a step. They forget: no way back.
-    if (!identity && !phase.material.linear && now_.step % 2 == 1 && dt > 0) {
-      PetscCall(update_tensor_ghosts(phase.tensor, SurfaceCorrection::ghosts, rows));
+    if (!identity && !phase.tensor.rule.linear && now_.step % 2 == 1 && dt > 0) {
+      PetscCall(update_tensor_ghosts(phase.tensor.field, SurfaceCorrection::ghosts, rows));
       PetscCall(surface_.apply(*grid_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
     }
   } else {
-    PetscCall(transport_tensor(*grid_, {rule, dt, false, &stale_}, now_.velocity, phase, phase.tensor, next_tensor_));
-    phase.tensor.swap(next_tensor_);
+    PetscCall(transport_tensor(*grid_, {dt, false, &stale_}, now_.velocity, phase, phase.tensor.field, next_tensor_));
+    phase.tensor.field.swap(next_tensor_);
     stale_ = before;
   }
-  PetscCall(extend_exterior(phase, phase.tensor, rows));
+  PetscCall(extend_exterior(phase, phase.tensor.field, rows));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +118,7 @@ PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, c
   PetscCall(exchange_->update({{&tensor, ExteriorLayers::layers, rows, true, true}}));
   PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
   fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
-  PetscCall(limit_shear(*grid_, evolve_rule(phase), phase, tensor));
+  PetscCall(limit_shear(*grid_, phase, tensor));
   PetscFunctionReturn(0);
 }
 

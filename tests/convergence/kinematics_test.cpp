@@ -28,10 +28,12 @@ struct Kinematics {
     velocity = FieldBlock(grid, grid.dimension());
     const auto &components = tensor_components(grid.dimension());
     phase.fraction = FieldBlock(grid, 1);
+    phase.tensor.rule = reset_below_one_per_cent;
     phase.fraction.fill(0, 1.0);
-    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-    for (int c = 0; c < phase.tensor.count(); ++c) phase.tensor.fill(c, B[components[c].a][components[c].b]);
-    next.copy_from(phase.tensor);
+    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+    for (int c = 0; c < phase.tensor.field.count(); ++c)
+      phase.tensor.field.fill(c, B[components[c].a][components[c].b]);
+    next.copy_from(phase.tensor.field);
     const Layout &layout = grid.layout();
     for (int c = 0; c < grid.dimension(); ++c)
       for (int k = -layout.ghosts[2]; k < layout.cells[2] + layout.ghosts[2]; ++k)
@@ -39,18 +41,17 @@ struct Kinematics {
           for (int i = -layout.ghosts[0]; i < layout.cells[0] + layout.ghosts[0]; ++i)
             velocity[c](i, j, k) =
                 v(c, Real3{position(grid, 0, c == 0, i), position(grid, 1, c == 1, j), position(grid, 2, c == 2, k)});
-    EXPECT_EQ(find_solid(grid, reset_below_one_per_cent, phase), 0);
+    EXPECT_EQ(find_solid(grid, phase), 0);
   }
 
   void run(double end, int steps) {
     GhostExchange exchange(grid);
     const double dt = end / steps;
-    const EvolveRule &rule = reset_below_one_per_cent;
     for (int n = 0; n < steps; ++n) {
-      ASSERT_EQ(transport_tensor(grid, {rule, dt, false}, velocity, phase, phase.tensor, next), 0);
+      ASSERT_EQ(transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next), 0);
       ASSERT_EQ(exchange.update(next, Grid::stencil_width), 0);
-      ASSERT_EQ(transport_tensor(grid, {rule, dt, true}, velocity, phase, next, phase.tensor), 0);
-      ASSERT_EQ(exchange.update(phase.tensor, Grid::stencil_width), 0);
+      ASSERT_EQ(transport_tensor(grid, {dt, true}, velocity, phase, next, phase.tensor.field), 0);
+      ASSERT_EQ(exchange.update(phase.tensor.field, Grid::stencil_width), 0);
     }
   }
 
@@ -58,8 +59,8 @@ struct Kinematics {
   double error(const Matrix &exact) const {
     const auto &components = tensor_components(grid.dimension());
     double largest = 0;
-    for (int c = 0; c < phase.tensor.count(); ++c)
-      for_points(grid, phase.tensor[c], components[c].staggering(), [&](double value, double, double, double) {
+    for (int c = 0; c < phase.tensor.field.count(); ++c)
+      for_points(grid, phase.tensor.field[c], components[c].at, [&](double value, double, double, double) {
         largest = std::max(largest, std::fabs(value - exact[components[c].a][components[c].b]));
       });
     return largest;
@@ -132,7 +133,7 @@ double taylor_green_error(int cells) {
   });
   constexpr double end = 0.05;
   flow.run(end, cells);
-  return std::fabs(flow.phase.tensor[0](cells / 2, cells / 2, 0) / std::exp(4 * pi * end) - 1);
+  return std::fabs(flow.phase.tensor.field[0](cells / 2, cells / 2, 0) / std::exp(4 * pi * end) - 1);
 }
 
 TEST(Kinematics, TaylorGreenCellStretchesExponentially) {

@@ -58,8 +58,8 @@ std::vector<double> layer_velocity(const Layers &layers, int cells, int steps, d
       layers.G,
       [&](double, double y, double) { return std::min(1.0, std::max(0.0, (layers.solid - (y - h / 2)) / h)); }, true);
   const Staggering edge{true, true, false};
-  set(scene.grid, phase.tensor[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
-  set(scene.grid, phase.tensor[0], at_centre,
+  set(scene.grid, phase.tensor.field[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
+  set(scene.grid, phase.tensor.field[0], at_centre,
       [&](double, double y, double) { return 1 + std::pow(layers.shear(y, 0), 2); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(end, steps), 0);

@@ -34,6 +34,7 @@ PetscErrorCode make(int cells, double stretch, const Membrane &membrane, double 
     return cell_fraction(ellipse, {x, y, z}, {h, h, 1}, 2);
   });
   phase.material.law = Law::membrane;
+  phase.tensor.centred = true;
   phase.material.membrane = membrane;
   PetscFunctionReturn(0);
 }
@@ -46,7 +47,7 @@ double slip_rate(int cells) {
   constexpr double stretch = 1.02;
   Scene scene;
   EXPECT_EQ(make(cells, stretch, membrane, 1e-3, &scene), 0);
-  FieldBlock &B = scene.solver.state().phases[0].tensor;
+  FieldBlock &B = scene.solver.state().phases[0].tensor.field;
   for (int c = 0; c < 2; ++c)
     set(scene.grid, B[c], at_centre,
         [=](double, double, double) { return c == 0 ? stretch * stretch : 1 / (stretch * stretch); });

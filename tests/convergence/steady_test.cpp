@@ -88,7 +88,7 @@ std::array<double, 3> layers(int cells, const Material &material) {
   for (int j = 0; j < cells / 2; ++j) {
     const double exact = sheared(material, g * (0.75 - double(j) / cells));
     double &error = j < 2 ? wall_error : shear_error;
-    error = std::max(error, std::fabs(state.phases[0].tensor[2](0, j, 0) - exact));
+    error = std::max(error, std::fabs(state.phases[0].tensor.field[2](0, j, 0) - exact));
   }
   return {u_error, shear_error, wall_error};
 }
@@ -133,7 +133,8 @@ std::array<double, 4> recovery(int cells) {
     double &speed = most[2 * when], strain = 0, volume = 0;
     for (int j = 0; j < cells; ++j)
       for (int i = 0; i < cells; ++i) {
-        const double phi = phase.fraction[0](i, j, 0), xx = phase.tensor[0](i, j, 0) - 1, xy = phase.tensor[2](i, j, 0);
+        const double phi = phase.fraction[0](i, j, 0), xx = phase.tensor.field[0](i, j, 0) - 1,
+                     xy = phase.tensor.field[2](i, j, 0);
         speed = std::max(speed, std::fabs(state.velocity[0](i, j, 0)));
         volume += phi;
         strain += phi * (xx * xx + xy * xy);

@@ -75,12 +75,13 @@ struct Marks {
           phase.label[0](i, row.j, row.k) = double(b) + 1;
         }
     const auto &components = tensor_components(grid.dimension());
-    for (int c = 0; c < phase.tensor.count(); ++c) {
-      const Staggering at = components[c].staggering();
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
+      const Staggering at = components[c].at;
       for (int k = 0; k < grid.points_end(2, at[2]); ++k)
         for (int j = 0; j < grid.points_end(1, at[1]); ++j)
           for (int i = 0; i < grid.points_end(0, at[0]); ++i)
-            phase.tensor[c](i, j, k) = 2 + c + 1e-3 * (begin[0] + i) + 1e-5 * (begin[1] + j) + 1e-7 * (begin[2] + k);
+            phase.tensor.field[c](i, j, k) =
+                2 + c + 1e-3 * (begin[0] + i) + 1e-5 * (begin[1] + j) + 1e-7 * (begin[2] + k);
     }
     phases.push_back(std::move(phase));
   }
@@ -177,8 +178,8 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
     const auto &components = tensor_components(grid.dimension());
     const Int3 &begin = grid.layout().begin;
     const Block &body = blocks[1];
-    for (int c = 0; c < to.tensor.count(); ++c) {
-      const Staggering at = components[c].staggering();
+    for (int c = 0; c < to.tensor.field.count(); ++c) {
+      const Staggering at = components[c].at;
       for (int k = 0; k < grid.points_end(2, at[2]); ++k)
         for (int j = 0; j < grid.points_end(1, at[1]); ++j)
           for (int i = 0; i < grid.points_end(0, at[0]); ++i) {
@@ -190,11 +191,11 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
               touches = touches && (next || seam);
             }
             if (touches) {
-              ASSERT_EQ(to.tensor[c](i, j, k), old.tensor[c](i, j, k)) << c;
+              ASSERT_EQ(to.tensor.field[c](i, j, k), old.tensor.field[c](i, j, k)) << c;
             } else {
-              ASSERT_EQ(to.tensor[c](i, j, k), components[c].a == components[c].b ? 1 : 0) << c;
+              ASSERT_EQ(to.tensor.field[c](i, j, k), components[c].a == components[c].b ? 1 : 0) << c;
             }
-            ASSERT_EQ(from.tensor[c](i, j, k), old.tensor[c](i, j, k));
+            ASSERT_EQ(from.tensor.field[c](i, j, k), old.tensor.field[c](i, j, k));
           }
     }
     EXPECT_TRUE(marks.separate().empty());

@@ -46,14 +46,15 @@ struct Box {
     Phase &phase = phases.emplace_back();
     phase.material = material;
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-    phase.solid.build_all(grid);
-    phase.stressed.build_all(grid);
+    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+    phase.tensor.rule.centre = 0.5;
+    phase.tensor.evolving.build_all(grid);
+    phase.tensor.stressed.build_all(grid);
     set(grid, phase.fraction[0], at_centre,
         [&](double x, double y, double z) { return std::fabs(wild(seed)(x, y, z)); });
-    for (int c = 0; c < phase.tensor.count(); ++c) {
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const double unit = components[c].a == components[c].b;
-      set(grid, phase.tensor[c], components[c].staggering(),
+      set(grid, phase.tensor.field[c], components[c].at,
           [&](double x, double y, double z) { return unit + 0.4 * wild(seed + c)(x, y, z); });
     }
   }
@@ -64,9 +65,9 @@ struct Box {
     fill_wall_ghosts_velocity(grid, walls, 0, velocity, 2);
     for (Phase &phase : phases) {
       EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
-      EXPECT_EQ(exchange.update(phase.tensor, 2), 0);
+      EXPECT_EQ(exchange.update(phase.tensor.field, 2), 0);
       fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-      fill_wall_ghosts_tensor(grid, walls, phase.tensor, 2);
+      fill_wall_ghosts_tensor(grid, walls, phase.tensor.field, 2);
     }
   }
 
@@ -100,8 +101,7 @@ Measures measure(Box &box, double viscosity) {
   box.fill_ghosts();
   EXPECT_EQ(measure_flow(box.grid, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
   EXPECT_EQ(measure_phases(box.grid, box.phases, &m.flow), 0);
-  const EnergyNumbers numbers{1.3,        viscosity, {0.3, 0.2, 0},
-                              &box.walls, 0,         std::vector<double>(box.phases.size(), 0.5)};
+  const EnergyNumbers numbers{1.3, viscosity, {0.3, 0.2, 0}, &box.walls};
   EXPECT_EQ(measure_energy_rates(box.grid, box.velocity, box.phases, numbers, &m.rates), 0);
   return m;
 }

@@ -1,4 +1,5 @@
 // Ghost exchange: every ghost inside the domain and across periodic sides, at odd sizes, in every decomposition.
+#include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
 

@@ -36,10 +36,10 @@ struct Flow {
     Phase phase;
     phase.material.shear_modulus = shear_modulus;
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, components);
+    phase.tensor.field = FieldBlock(grid, components);
     set(phase.fraction[0], at_centre, fraction);
-    for (int c = 0; c < grid.dimension(); ++c) phase.tensor.fill(c, diagonal[c]);
-    for (int c = grid.dimension(); c < components; ++c) phase.tensor.fill(c, 7.0);  // off-diagonal: no energy
+    for (int c = 0; c < grid.dimension(); ++c) phase.tensor.field.fill(c, diagonal[c]);
+    for (int c = grid.dimension(); c < components; ++c) phase.tensor.field.fill(c, 7.0);  // off-diagonal: no energy
     phases.push_back(std::move(phase));
   }
 
@@ -203,7 +203,7 @@ TEST(FlowMeasures, SameBitsAsOnOneRank) {
       };
       flow.add_phase(0.3, [=](double x, double y, double z) { return std::abs(std::sin(x + 99 * y + 7 * z)); },
                      {1.1, 0.9, 1.2});
-      flow.set(flow.phases[0].tensor[0], at_centre, wild(4));
+      flow.set(flow.phases[0].tensor.field[0], at_centre, wild(4));
       const FlowMeasures m = flow.measure({wild(1), wild(2), wild(3)}, {1.3, 0.7, 0.1, 1});
       std::vector<double> &r = results[alone];
       r = {m.kinetic_energy,      m.speed_max,      m.divergence_rms, m.divergence_max,

@@ -19,11 +19,11 @@ Phase make_phase(const NumberedFields &scene, const std::string &name, double fr
   Phase phase;
   phase.species = name;
   phase.fraction = FieldBlock(scene.grid, 1);
-  phase.tensor = FieldBlock(scene.grid, static_cast<int>(components.size()));
+  phase.tensor.field = FieldBlock(scene.grid, static_cast<int>(components.size()));
   phase.label = FieldBlock(scene.grid, 1);
   phase.fraction.fill(0, fraction);
   phase.label.fill(0, label);
-  for (int c = 0; c < phase.tensor.count(); ++c) scene.fill(phase.tensor[c], components[c].staggering(), c);
+  for (int c = 0; c < phase.tensor.field.count(); ++c) scene.fill(phase.tensor.field[c], components[c].at, c);
   return phase;
 }
 
@@ -139,10 +139,10 @@ void check_snapshot(const Int3 &cells, int phase_count) {
     const std::string name = std::string("left_cauchy_green_") + "xyz"[components[c].a] + "xyz"[components[c].b];
     const double identity = components[c].a == components[c].b, b = here + 0.25 * c;
     if (phase_count == 1) {
-      EXPECT_EQ(first_value(name, components[c].staggering()), b);
+      EXPECT_EQ(first_value(name, components[c].at), b);
     } else {
-      EXPECT_EQ(first_value(name, components[c].staggering()), static_cast<float>(identity + 1.25 * (b - identity)));
-      EXPECT_EQ(first_value(name + "_vessel", components[c].staggering()), b);
+      EXPECT_EQ(first_value(name, components[c].at), static_cast<float>(identity + 1.25 * (b - identity)));
+      EXPECT_EQ(first_value(name + "_vessel", components[c].at), b);
     }
   }
   if (phase_count > 1) {
@@ -195,7 +195,7 @@ TEST(Snapshot, AColourIsPartOfItsSpecies) {
   phases.push_back(make_phase(scene, "cell", 0.5, 3));
   phases.push_back(make_phase(scene, "cell", 0.75, 4));
   phases[1].colour = 1;
-  phases[1].tensor.fill(0, 8);
+  phases[1].tensor.field.fill(0, 8);
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
   SnapshotFields fields(scene.grid);

@@ -59,7 +59,7 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   SuperTimeStepping work{FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3)};
   FieldBlock velocity(grid, 3), result(grid, 3);
   std::vector<Phase> phases(1);
-  phases[0].stressed.build_all(grid);
+  phases[0].tensor.stressed.build_all(grid);
   std::array<std::array<Wave, 3>, 3> waves;
   const auto mode = [&](int c, const Segment &row, int i) {
     const Int3 &begin = grid.layout().begin;

@@ -50,7 +50,7 @@ struct Box {
     fill_wall_ghosts_velocity(grid, sides, 0, velocity, 2);
     Phase &phase = phases[0];
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = tensor_at_rest(grid);
+    phase.tensor.field = tensor_at_rest(grid);
     set(grid, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
@@ -77,7 +77,7 @@ struct Box {
   }
   EnergyRates rates() const {
     EnergyRates rates;
-    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, {0.5}, &viscosity.fields};
+    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, &viscosity.fields};
     EXPECT_EQ(measure_energy_rates(grid, velocity, phases, numbers, &rates), 0);
     return rates;
   }

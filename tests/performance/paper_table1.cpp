@@ -129,7 +129,7 @@ void part(benchmark::State &state, double bytes, double flops, Task task) {
   State &now = box->scene.solver.state();
   FieldBlock next(grid, 10);
   const Real3 &h = grid.spacing();
-  const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor,
+  const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor.field,
                       next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
   performance::measure(state, {grid.cell_count(), bytes, flops}, [&] { return task(fields, now.phases); });
 }

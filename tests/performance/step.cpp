@@ -20,7 +20,7 @@ void step(benchmark::State &state, Filling filling, const Method &method) {
   performance::measure(state, {count}, [&] { return box->scene.solver.step(box->dt); });
   if (filling != Filling::none)
     state.counters["solid_share"] =
-        performance::sum_over_ranks(box->scene.solver.state().phases[0].solid.points()) / count;
+        performance::sum_over_ranks(box->scene.solver.state().phases[0].tensor.evolving.points()) / count;
 }
 
 #define EULASTIC_STEP(name, filling, method)                                   \

@@ -74,7 +74,7 @@ EULASTIC_VERB(correction, 8 + 4 * 16,
 // v, phi -> phi
 EULASTIC_VERB(fraction, 4 * 8 + 16, advect_fraction(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], {}, s.scalar));
 // phi
-EULASTIC_VERB(segments, 8, find_solid(s.grid, reset_below_one_per_cent, s.now.phases[0]));
+EULASTIC_VERB(segments, 8, find_solid(s.grid, s.now.phases[0]));
 // v, phi, B -> B
 EULASTIC_VERB(left_cauchy_green, 10 * 8 + 6 * 16,
               test::transport(s.grid, s.box.dt, s.now.velocity, s.now.phases[0], s.tensor));
@@ -86,8 +86,8 @@ EULASTIC_VERB_IN(cells_fraction, Filling::cells, 0,
 // As in a step: B is set to I only where it was not.
 PetscErrorCode transport_in_cells(Scratch &s) {
   const Phase &phase = s.now.phases[0];
-  return transport_tensor(s.grid, {reset_below_one_per_cent, s.box.dt, false, &phase.strained}, s.now.velocity, phase,
-                          phase.tensor, s.tensor);
+  return transport_tensor(s.grid, {s.box.dt, false, &phase.tensor.strained}, s.now.velocity, phase, phase.tensor.field,
+                          s.tensor);
 }
 EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0, transport_in_cells(s));
 

@@ -72,7 +72,7 @@ struct BodyScene {
       for (const Segment &row : grid.rows())
         for (int i = 0; i < row.i_end; ++i)
           if (phase.fraction[0](i, row.j, row.k) > 0)
-            phase.tensor[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
+            phase.tensor.field[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
   }
   // Of all bodies, on every rank.
   std::vector<BodyMeasure> measure() {

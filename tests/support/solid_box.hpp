@@ -26,15 +26,16 @@ struct Solid {
     phi.c = 5;  // well above the threshold
     B[2][2].c = 1;
     const auto &components = tensor_components(dim);
-    for (const auto [a, b] : components) B[a][b] = B[b][a] = Polynomial(random, degree);
+    for (const auto [a, b, at] : components) B[a][b] = B[b][a] = Polynomial(random, degree);
     phases.resize(1);
     Phase &phase = phases[0];
     phase.material.shear_modulus = 0.7;
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-    next = FieldBlock(grid, phase.tensor.count());
-    phase.solid.build_all(grid);
-    phase.stressed.build_all(grid);
+    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+    next = FieldBlock(grid, phase.tensor.field.count());
+    phase.tensor.rule = reset_below_one_per_cent;
+    phase.tensor.evolving.build_all(grid);
+    phase.tensor.stressed.build_all(grid);
     fill();
   }
 
@@ -42,8 +43,8 @@ struct Solid {
     const auto &components = tensor_components(grid.dimension());
     for (int a = 0; a < grid.dimension(); ++a) fill_everywhere(grid, velocity[a], at_face[a], v[a]);
     fill_everywhere(grid, phases[0].fraction[0], at_centre, phi);
-    for (int c = 0; c < phases[0].tensor.count(); ++c)
-      fill_everywhere(grid, phases[0].tensor[c], components[c].staggering(), B[components[c].a][components[c].b]);
+    for (int c = 0; c < phases[0].tensor.field.count(); ++c)
+      fill_everywhere(grid, phases[0].tensor.field[c], components[c].at, B[components[c].a][components[c].b]);
   }
 
   // Transport keeps the diagonal of B above 0 (physics/positive_definite.hpp); here it is there already.

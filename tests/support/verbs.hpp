@@ -12,10 +12,10 @@ inline PetscErrorCode predict(const Grid &grid, const Fluid &fluid, double time,
   return predict_velocity(grid, fluid, {time, dt, 1, {}}, velocity, pressure, phases, out);
 }
 
-/// (5), explicit Euler, reset below one per cent.
+/// (5), explicit Euler.
 inline PetscErrorCode transport(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
                                 FieldBlock &next) {
-  return transport_tensor(grid, {reset_below_one_per_cent, dt, false}, velocity, phase, phase.tensor, next);
+  return transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next);
 }
 
 }  // namespace eulastic::test

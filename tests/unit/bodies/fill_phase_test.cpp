@@ -41,16 +41,16 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
   Phase phase;
   ASSERT_EQ(fill_phase(grid, spec, places, 10, &phase), 0);
   EXPECT_EQ(phase.material.shear_modulus, 7);
-  ASSERT_EQ(phase.tensor.count(), 6);
+  ASSERT_EQ(phase.tensor.field.count(), 6);
   for (int k = 0; k < 36; ++k)
     for (int j = 0; j < 12; ++j)
       for (int i = 0; i < 24; ++i) {
         const bool solid = phase.fraction[0](i, j, k) > 0;
         EXPECT_EQ(phase.label[0](i, j, k), solid ? 10 + i / 12 + 2 * (k / 12) : 0);
-        EXPECT_EQ(phase.tensor[0](i, j, k), solid ? 4 : 1);
-        EXPECT_EQ(phase.tensor[1](i, j, k), solid ? 0.25 : 1);
-        EXPECT_EQ(phase.tensor[2](i, j, k), solid ? 2.25 : 1);
-        for (int c = 3; c < 6; ++c) EXPECT_EQ(phase.tensor[c](i, j, k), 0);
+        EXPECT_EQ(phase.tensor.field[0](i, j, k), solid ? 4 : 1);
+        EXPECT_EQ(phase.tensor.field[1](i, j, k), solid ? 0.25 : 1);
+        EXPECT_EQ(phase.tensor.field[2](i, j, k), solid ? 2.25 : 1);
+        for (int c = 3; c < 6; ++c) EXPECT_EQ(phase.tensor.field[c](i, j, k), 0);
       }
   EXPECT_EQ(phase.label[0](6, 6, 30), 14);
 }
@@ -71,7 +71,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
   const auto &components = tensor_components(3);
   int full[6] = {};
   for (std::size_t c = 0; c < 6; ++c) {
-    const auto [a, b] = components[c];
+    const auto [a, b, at] = components[c];
     double expected = 0;
     for (int m = 0; m < 3; ++m) expected += R[a][m] * spec.initial_stretch[m] * spec.initial_stretch[m] * R[b][m];
     for (const Segment &row : grid.rows())
@@ -84,7 +84,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
           solid += phase.fraction[0](cell[0], cell[1], cell[2]) > 0;
         }
         full[c] += solid > 0;
-        ASSERT_NEAR(phase.tensor[static_cast<int>(c)](i, row.j, row.k), solid > 0 ? expected : a == b, 1e-14)
+        ASSERT_NEAR(phase.tensor.field[static_cast<int>(c)](i, row.j, row.k), solid > 0 ? expected : a == b, 1e-14)
             << c << " at " << i << ' ' << row.j << ' ' << row.k;
       }
   }

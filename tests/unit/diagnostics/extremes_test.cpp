@@ -23,9 +23,9 @@ TEST(Extremes, TraceIsThatOfCentresThatEvolve) {
       0.1, [](double x, double y, double z) { return std::clamp(3.5 - std::hypot(x - 7, y - 6, z - 4), 0.0, 1.0); });
   ASSERT_EQ(scene.solver.prepare(), 0);
   Phase &phase = scene.solver.state().phases[0];
-  const View B = phase.tensor[0], phi = phase.fraction[0];
+  const View B = phase.tensor.field[0], phi = phase.fraction[0];
   double *inner = nullptr, *outer = nullptr;
-  for (const Segment &s : phase.solid.all())
+  for (const Segment &s : phase.tensor.evolving.all())
     for (int i = s.i_begin; i < s.i_end; ++i) (phi(i, s.j, s.k) >= 0.5 ? inner : outer) = &B(i, s.j, s.k);
   ASSERT_TRUE(inner && outer);
   const auto measure = [&] {

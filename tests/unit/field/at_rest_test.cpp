@@ -87,7 +87,7 @@ void expect_little_memory(MethodKind kind) {
     for (int j = 50; j < 58; ++j)
       for (int i = 50; i < 58; ++i) {
         phase.fraction[0](i, j, k) = phase.label[0](i, j, k) = 1;
-        phase.tensor[0](i, j, k) = 1.2;
+        phase.tensor.field[0](i, j, k) = 1.2;
       }
   State &state = scene.solver.state();
   state.phases.push_back(std::move(phase));
@@ -100,8 +100,8 @@ void expect_little_memory(MethodKind kind) {
   ASSERT_EQ(scene.solver.phases_now(&phases), 0);
   std::uint64_t hash = 0;
   ASSERT_EQ(state_hash(scene.grid, state, &hash), 0);
-  EXPECT_GT((*phases)[0].tensor[0](53, 53, 53), 1.1);
-  EXPECT_EQ((*phases)[0].tensor[0](10, 53, 53), 1);
+  EXPECT_GT((*phases)[0].tensor.field[0](53, 53, 53), 1.1);
+  EXPECT_EQ((*phases)[0].tensor.field[0](10, 53, 53), 1);
   EXPECT_LT(own_memory() - before, 2 * field) << "of " << field;
 }
 

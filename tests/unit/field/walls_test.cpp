@@ -1,6 +1,7 @@
 // Ghosts behind walls: every boundary combination, every staggering, edges and corners, moving walls.
 #include "field/sides.hpp"
 
+#include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
 
 #include <gtest/gtest.h>
@@ -145,15 +146,15 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
     const auto &components = tensor_components(grid.dimension());
     FieldBlock tensor(grid, static_cast<int>(components.size()));
     prepare(
-        grid, tensor, [&](int f) { return components[f].staggering(); }, 3);
+        grid, tensor, [&](int f) { return components[f].at; }, 3);
     fill_wall_ghosts_tensor(grid, BoxSides{}, tensor, 3);
     int wrong = 0;
     for (int f = 0; f < tensor.count(); ++f)
-      for_each_point(grid, components[f].staggering(), 3, [&](const Int3 &p) {
+      for_each_point(grid, components[f].at, 3, [&](const Int3 &p) {
         wrong +=
             tensor[f](p[0], p[1], p[2]) != unfolded(
-                                               grid, p, components[f].staggering(), 1, {0, 1, 2},
-                                               [](int, int) { return 0.; }, [&](const Int3 &q) { return inner(f, q); });
+                                               grid, p, components[f].at, 1, {0, 1, 2}, [](int, int) { return 0.; },
+                                               [&](const Int3 &q) { return inner(f, q); });
       });
     EXPECT_EQ(wrong, 0);
   });
@@ -197,13 +198,13 @@ TEST(SymmetryGhosts, AreTheMirrorImage) {
 TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
   const auto &full = tensor_components(3);
   ASSERT_EQ(full.size(), 6u);
-  for (int d = 0; d < 3; ++d) EXPECT_EQ(full[d].staggering(), at_centre);
-  EXPECT_EQ(full[3].staggering(), (Staggering{false, true, true}));  // yz
-  EXPECT_EQ(full[4].staggering(), (Staggering{true, false, true}));  // xz
-  EXPECT_EQ(full[5].staggering(), (Staggering{true, true, false}));  // xy
+  for (int d = 0; d < 3; ++d) EXPECT_EQ(full[d].at, at_centre);
+  EXPECT_EQ(full[3].at, (Staggering{false, true, true}));  // yz
+  EXPECT_EQ(full[4].at, (Staggering{true, false, true}));  // xz
+  EXPECT_EQ(full[5].at, (Staggering{true, true, false}));  // xy
   const auto &flat = tensor_components(2);
   ASSERT_EQ(flat.size(), 3u);
-  EXPECT_EQ(flat[2].staggering(), (Staggering{true, true, false}));
+  EXPECT_EQ(flat[2].at, (Staggering{true, true, false}));
 }
 
 // Hand values: Couette flow between walls at -1 and 3 over four cells is linear through the ghosts; u_i is -0.5,

@@ -194,12 +194,12 @@ void compare_steps(bool flat, double y) {
   double points[2];
   for (int all = 0; all < 2; ++all) {
     if (all) {
-      phase.solid.build_all(scene.grid);
-      phase.stressed.build_all(scene.grid);
+      phase.tensor.evolving.build_all(scene.grid);
+      phase.tensor.stressed.build_all(scene.grid);
     }
-    points[all] = phase.solid.points();
+    points[all] = phase.tensor.evolving.points();
     star[all] = FieldBlock(scene.grid, scene.grid.dimension());
-    next[all] = FieldBlock(scene.grid, phase.tensor.count());
+    next[all] = FieldBlock(scene.grid, phase.tensor.field.count());
     ASSERT_EQ(predict(scene.grid, spec.fluid, 2, 0.1, state.velocity, state.pressure, state.phases, star[all]), 0);
     ASSERT_EQ(transport(scene.grid, 0.1, state.velocity, phase, next[all]), 0);
   }
@@ -208,7 +208,7 @@ void compare_steps(bool flat, double y) {
   for (int a = 0; a < scene.grid.dimension(); ++a)
     EXPECT_TRUE(same_bits(scene.grid, star[0][a], star[1][a], at_face[a])) << "uvw"[a];
   for (int c = 0; c < next[0].count(); ++c)
-    EXPECT_TRUE(same_bits(scene.grid, next[0][c], next[1][c], components[c].staggering())) << "component " << c;
+    EXPECT_TRUE(same_bits(scene.grid, next[0][c], next[1][c], components[c].at)) << "component " << c;
 }
 
 TEST(Skipping, SameBitsAsEverywhere) {

@@ -40,7 +40,7 @@ TEST(ElasticForce, NoneWithoutStrain) {
   for (const bool flat : {false, true}) {
     Solid solid(flat, 2, 5);
     const auto &components = tensor_components(solid.grid.dimension());
-    for (const auto [a, b] : components) {
+    for (const auto [a, b, at] : components) {
       solid.B[a][b] = Polynomial{};
       if (a == b) solid.B[a][b].c = 1;
     }
@@ -63,9 +63,9 @@ TEST(Stretching, ExactForLinearFlowAndTensor) {
         ASSERT_EQ(transport(solid.grid, dt, solid.velocity, solid.phases[0], solid.next), 0);
         const auto &components = tensor_components(solid.grid.dimension());
         for (int c = 0; c < solid.next.count(); ++c) {
-          const auto [a, b] = components[c];
+          const auto [a, b, at] = components[c];
           EXPECT_LT(
-              largest_error(solid.grid, solid.next[c], components[c].staggering(),
+              largest_error(solid.grid, solid.next[c], components[c].at,
                             [&, a = a, b = b](const Point &x) { return solid.B[a][b](x) + dt * solid.rate(a, b, x); }),
               2e-13)
               << "xyz"[a] << "xyz"[b] << " degree " << degree << " seed " << seed;
@@ -79,14 +79,14 @@ TEST(Stretching, SecondStageOfHeunIsTheMean) {
     solid.make_positive();
     const auto &components = tensor_components(solid.grid.dimension());
     for (int c = 0; c < solid.next.count(); ++c)
-      fill_everywhere(solid.grid, solid.next[c], components[c].staggering(), solid.v[0]);
+      fill_everywhere(solid.grid, solid.next[c], components[c].at, solid.v[0]);
     const double dt = 0.37;
-    ASSERT_EQ(transport_tensor(solid.grid, {reset_below_one_per_cent, dt, true}, solid.velocity, solid.phases[0],
-                               solid.phases[0].tensor, solid.next),
+    ASSERT_EQ(transport_tensor(solid.grid, {dt, true}, solid.velocity, solid.phases[0], solid.phases[0].tensor.field,
+                               solid.next),
               0);
     for (int c = 0; c < solid.next.count(); ++c) {
-      const auto [a, b] = components[c];
-      EXPECT_LT(largest_error(solid.grid, solid.next[c], components[c].staggering(),
+      const auto [a, b, at] = components[c];
+      EXPECT_LT(largest_error(solid.grid, solid.next[c], components[c].at,
                               [&, a = a, b = b](const Point &x) {
                                 return 0.5 * (solid.v[0](x) + solid.B[a][b](x) + dt * solid.rate(a, b, x));
                               }),
@@ -108,7 +108,7 @@ TEST(Stretching, RigidRotationLeavesTheUnitTensor) {
     ASSERT_EQ(transport(solid.grid, 1, solid.velocity, solid.phases[0], solid.next), 0);
     const auto &components = tensor_components(solid.grid.dimension());
     for (int c = 0; c < solid.next.count(); ++c)
-      EXPECT_LT(largest_error(solid.grid, solid.next[c], components[c].staggering(),
+      EXPECT_LT(largest_error(solid.grid, solid.next[c], components[c].at,
                               [&](const Point &) { return components[c].a == components[c].b ? 1.0 : 0.0; }),
                 1e-14);
   }
@@ -145,20 +145,20 @@ TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
       Phase &phase = solid.phases[0];
       Random random(31);
       randomise(grid, phase.fraction, random, 1.5);
-      randomise(grid, phase.tensor, random);
+      randomise(grid, phase.tensor.field, random);
       randomise(grid, solid.velocity, random);
       if (solenoidal) randomise_solenoidal(grid, solid.velocity, random);
       FieldBlock force(grid, dim), zero(grid, dim), rate(grid, 1), D(grid, 1);
       ASSERT_EQ(predict(grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
       ASSERT_EQ(compute_divergence(grid, 1, solid.velocity, D), 0);
-      trace_rate(grid, phase.tensor, solid.velocity, rate);
+      trace_rate(grid, phase.tensor.field, solid.velocity, rate);
       double power = 0, energy = 0, against_divergence = 0, largest_divergence = 0;
       for (int k = 0; k < grid.owned()[2]; ++k)
         for (int j = 0; j < grid.owned()[1]; ++j)
           for (int i = 0; i < grid.owned()[0]; ++i) {
             for (int a = 0; a < dim; ++a) power += solid.velocity[a](i, j, k) * force[a](i, j, k);
-            double trace = dim == 2 ? 1 : phase.tensor[2](i, j, k);
-            trace += phase.tensor[0](i, j, k) + phase.tensor[1](i, j, k);
+            double trace = dim == 2 ? 1 : phase.tensor.field[2](i, j, k);
+            trace += phase.tensor.field[0](i, j, k) + phase.tensor.field[1](i, j, k);
             const double stiffness = G * phase.fraction[0](i, j, k);
             energy += stiffness / 2 * rate[0](i, j, k);
             against_divergence += stiffness * trace / 3 * D[0](i, j, k);

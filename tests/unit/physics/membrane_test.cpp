@@ -171,7 +171,7 @@ struct Ball : InterfaceScene {
     set_fraction(ball(centre, radius, dim));
     exchange = std::make_unique<GhostExchange>(grid);
     phases[0].fraction = std::move(fraction);
-    phases[0].tensor = tensor_at_rest(grid);
+    phases[0].tensor.field = tensor_at_rest(grid);
     EXPECT_EQ(exchange->update(phases[0].fraction, 5), 0);
     EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
     smooth = FieldBlock(grid, SurfaceCells::work_fields);
@@ -217,7 +217,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
     FieldBlock tensor(ball.grid, dim == 2 ? 3 : 6);
     const auto &components = tensor_components(dim);
     const auto tangential = [&](const SurfaceCells::Cell &cell, int f) {
-      const auto [a, b] = components[f];
+      const auto [a, b, at] = components[f];
       return (a == b) - cell.normal[a] * cell.normal[b];
     };
     for (std::size_t c = 0; c < cells.nearest(); ++c)
@@ -249,7 +249,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     FieldBlock velocity(ball.grid, dim);
     for (const double stretch : {1.0, 1.2}) {
       ball.phases[0].material.membrane.initial_area_stretch = stretch;
-      ball.phases[0].tensor = tensor_at_rest(ball.grid);
+      ball.phases[0].tensor.field = tensor_at_rest(ball.grid);
       ASSERT_EQ(membrane.start(&ball.phases[0]), 0);
       SurfaceEnergy seen;
       ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);

@@ -73,8 +73,8 @@ double computed_stress(const Solid &solid, int a, int b) {
   const Phase &phase = solid.phases[0];
   const int dim = solid.grid.dimension(), k = dim == 3 ? 2 : 0;
   if (a != b) return edge_stress(dim, phase, a, b, 5, 3, k);
-  const CellTensor B(phase.tensor, 5, 3, k);
-  const ConstView q = phase.tensor[0];
+  const CellTensor B(phase.tensor.field, 5, 3, k);
+  const ConstView q = phase.tensor.field[0];
   const std::ptrdiff_t stride[3] = {q.stride(0), q.stride(1), q.stride(2)};
   return with_law(phase.material, [&](const auto &law) {
     return dim == 2 ? law.normal_stress(1, kernels::tensor_at<2>(B.component, stride, a, 1 - a), 0)
@@ -146,7 +146,7 @@ TEST(MooneyRivlin, FirstCoefficientAloneIsNeoHookean) {
     Solid solid(flat, 0, 1);
     Random random(7);
     randomise(solid.grid, solid.phases[0].fraction, random, 1.5);
-    randomise(solid.grid, solid.phases[0].tensor, random);
+    randomise(solid.grid, solid.phases[0].tensor.field, random);
     FieldBlock a(solid.grid, solid.grid.dimension()), b(solid.grid, solid.grid.dimension());
     const double size = predicted_force(solid, Material{1.4}, a);
     predicted_force(solid, test::mooney_rivlin(0.7, 0, 0), b);
@@ -176,7 +176,7 @@ double force_error(bool flat, int cells) {
   const auto tensor = [&](const Point &x) {
     Matrix B{};
     const double k[3] = {2 * M_PI / spec.length[0], 2 * M_PI / spec.length[1], flat ? 0 : 2 * M_PI / spec.length[2]};
-    for (const auto [a, b] : components)
+    for (const auto [a, b, at] : components)
       B[a][b] = B[b][a] = (a == b) + 0.3 * std::sin(k[0] * x[0] + a) * std::cos(k[1] * x[1] + 2 * b + k[2] * x[2]);
     if (flat) B[2][2] = 1;
     return B;
@@ -186,12 +186,12 @@ double force_error(bool flat, int cells) {
   Phase &phase = phases[0];
   phase.material = rubber;
   phase.fraction = FieldBlock(grid, 1);
-  phase.tensor = FieldBlock(grid, static_cast<int>(components.size()));
-  phase.solid.build_all(grid);
-  phase.stressed.build_all(grid);
+  phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+  phase.tensor.evolving.build_all(grid);
+  phase.tensor.stressed.build_all(grid);
   fill_everywhere(grid, phase.fraction[0], at_centre, fraction);
-  for (int c = 0; c < phase.tensor.count(); ++c)
-    fill_everywhere(grid, phase.tensor[c], components[c].staggering(),
+  for (int c = 0; c < phase.tensor.field.count(); ++c)
+    fill_everywhere(grid, phase.tensor.field[c], components[c].at,
                     [&](const Point &x) { return tensor(x)[components[c].a][components[c].b]; });
   FieldBlock force(grid, grid.dimension());
   EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
@@ -262,9 +262,9 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform) {
   Random random(31);
   randomise(grid, phase.fraction, random, 1.5);
   if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
-  randomise(grid, phase.tensor, random, 0.4);
+  randomise(grid, phase.tensor.field, random, 0.4);
   randomise_solenoidal(grid, solid.velocity, random);
-  FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.count());
+  FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.field.count());
   EXPECT_EQ(compute_elastic_force(grid, 1, solid.phases, force), 0);
   Exchange e;
   for (int a = 0; a < grid.dimension(); ++a)
@@ -273,17 +273,16 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform) {
         e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * grid.cell_volume();
   EnergyRates rates;
   EnergyNumbers numbers;
-  numbers.evolved = {0};
   EXPECT_EQ(measure_energy_rates(grid, solid.velocity, solid.phases, numbers, &rates), 0);
   e.stress = rates.elastic_power;
-  (flat ? stretch<2> : stretch<3>)(grid, phase.tensor, solid.velocity, rate);
+  (flat ? stretch<2> : stretch<3>)(grid, phase.tensor.field, solid.velocity, rate);
   GhostExchange exchange(grid);
   EXPECT_EQ(exchange.update(rate, 1), 0);
   FieldBlock before;
-  before.copy_from(phase.tensor);
+  before.copy_from(phase.tensor.field);
   for (const double sign : {1.0, -1.0}) {
     const std::size_t doubles = before.bytes() / sizeof(double);
-    for (std::size_t n = 0; n < doubles; ++n) phase.tensor.data()[n] = before.data()[n] + sign * rate.data()[n];
+    for (std::size_t n = 0; n < doubles; ++n) phase.tensor.field.data()[n] = before.data()[n] + sign * rate.data()[n];
     e.energy += sign / 2 * total_energy(grid, phase);
   }
   return e;

@@ -12,8 +12,6 @@ using namespace eulastic::test;
 
 namespace {
 
-constexpr EvolveRule everywhere{0.5, 0.5, 0};
-
 // A body that fills the grid: B = diag + shear of which one edge in three is too much.
 struct Body {
   Grid grid;
@@ -21,14 +19,15 @@ struct Body {
   explicit Body(bool flat) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
-    phase.solid.build_all(grid);
+    phase.tensor.field = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
+    phase.tensor.rule = {0.5, 0.5, 0};
+    phase.tensor.evolving.build_all(grid);
     const Layout &layout = grid.layout();
     for (std::ptrdiff_t p = 0; p < layout.size; ++p) {
       phase.fraction.data()[p] = 1;
-      for (int f = 0; f < phase.tensor.count(); ++f) {
-        const auto [a, b] = tensor_components(grid.dimension())[f];
-        phase.tensor.data()[f * layout.size + p] = a == b ? 4 + a : (p % 3 == 0 ? -9 : 2);
+      for (int f = 0; f < phase.tensor.field.count(); ++f) {
+        const auto [a, b, at] = tensor_components(grid.dimension())[f];
+        phase.tensor.field.data()[f * layout.size + p] = a == b ? 4 + a : (p % 3 == 0 ? -9 : 2);
       }
     }
   }
@@ -39,19 +38,20 @@ struct Body {
 TEST(PositiveDefinite, ShearIsLimitedOnlyWhereItIsTooMuch) {
   for (const bool flat : {true, false}) {
     Body body(flat);
-    const std::vector<double> before(body.phase.tensor.data(),
-                                     body.phase.tensor.data() + body.phase.tensor.count() * body.grid.layout().size);
-    ASSERT_EQ(limit_shear(body.grid, everywhere, body.phase, body.phase.tensor), 0);
+    const std::vector<double> before(
+        body.phase.tensor.field.data(),
+        body.phase.tensor.field.data() + body.phase.tensor.field.count() * body.grid.layout().size);
+    ASSERT_EQ(limit_shear(body.grid, body.phase, body.phase.tensor.field), 0);
     const auto &components = tensor_components(body.grid.dimension());
     const Int3 n = body.grid.owned();
     int limited = 0;
-    for (int f = 0; f < body.phase.tensor.count(); ++f) {
-      const auto [a, b] = components[f];
+    for (int f = 0; f < body.phase.tensor.field.count(); ++f) {
+      const auto [a, b, at] = components[f];
       for (int k = 0; k < n[2]; ++k)
         for (int j = 0; j < n[1]; ++j)
           for (int i = 0; i < n[0]; ++i) {
             const double old = before[f * body.grid.layout().size + body.grid.layout().offset(i, j, k)];
-            const double now = body.phase.tensor[f](i, j, k);
+            const double now = body.phase.tensor.field[f](i, j, k);
             if (a != b && old < 0) {
               EXPECT_DOUBLE_EQ(now, -std::sqrt((4. + a) * (4. + b)));
               ++limited;
@@ -70,12 +70,12 @@ TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
   const double h = body.grid.spacing()[0];
   const Layout &layout = body.grid.layout();
   for (std::ptrdiff_t p = 0; p < layout.size; ++p)
-    for (int f = 0; f < 3; ++f) body.phase.tensor.data()[f * layout.size + p] = f < 2 ? 1 : 0;
+    for (int f = 0; f < 3; ++f) body.phase.tensor.field.data()[f * layout.size + p] = f < 2 ? 1 : 0;
   for (int j = -1; j <= body.grid.owned()[1]; ++j)
     for (int i = -3; i <= body.grid.owned()[0] + 1; ++i) velocity[0](i, j, 0) = -i * h;  // du/dx = -1
-  ASSERT_EQ(transport_tensor(body.grid, {everywhere, 0.25, false}, velocity, body.phase, body.phase.tensor, next), 0);
+  ASSERT_EQ(transport_tensor(body.grid, {0.25, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
   EXPECT_NEAR(next[0](2, 1, 0), 0.5, 1e-12);
-  ASSERT_EQ(transport_tensor(body.grid, {everywhere, 2, false}, velocity, body.phase, body.phase.tensor, next), 0);
+  ASSERT_EQ(transport_tensor(body.grid, {2, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
   EXPECT_EQ(next[0](2, 1, 0), 0);  // -3 without the limit
 }
 
@@ -84,12 +84,12 @@ TEST(PositiveDefinite, WhatIsNotFiniteStaysSo) {
   FieldBlock velocity(body.grid, 2), next(body.grid, 3);
   for (int j = -3; j <= body.grid.owned()[1] + 1; ++j)
     for (int i = -3; i <= body.grid.owned()[0] + 1; ++i) velocity[0](i, j, 0) = -(i + 8 * j) * 1e200;
-  ASSERT_EQ(transport_tensor(body.grid, {everywhere, 1e200, false}, velocity, body.phase, body.phase.tensor, next), 0);
+  ASSERT_EQ(transport_tensor(body.grid, {1e200, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
   EXPECT_EQ(next[0](2, 1, 0), -INFINITY);
   EXPECT_FALSE(std::isfinite(next[2](2, 1, 0)));
-  body.phase.tensor[2](1, 1, 0) = INFINITY;
-  body.phase.tensor[2](2, 1, 0) = -INFINITY;
-  ASSERT_EQ(limit_shear(body.grid, everywhere, body.phase, body.phase.tensor), 0);
-  EXPECT_EQ(body.phase.tensor[2](1, 1, 0), INFINITY);
-  EXPECT_EQ(body.phase.tensor[2](2, 1, 0), -INFINITY);
+  body.phase.tensor.field[2](1, 1, 0) = INFINITY;
+  body.phase.tensor.field[2](2, 1, 0) = -INFINITY;
+  ASSERT_EQ(limit_shear(body.grid, body.phase, body.phase.tensor.field), 0);
+  EXPECT_EQ(body.phase.tensor.field[2](1, 1, 0), INFINITY);
+  EXPECT_EQ(body.phase.tensor.field[2](2, 1, 0), -INFINITY);
 }

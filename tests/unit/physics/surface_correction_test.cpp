@@ -238,18 +238,18 @@ TEST(SurfaceCorrection, WhatLiesAtTheSurfaceFadesWithStrain) {
   Wall wall(0.75, 0.2);
   for (int j = 0; j < 16; ++j)
     for (int i = 0; i < 16; ++i) {
-      wall.phase.tensor[0](i, j, 0) = i < Wall::column ? 2 : 3;
-      wall.phase.tensor[1](i, j, 0) = i < Wall::column ? 0.5 : 0.4;
+      wall.phase.tensor.field[0](i, j, 0) = i < Wall::column ? 2 : 3;
+      wall.phase.tensor.field[1](i, j, 0) = i < Wall::column ? 0.5 : 0.4;
     }
   double left = 1;
   for (const double dt : {0.1, 0.5, 0.25}) {
     wall.apply(dt);
     left *= std::exp(-3 * 0.2 * dt);  // sqrt(2 D:D) of a shear is its rate
     for (int j = 2; j < 14; ++j) {
-      EXPECT_EQ(wall.phase.tensor[0](Wall::column - 2, j, 0), 2);
-      EXPECT_NEAR(wall.phase.tensor[0](Wall::column, j, 0), 2 + left, 1e-14);
-      EXPECT_NEAR(wall.phase.tensor[1](Wall::column, j, 0), 0.5 - 0.1 * left, 1e-14);
-      EXPECT_EQ(wall.phase.tensor[0](Wall::column + 1, j, 0), 3);  // does not evolve
+      EXPECT_EQ(wall.phase.tensor.field[0](Wall::column - 2, j, 0), 2);
+      EXPECT_NEAR(wall.phase.tensor.field[0](Wall::column, j, 0), 2 + left, 1e-14);
+      EXPECT_NEAR(wall.phase.tensor.field[1](Wall::column, j, 0), 0.5 - 0.1 * left, 1e-14);
+      EXPECT_EQ(wall.phase.tensor.field[0](Wall::column + 1, j, 0), 3);  // does not evolve
     }
   }
 }
@@ -259,9 +259,9 @@ TEST(SurfaceCorrection, DoesNotFadeToASmallDeterminant) {
     Wall wall(0.75, 1);
     for (int j = 0; j < 16; ++j)
       for (int i = 0; i < Wall::column; ++i)
-        for (int f = 0; f < 2; ++f) wall.phase.tensor[f](i, j, 0) = inside;
+        for (int f = 0; f < 2; ++f) wall.phase.tensor.field[f](i, j, 0) = inside;
     wall.apply(3);
-    const double found = wall.phase.tensor[0](Wall::column, 8, 0);
+    const double found = wall.phase.tensor.field[0](Wall::column, 8, 0);
     if (inside > 0.85)
       EXPECT_NEAR(found, 0.9, 1e-3);
     else
@@ -274,14 +274,14 @@ TEST(SurfaceCorrection, ShearOfACutColumnRelaxesAtTheRateOfTheMissingFluid) {
   Wall wall(share, 0);  // at rest: nothing is forgotten
   for (int j = 0; j <= 16; ++j)
     for (int i = 0; i <= 16; ++i) {
-      wall.phase.tensor[0](i, j, 0) = wall.phase.tensor[1](i, j, 0) = std::sqrt(1 + shear * shear);
-      wall.phase.tensor[2](i, j, 0) = shear;
+      wall.phase.tensor.field[0](i, j, 0) = wall.phase.tensor.field[1](i, j, 0) = std::sqrt(1 + shear * shear);
+      wall.phase.tensor.field[2](i, j, 0) = shear;
     }
   wall.apply(dt);
   const double h = 1. / 16, k = h / (1 + h / 16);  // mu = G = rho = 1; viscosity damps waves of a cell: a share of h
-  const double edge = (1 + share) / 2;            // solid fraction of the edges left of the column
+  const double edge = (1 + share) / 2;             // solid fraction of the edges left of the column
   const double across = std::sqrt(1 + shear * shear);  // n.Bn
-  EXPECT_NEAR(wall.phase.tensor[2](Wall::column, 8, 0), shear * std::exp(-(1 - edge) * k * across * dt), 1e-14);
-  EXPECT_EQ(wall.phase.tensor[2](Wall::column - 1, 8, 0), shear);
-  EXPECT_EQ(wall.phase.tensor[0](Wall::column, 8, 0), across);  // n.Bn does not change
+  EXPECT_NEAR(wall.phase.tensor.field[2](Wall::column, 8, 0), shear * std::exp(-(1 - edge) * k * across * dt), 1e-14);
+  EXPECT_EQ(wall.phase.tensor.field[2](Wall::column - 1, 8, 0), shear);
+  EXPECT_EQ(wall.phase.tensor.field[0](Wall::column, 8, 0), across);  // n.Bn does not change
 }

@@ -34,7 +34,7 @@ struct MarkedBall : InterfaceScene {
     set_fraction(ball(centre, radius, dim, true));
     exchange = std::make_unique<GhostExchange>(grid);
     phase.fraction = std::move(fraction);
-    phase.tensor = FieldBlock(grid, dim == 2 ? 3 : 6);
+    phase.tensor.field = FieldBlock(grid, dim == 2 ? 3 : 6);
     phase.material.law = Law::membrane;
     EXPECT_EQ(exchange->update(phase.fraction, 5), 0);
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
@@ -54,7 +54,7 @@ struct MarkedBall : InterfaceScene {
       kernels::Tensor<Dim> P = kernels::tangential<Dim>(normal_of<Dim>(cell.normal));
       for (auto &row : P)
         for (double &value : row) value *= stretch;
-      set_tensor<Dim>(phase.tensor, cell.at, P);
+      set_tensor<Dim>(phase.tensor.field, cell.at, P);
     }
   }
 };

@@ -24,25 +24,26 @@ struct Body {
   explicit Body(bool flat, double l = 50) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     phase.fraction = FieldBlock(grid, 1);
-    phase.tensor = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
+    phase.tensor.field = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
     const Layout &layout = grid.layout();
     for (std::ptrdiff_t p = 0; p < layout.size; ++p)
-      for (int f = 0; f < phase.tensor.count(); ++f) {
-        const auto [a, b] = tensor_components(grid.dimension())[f];
-        phase.tensor.data()[f * layout.size + p] = a == 2 && b == 2 ? 1
-                                                   : a == b         ? 0.5 * (l + 1 / l)
-                                                   : a + b == 1     ? 0.5 * (l - 1 / l)
-                                                                    : 0;
+      for (int f = 0; f < phase.tensor.field.count(); ++f) {
+        const auto [a, b, at] = tensor_components(grid.dimension())[f];
+        phase.tensor.field.data()[f * layout.size + p] = a == 2 && b == 2 ? 1
+                                                         : a == b         ? 0.5 * (l + 1 / l)
+                                                         : a + b == 1     ? 0.5 * (l - 1 / l)
+                                                                          : 0;
       }
     fill_everywhere(grid, phase.fraction[0], at_centre,
                     [&](const Point &x) { return x[0] < 0.5 * grid.spec().length[0] ? 1 : 0.4; });
   }
   std::vector<double> values() const {
-    return {phase.tensor.data(), phase.tensor.data() + phase.tensor.count() * grid.layout().size};
+    return {phase.tensor.field.data(), phase.tensor.field.data() + phase.tensor.field.count() * grid.layout().size};
   }
   long forget(const EvolveRule &rule = half) {
     long count = -1;
-    EXPECT_EQ(forget_unresolved(grid, rule, phase, &count), 0);
+    phase.tensor.rule = rule;
+    EXPECT_EQ(forget_unresolved(grid, phase, &count), 0);
     return count;
   }
 };
@@ -64,7 +65,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
     Body body(flat);
     // Shear that changes its sign at one centre: the mean over its edges vanishes, det B = (l + 1/l)^2/4.
     const int i = 2, j = 2, k = flat ? 0 : 2;
-    const View xy = body.phase.tensor[flat ? 2 : 5];
+    const View xy = body.phase.tensor.field[flat ? 2 : 5];
     xy(i, j, k) = -xy(i, j, k);
     xy(i + 1, j + 1, k) = -xy(i + 1, j + 1, k);
     const std::vector<double> before = body.values();
@@ -79,8 +80,8 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
         const double mean = 0.25 * (q[0] + q[1] + q[layout.sy] + q[layout.sy + 1]);
         if (before[p] * before[p] - mean * mean < 2 * largest_determinant) continue;
         ++centres;
-        for (int f = 0; f < body.phase.tensor.count(); ++f) {
-          const auto [a, b] = tensor_components(body.grid.dimension())[f];
+        for (int f = 0; f < body.phase.tensor.field.count(); ++f) {
+          const auto [a, b, at] = tensor_components(body.grid.dimension())[f];
           double *B = want.data() + f * layout.size + p;
           if (a == b)
             *B = 1;
@@ -126,16 +127,16 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
 TEST(Unresolved, OnlyWhereBEvolvesAndWhatIsNotFiniteStays) {
   Body body(true);
   const Int3 n = body.grid.owned();
-  body.phase.tensor[0](n[0] - 1, 1, 0) = 1e9;  // outside
-  body.phase.tensor[0](1, 1, 0) = NAN;
+  body.phase.tensor.field[0](n[0] - 1, 1, 0) = 1e9;  // outside
+  body.phase.tensor.field[0](1, 1, 0) = NAN;
   EXPECT_EQ(body.forget(), 0);
-  EXPECT_EQ(body.phase.tensor[0](n[0] - 1, 1, 0), 1e9);
-  EXPECT_TRUE(std::isnan(body.phase.tensor[0](1, 1, 0)));
+  EXPECT_EQ(body.phase.tensor.field[0](n[0] - 1, 1, 0), 1e9);
+  EXPECT_TRUE(std::isnan(body.phase.tensor.field[0](1, 1, 0)));
 }
 
 TEST(Unresolved, CellsAtTheSurfaceHaveMoreRoom) {
   Body body(true, 1);
-  const View phi = body.phase.fraction[0], xx = body.phase.tensor[0];
+  const View phi = body.phase.fraction[0], xx = body.phase.tensor.field[0];
   for (const auto &[fraction, determinant, count] : {std::tuple{1., 3.4, 0L},
                                                      {1., 3.6, 1L},
                                                      {0.9, 3.6, 0L},
@@ -155,7 +156,7 @@ TEST(Unresolved, WhereBIsExtendedDiagonalsAreScaled) {
       Body body(flat, 3);
       const int k = flat ? 0 : 2, dimension = body.grid.dimension();
       for (int d = 0; d < dimension; ++d)
-        body.phase.tensor[d](2, 2, k) *= 2;  // det B = 4 (3 + 1/3)^2/4 - (3 - 1/3)^2/4
+        body.phase.tensor.field[d](2, 2, k) *= 2;  // det B = 4 (3 + 1/3)^2/4 - (3 - 1/3)^2/4
       body.phase.fraction[0](2, 2, k) = fraction;
       const std::vector<double> before = body.values();
       std::vector<double> want = before;
@@ -167,7 +168,7 @@ TEST(Unresolved, WhereBIsExtendedDiagonalsAreScaled) {
       for (int d = 0; d < dimension; ++d) want[d * size + p] *= xx / before[p];
       for (std::size_t q = 0; q < want.size(); ++q) ASSERT_NEAR(after[q], want[q], 1e-14) << q;  // the edges too
       body.phase.fraction[0](2, 2, k) = 0.4;
-      for (int d = 0; d < dimension; ++d) body.phase.tensor[d](2, 2, k) = 9;
+      for (int d = 0; d < dimension; ++d) body.phase.tensor.field[d](2, 2, k) = 9;
       EXPECT_EQ(body.forget(evolve_above_half), 0);
     }
 }

@@ -26,8 +26,7 @@ struct Flow {
     fill_everywhere(grid, viscosity.fields[0], at_centre, value);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b)
-        fill_everywhere(grid, viscosity.fields[viscosity_of_edge(dim, a, b)], TensorComponent{a, b}.staggering(),
-                        value);
+        fill_everywhere(grid, viscosity.fields[viscosity_of_edge(dim, a, b)], at_edge(a, b), value);
   }
   void find_force() {
     force.clear();

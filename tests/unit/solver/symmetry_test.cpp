@@ -107,8 +107,8 @@ double difference(const Scene &a, const Scene &b, Map map) {
   for (int c = 0; c < dim; ++c) compare(p.velocity[c], q.velocity, at_face[c], c, -1);
   compare(p.pressure[0], q.pressure, at_centre, -1, -1);
   compare(p.phases[0].fraction[0], q.phases[0].fraction, at_centre, -1, -1);
-  for (int f = 0; f < p.phases[0].tensor.count(); ++f)
-    compare(p.phases[0].tensor[f], q.phases[0].tensor, components[f].staggering(), components[f].a, components[f].b);
+  for (int f = 0; f < p.phases[0].tensor.field.count(); ++f)
+    compare(p.phases[0].tensor.field[f], q.phases[0].tensor.field, components[f].at, components[f].a, components[f].b);
   return largest;
 }
 
@@ -163,7 +163,7 @@ TEST(MirroredScene, GivesTheMirroredResult) {
         Scene original;
         run(setting, original);
         double moved = 0;
-        for_points(original.grid, original.solver.state().phases[0].tensor[0], at_centre,
+        for_points(original.grid, original.solver.state().phases[0].tensor.field[0], at_centre,
                    [&](double &q, double, double, double) { moved = std::max(moved, std::fabs(q - 1)); });
         EXPECT_GT(moved, 0.01);
         for (int d = 0; d < original.grid.dimension(); ++d) {

@@ -1,0 +1,51 @@
+// What a phase carries beside phi: a symmetric tensor that remembers its deformation.
+#pragma once
+
+#include "field/field_block.hpp"
+#include "grid/active_segments.hpp"
+
+#include <string>
+
+namespace eulastic {
+
+struct TensorComponent {
+  int a, b;
+  Staggering at{};  ///< where it lives
+
+  bool on_edge() const { return at != at_centre; }  ///< between four centres
+  double rest() const { return a == b ? 1 : 0; }
+  std::string name() const { return {"xyz"[a], "xyz"[b]}; }
+};
+/// In the order of their block: xx, yy, xy in 2-D (zz stays 1) and xx, yy, zz, yz, xz, xy in 3-D; off-diagonals lie on
+/// edges, or all of it is `centred`.
+const std::vector<TensorComponent> &tensor_components(int dimension, bool centred = false);
+
+/// Where a tensor evolves, and what is outside: I, or an extension; by that also what of it counts as unresolved
+/// (physics/unresolved.hpp).
+struct EvolveRule {
+  double centre = 2, edge = 2;  ///< least solid fraction, at centres and (mean of four) on edges; 2: nowhere
+  double stressed = 2;          ///< least solid fraction that makes stress
+  int layers = 0;               ///< how far it is extended outside, in points
+  int reach = 2;                ///< how far from such solid faces feel stress, that of a step before included
+  bool linear = false;          ///< extended linearly, else as a constant
+};
+
+/// B of a solid, its off-diagonals on edges, or B_s of a membrane, all of it at centres.
+struct CarriedTensor {
+  FieldBlock field;  ///< I where nothing evolves or is extended
+  bool centred = false;
+  EvolveRule rule{};
+  ActiveSegments evolving;  ///< points where it may evolve
+  ActiveSegments strained;  ///< points where it may differ from I: those and the layers it is extended over
+  ActiveSegments stressed;  ///< faces that feel its stress
+
+  /// In the order of `field`, each with its place.
+  const std::vector<TensorComponent> &components() const {
+    return tensor_components(field.count() == 3 ? 2 : 3, centred);
+  }
+};
+
+/// I everywhere.
+FieldBlock tensor_at_rest(const Grid &grid);
+
+}  // namespace eulastic
