@@ -17,7 +17,7 @@ namespace {
 constexpr double degrees = 180 / 3.14159265358979323846;
 // Order of the sums of one body; second moments xx, yy, zz, yz, xz, xy.
 constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13, full_cells = 14, mean_tensor = 15;
-constexpr int all_sums = 21, position_sums = 4;
+constexpr int on_open_side = 21, all_sums = 22, position_sums = 4;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 constexpr double full_cell = 0.999;
 
@@ -35,6 +35,16 @@ void for_each_cell(const Grid &grid, const RowPart &part, const std::vector<Phas
       }
     }
   }
+}
+
+// Whether an owned cell is at a side that bodies flow out through.
+bool is_at_open_side(const Grid &grid, const Int3 &cell) {
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const int global = cell[d] + grid.layout().begin[d];
+    if ((global == 0 && grid.is_open(d, false)) || (global == grid.cells()[d] - 1 && grid.is_open(d, true)))
+      return true;
+  }
+  return false;
 }
 
 // Calls visit(slot of the body, phi W, tr B or 0 where phi < 1/2) for every cell of a part with a label.
@@ -160,6 +170,7 @@ BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &
   const Real3 &h = grid.spacing();
   const double cells = sums.value(b, 0);
   body.volume = cells * grid.cell_volume();
+  body.leaves = grid.any_open() && (body.volume == 0 || sums.value(b, on_open_side) > 0);
   Real3 mean{};
   for (int d = 0; d < 3; ++d) {
     mean[d] = cells > 0 ? sums.value(b, first_moment + d) / cells : 0;
@@ -239,6 +250,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   for (const std::vector<double> &some : traces)
     for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
   PetscCall(owners.reduce(1, MPI_MAX, traces[0], &largest.trace));
+  const bool opens = grid.any_open();
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     for_each_cell(grid, part, phases, owners, [&](const Phase &phase, int b, double phi, int i, int j, int k) {
@@ -252,6 +264,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       some.add(b, second_moment + 3, phi * x[1] * x[2]);
       some.add(b, second_moment + 4, phi * x[0] * x[2]);
       some.add(b, second_moment + 5, phi * x[0] * x[1]);
+      if (opens && is_at_open_side(grid, {i, j, k})) some.add(b, on_open_side, phi);
       if (!(phi > full_cell) || phase.material.is_membrane()) return;  // B_s says nothing of the inside
       some.add(b, full_cells, 1);
       for (int f = 0; f < phase.tensor.count(); ++f) {
