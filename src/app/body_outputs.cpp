@@ -20,8 +20,7 @@ PetscErrorCode Outputs::measure_drift(Measured *measured) {
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const BodyMeasure &body = m.bodies[b];
     const double first = first_volumes[b];
-    const bool left = body.volume == 0 && grid_->any_open();
-    const double drift = first > 0 && !left ? std::fabs(body.volume / first - 1) : 0;
+    const double drift = first > 0 && !body.leaves ? std::fabs(body.volume / first - 1) : 0;
     m.volume_drift = std::max(m.volume_drift, drift);
     if (resolved(first) && (drift > resolved_one.drift || resolved_one.label == 0)) resolved_one = {drift, body.label};
   }

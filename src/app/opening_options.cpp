@@ -17,7 +17,7 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
   const std::size_t first = rows.rows.size();
   Option &profile = rows.path(name + "_profile", spec.profile,
                               "shape of the velocity into the box: uniform; developed, that of a steady flow along the "
-                              "side; or one number per cell");
+                              "side; or one number per cell, of a text or an HDF5 file (docs/howto/vessel.md)");
   profile.accepted = "uniform, developed, or a path";
   profile.is_input = true;
   for (const bool flow : {false, true}) {

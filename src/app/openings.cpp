@@ -3,6 +3,7 @@
 #include "app/option_values.hpp"
 #include "base/rank_zero.hpp"
 #include "field/open_sides.hpp"
+#include "io/profile_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +14,9 @@ namespace {
 
 std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
 
-// Numbers of a text file, whatever separates them; # starts a comment.
-std::string read_numbers(const std::string &path, std::vector<std::vector<double>> *rows) {
-  std::string text, line;
-  if (!read_file(path, &text)) return "cannot read " + path;
+// Numbers of a text, whatever separates them; # starts a comment.
+std::string read_numbers(const std::string &path, const std::string &text, std::vector<std::vector<double>> *rows) {
+  std::string line;
   std::istringstream file(text);
   for (int number = 1; std::getline(file, line); ++number) {
     line.erase(std::min(line.find('#'), line.size()));
@@ -37,7 +37,9 @@ std::string read_numbers(const std::string &path, std::vector<std::vector<double
 
 std::string read_table(const std::string &path, TimeCourse *course) {
   std::vector<std::vector<double>> rows;
-  if (std::string wrong = read_numbers(path, &rows); !wrong.empty()) return wrong + "; accepted: rows time,value";
+  std::string text;
+  std::string wrong = read_file(path, &text) ? read_numbers(path, text, &rows) : "cannot read " + path;
+  if (!wrong.empty()) return wrong + "; accepted: rows time,value";
   for (const std::vector<double> &row : rows) {
     if (row.size() != 2) return path + ": a row has " + std::to_string(row.size()) + " numbers; accepted: time,value";
     if (!course->table.empty() && !(row[0] > course->table.back()[0]))
@@ -81,10 +83,23 @@ double make_mean_one(SideProfile *profile) {
   return mean;
 }
 
-std::string read_profile(const Config &config, const OpeningSpec &spec, int d, SideProfile *profile, double *mean) {
+std::string read_profile(const Config &config, int d, int high, SideProfile *profile, double *mean) {
+  const OpeningSpec &spec = config.openings[d][high];
   std::vector<std::vector<double>> rows;
-  if (std::string wrong = read_numbers(spec.profile, &rows); !wrong.empty())
-    return wrong + "; accepted: uniform, developed, or a file of numbers";
+  std::string text, wrong;
+  if (!read_file(spec.profile, &text)) {
+    wrong = "cannot read " + spec.profile;
+  } else if (is_hdf5(text)) {
+    const Int3 &n = config.grid.cells;
+    wrong = on_rank_0([&] {
+      return read_profile_file(spec.profile, d == 2 ? n[1] : n[2], d == 0 ? n[1] : n[0], d, high ? -1 : 1, profile);
+    });
+    if (!wrong.empty()) return wrong;
+    share(profile);
+  } else {
+    wrong = read_numbers(spec.profile, text, &rows);
+  }
+  if (!wrong.empty()) return wrong + "; accepted: uniform, developed, or a file of numbers";
   for (const std::vector<double> &row : rows) profile->insert(profile->end(), row.begin(), row.end());
   const std::size_t cells = cells_of_side(config, d);
   if (profile->size() != cells)
@@ -103,7 +118,7 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   SideProfile profile;
   double mean = 1;
   if (spec.from_file())
-    if (std::string wrong = read_profile(config, spec, d, &profile, &mean); !wrong.empty())
+    if (std::string wrong = read_profile(config, d, high, &profile, &mean); !wrong.empty())
       return name + "_profile: " + wrong;
   side->profile = std::make_shared<const SideProfile>(std::move(profile));
   const bool flow = !spec.flow_rate.empty();

@@ -90,8 +90,8 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   for_law(8, {Law::membrane, Law::red_cell});
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
-            "velocity V cos(frequency t + phase) of a rigid body, which travels through the grid, or slides along "
-            "itself: tube, slab, cylinder along its axis");
+            "velocity V cos(frequency t + phase) of a rigid body, which travels through the grid (a slab: along its "
+            "axis, as a piston), or slides along itself: tube, cylinder along its axis, slab in its plane");
   rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
   rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
   rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",

@@ -121,6 +121,16 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
+// A slab that goes along its axis leaves the fluid on both sides of it where that is, or is carried round.
+bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
+  const GridSpec &grid = config.grid;
+  for (int e = 0; e < 3; ++e)
+    if (e != slab.axis && (grid.open[e][0] || grid.open[e][1])) return true;
+  const auto across = [&](const SpeciesSpec &other) { return other.shape == Shape::slab && other.axis == slab.axis; };
+  if (std::count_if(config.species.begin(), config.species.end(), across) > 1) return false;
+  return grid.boundary[slab.axis] == Boundary::periodic || (grid.open[slab.axis][0] && grid.open[slab.axis][1]);
+}
+
 // The shape must turn into itself; where it goes: check_paths().
 std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
@@ -145,10 +155,15 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
     const bool fluid_around = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid ||
                               spec.shape == Shape::biconcave ||
                               (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
-    if (!spec.slides(d) && !fluid_around)
+    if (spec.shape == Shape::slab && d == spec.axis) {
+      if (!piston_has_way_out(config, spec))
+        return no("velocity",
+                  "the slab would press fluid that has no way out; accepted: no other slab across its way, and a "
+                  "pressure or outflow side on both ends of it, or a periodic one; or such a side along all of it");
+    } else if (!spec.slides(d) && !fluid_around)
       return no("velocity",
                 "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
-                "a tube, in the plane of a slab, any of a sphere, ellipsoid, biconcave or cylinder, else 0,0,0");
+                "a tube, any of a slab, sphere, ellipsoid, biconcave or cylinder, else 0,0,0");
     if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
                 "the body would slide into the sides of the box; accepted: 0 along a direction that is not "

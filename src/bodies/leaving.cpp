@@ -1,5 +1,9 @@
 #include "bodies/leaving.hpp"
 
+#include "bodies/near_bodies.hpp"
+
+#include <algorithm>
+
 namespace eulastic {
 bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than) {
   bool any = false;
@@ -7,22 +11,44 @@ bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layer
   return any;
 }
 
-void mark_leaving(const Grid &grid, int d, bool high, int layers, Phase *phase, std::set<int> *leaves) {
+bool leave_whole(const Material &material) {
+  return material.is_membrane() || material.surface_tension > 0 || material.viscosity > 0;
+}
+
+void mark_staying(const Grid &grid, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
+  const BodyCells cells{phase.label[0], phase.fraction[0]};
+  Int3 begin{}, end = grid.owned();
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const int first = grid.layout().begin[d], last = grid.cells()[d] - layers - first;
+    if (grid.is_open(d, false)) begin[d] = std::max(begin[d], layers - first);
+    if (grid.is_open(d, true)) end[d] = std::min(end[d], last);
+  }
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i)
+        if (const int label = static_cast<int>(cells(i, j, k)); label > 0)
+          if (const auto found = leaves->find(label); found != leaves->end()) found->second = Leaving::stays;
+}
+
+void mark_leaving(const Grid &grid, int d, bool high, int layers, bool whole, Phase *phase,
+                  std::map<int, Leaving> *leaves) {
   const View fraction = phase->fraction[0], label = phase->label[0];
   for_points(grid.cells_at(d, high, layers), [&](int i, int j, int k) {
     if (!(fraction(i, j, k) > 0)) return;
     if (label(i, j, k) > 0)
-      leaves->insert(static_cast<int>(label(i, j, k)));
-    else
+      (*leaves)[static_cast<int>(label(i, j, k))] = Leaving::leaves;
+    else if (whole)
       fraction(i, j, k) = 0;
   });
 }
 
-void take_out(const Grid &grid, const std::set<int> &leaves, Phase *phase) {
+void take_out(const Grid &grid, const std::map<int, Leaving> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
   for_points(grid.rows(), [&](int i, int j, int k) {
     double &name = label(i, j, k);
-    if (!(name > 0 && leaves.count(static_cast<int>(name)) > 0)) return;
+    if (!(name > 0)) return;
+    const auto found = leaves.find(static_cast<int>(name));
+    if (found == leaves.end() || found->second != Leaving::leaves) return;
     fraction(i, j, k) = 0;
     name = 0;
   });

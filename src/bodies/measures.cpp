@@ -16,7 +16,7 @@ namespace {
 constexpr double degrees = 180 / 3.14159265358979323846;
 // Order of the sums of one body; second moments xx, yy, zz, yz, xz, xy.
 constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13, full_cells = 14, mean_tensor = 15;
-constexpr int all_sums = 21, position_sums = 4;
+constexpr int on_open_side = 21, all_sums = 22, position_sums = 4;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 double largest_of(const double *values, int n, double so_far) {
@@ -32,6 +32,21 @@ double largest_trace(const Run &run, int dimension, double so_far) {
   for (int i = 0; i < run.size(); ++i)
     if (phi[i] >= 0.5) so_far = std::max(so_far, xx[i] + yy[i] + (zz ? zz[i] : 1));
   return so_far;
+}
+
+// Solid of a run in cells at sides that bodies flow out through.
+double at_open_side(const Grid &grid, const Run &run, double all) {
+  const Int3 cell{run.begin, run.j, run.k};
+  const auto is_at = [&](int d, int i) {
+    const int global = i + grid.layout().begin[d];
+    return (global == 0 && grid.is_open(d, false)) || (global == grid.cells()[d] - 1 && grid.is_open(d, true));
+  };
+  for (int d = 1; d < grid.dimension(); ++d)
+    if (is_at(d, cell[d])) return all;
+  const double *phi = run.of(run.phase.fraction, 0);
+  double sum = is_at(0, run.begin) ? phi[0] : 0;
+  if (run.size() > 1 && is_at(0, run.end - 1)) sum += phi[run.size() - 1];
+  return sum;
 }
 
 // Sums of owned bodies, of what add(part, sums) adds in every part of the owned rows to those that are here.
@@ -172,6 +187,7 @@ BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &
   const Real3 &h = grid.spacing();
   const double cells = sums.value(b, 0);
   body.volume = cells * grid.cell_volume();
+  body.leaves = grid.any_open() && (body.volume == 0 || sums.value(b, on_open_side) > 0);
   Real3 mean{};
   for (int d = 0; d < 3; ++d) {
     mean[d] = cells > 0 ? sums.value(b, first_moment + d) / cells : 0;
@@ -235,6 +251,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
   std::vector<std::vector<double>> energies;
   Largest largest;
   PetscCall(find_largest(grid, phases, velocity, owners, energy, &energies, &largest));
+  const bool opens = grid.any_open();
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     const double *density = energies[part.number].data(), *of_row = nullptr;  // of cell 0 of the row
@@ -262,6 +279,7 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
         const auto [p, q, at] = run.phase.tensor.components()[f];
         some.add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
       }
+      if (opens) some.add(b, on_open_side, at_open_side(grid, run, cells));
     });
   };
   PetscCall(sum_bodies(grid, owners, add, &sums));

@@ -19,6 +19,7 @@ struct BodyMeasure {
   int label = 0;                  ///< 1 + index of the body
   int species = 0;                ///< index of its phase
   double volume = 0;              ///< sum of phi; area in 2-D; 0 if the body is gone, then only the centroid is set
+  bool leaves = false;            ///< through an open side: its volume is not that of the start any more
   Real3 centroid{};               ///< not wrapped into the box: continuous in time
   Real3 velocity{};               ///< phi-weighted mean
   Real3 semi_axes{};              ///< of the ellipsoid (2-D: ellipse) with the same second moments, longest first

@@ -9,8 +9,9 @@
 namespace eulastic {
 namespace {
 
+// Faces of the components from a_begin on, before a_end.
 struct Rows {
-  int j_begin, j_end, k;
+  int i_begin, i_end, j_begin, j_end, k, a_begin, a_end;
 };
 
 // Asks for what the batches do not: beside the vectors of a segment two planes on, and phi up to its last cache line.
@@ -38,7 +39,7 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
   const double *B[6] = {};
   for (int f = 0; f < phase.tensor.field.count(); ++f) B[f] = phase.tensor.field[f].origin;
   const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
-    for (int a = 0; a < Dim; ++a) {
+    for (int a = rows.a_begin; a < rows.a_end; ++a) {
       if (Dim == 3) {  // two planes on
         batch.ahead[0] = B[a] + 2 * phi.sz;
         batch.ahead[1] = B[kernels::position<Dim>(a, (a + 1) % Dim)] + 2 * phi.sz;
@@ -56,7 +57,8 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
   for (int j = rows.j_begin; j < rows.j_end; ++j)
     for (const Segment &s : phase.tensor.stressed.row(j, rows.k)) {
       if (Dim == 3) prefetch_beside(phase, s);
-      kernels::gather(batch, j * phi.sy + rows.k * phi.sz, s.i_begin, std::min(s.i_end, grid.owned()[0]), add);
+      kernels::gather(batch, j * phi.sy + rows.k * phi.sz, std::max(s.i_begin, rows.i_begin),
+                      std::min(s.i_end, rows.i_end), add);
     }
   add(batch);
 }
@@ -81,13 +83,23 @@ EULASTIC_CLONES void add_force_3d(const Grid &grid, const Phase &phase, double s
   add_force_of_law<3>(grid, phase, scale, rows, force, slope);
 }
 
+void add_on_rows(const Grid &grid, const std::vector<Phase> &phases, double scale, const Rows &rows, FieldBlock &force,
+                 const ForceSlope &slope) {
+  for (const Phase &phase : phases)
+    if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
+      (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, phase, scale, rows, force, slope);
+}
+
 }  // namespace
 
 void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
                        FieldBlock &force, const ForceSlope &slope) {
-  for (const Phase &phase : phases)
-    if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(j_begin, j_end, k))
-      (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, phase, scale, {j_begin, j_end, k}, force, slope);
+  add_on_rows(grid, phases, scale, {0, grid.owned()[0], j_begin, j_end, k, 0, grid.dimension()}, force, slope);
+}
+
+void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
+                       FieldBlock &force, const ForceSlope &slope) {
+  add_on_rows(grid, phases, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, slope);
 }
 
 PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
@@ -106,6 +118,11 @@ PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::
         },
         [&](int begin, int end, int k) { add_elastic_force(grid, phases, scale, begin, end, k, force); });
   });
+  for (int a = 0; a < dim; ++a)
+    for (const Segment &faces : grid.open_high_faces(a)) {
+      std::fill_n(force[a].row(faces.j, faces.k) + faces.i_begin, faces.size(), 0.0);
+      add_elastic_force(grid, phases, scale, faces, a, force);
+    }
   scope.flops(elastic_flops(dim, phases));
   PetscFunctionReturn(0);
 }

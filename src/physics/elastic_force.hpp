@@ -17,6 +17,9 @@ struct ForceSlope {
 /// `slope`. One ghost of phi and B.
 void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
                        FieldBlock &force, const ForceSlope &slope = {});
+/// The same on faces of component a beyond the rows, those of open sides.
+void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
+                       FieldBlock &force, const ForceSlope &slope = {});
 
 /// force = scale div(sigma), 0 at owned faces that feel none.
 PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,

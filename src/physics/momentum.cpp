@@ -145,6 +145,7 @@ void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
     for (const Segment &row : t.grid.open_high_faces(a)) {
       const RowScratch scratch(t.grid, 1);
       (dim == 2 ? open_face_rate_2d : open_face_rate_3d)(t, row, a, scratch.row(0), out);
+      add_elastic_force(t.grid, t.phases, 1 / t.density, row, a, out, t.slope);
     }
   const double per_face = (t.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;

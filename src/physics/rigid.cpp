@@ -44,6 +44,19 @@ int side_of_face(const Grid &grid, int a, int i, int j, int k) {
 // In cells: a face on an open side has half of one, on others the side gives the velocity.
 double volume_of_face(const Grid &grid, int a, int side) { return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0; }
 
+// Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
+double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstView u) {
+  double sum = 0;
+  for (int d = 0; d < grid.dimension(); ++d) {
+    if (d == a || !grid.is_wall(d)) continue;
+    const int at = grid.layout().begin[d] + std::array{i, j, k}[d];
+    const double *here = &u(i, j, k), square = grid.spacing()[d] * grid.spacing()[d];
+    if (at == 0) sum += (here[-u.stride(d)] - here[0]) / square;
+    if (at == grid.cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
+  }
+  return sum;
+}
+
 bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
 // The viscous rate at a cut face, and how much of it a regular face has.
@@ -215,9 +228,9 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 
 // The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
 // of the surface, less what they would feel of the neighbours inside, is the rest. On sides of the box a body has no
-// surface: their pressure is not that of the fluid on it. Beside a body that travels a cut face goes with the body but
-// for its share, and what is between the stair and the surface is accelerated: as if the stair had the body's volume.
-// Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
+// surface: their pressure and friction are not those of the fluid on it. Beside a body that travels a cut face goes
+// with the body but for its share, and what is between the stair and the surface is accelerated: as if the stair had
+// the body's volume. Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
 PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
                                    bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
@@ -265,7 +278,9 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
         add(run->body, a, place_of_face(grid, a, i, j, k),
-            push(a, i, j, k, acceleration[faces.bodies[run->body].motion][a]));
+            push(a, i, j, k,
+                 acceleration[faces.bodies[run->body].motion][a] +
+                     fluid.kinematic_viscosity() * laplacian_of_sides(grid, a, i, j, k, velocity[a])));
   });
   std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
   PetscCall(sums.reduce(grid.comm(), total.data()));

@@ -8,9 +8,9 @@
 namespace eulastic {
 namespace {
 
-EULASTIC_CLONES void add_row(int n, double half, const double *phi, std::ptrdiff_t below, double *out) {
+EULASTIC_CLONES void add_row(const Segment &row, double half, const double *phi, std::ptrdiff_t below, double *out) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) out[i] = kernels::fma(half, phi[i] + phi[i - below], out[i]);
+  for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(half, phi[i] + phi[i - below], out[i]);
 }
 
 // visit(phase, f, component) where there is any force.
@@ -33,11 +33,14 @@ void add_species_forces(const Grid &grid, const std::vector<Phase> &phases, doub
                         FieldBlock &out) {
   for_forces(grid, phases, time, [&](const Phase &phase, double force, int a) {
     const ConstView phi = phase.fraction[0];
+    const auto add = [&](const Segment &row) {
+      if (!phase.rows.idle(row.j, row.k))
+        add_row(row, 0.5 * scale * force, phi.row(row.j, row.k), phi.stride(a), out[a].row(row.j, row.k));
+    };
     in_row_parts(grid, [&](const RowPart &part) {
-      for (const Segment &row : part.rows(grid))
-        if (!phase.rows.idle(row.j, row.k))
-          add_row(row.size(), 0.5 * scale * force, phi.row(row.j, row.k), phi.stride(a), out[a].row(row.j, row.k));
+      for (const Segment &row : part.rows(grid)) add(row);
     });
+    for (const Segment &faces : grid.open_high_faces(a)) add(faces);
   });
 }
 

@@ -277,11 +277,6 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   std::vector<char> stressed;
   for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(grid, *field);
-  for (int d = 0; work.slope && d < grid.dimension(); ++d)  // bodies do not come to open sides
-    for (const Segment &face : grid.open_high_faces(d)) {
-      double *row = work.slope[d].row(face.j, face.k);
-      std::fill(row + face.i_begin, row + face.i_end, 0.0);
-    }
   std::vector<WantedGhosts> forces{{&work.rate, depth, nullptr, false}};
   if (work.slope) forces.push_back({&work.slope, depth, nullptr, false});
   if (work.slope) stressed = stressed_rows(grid, phases);

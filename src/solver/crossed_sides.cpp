@@ -24,15 +24,14 @@ BoxSides rates_of(const BoxSides &sides, double time) {
   return rates;
 }
 
-// What cannot leave whole, or stays where it is.
+// What stays where it is, or cannot be followed.
 bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_rigid(); }
 
 }  // namespace
 
-// A body leaves whole when it comes to an open side: neither its fraction nor its stress is followed through. At the
-// start it may not be there.
+// Bodies flow out through open sides, or leave whole when they come there. At the start they may not be there.
 PetscErrorCode Solver::check_sides(bool start) {
-  int found[2] = {-1, 0};  // what is held and where, whether any leave
+  int found[3] = {-1, 0, 0};  // what is held and where, whether any leave whole, whether any flow out
   PetscFunctionBeginUser;
   for (int p = 0; p < static_cast<int>(now_.phases.size()); ++p)
     for (const auto [d, high] : grid_->sides()) {
@@ -44,42 +43,59 @@ PetscErrorCode Solver::check_sides(bool start) {
       if (stops)
         found[0] = std::max(found[0], p * 6 + 2 * d + high);
       else
-        found[1] = 1;
+        found[leave_whole(now_.phases[p].material) ? 1 : 2] = 1;
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 3, MPI_INT, MPI_MAX, grid_->comm()));
   const int held = found[0];
   if (held >= 0)
     crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
                " cells of side " + "xyz"[held % 6 / 2] + (held % 2 ? "max" : "min") +
                ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
-  if (held < 0 && found[1] > 0) PetscCall(take_out_bodies());
+  if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
+  if (held < 0 && found[2] > 0 && now_.travel == 0) PetscCall(take_out_bodies(false));  // labels are new
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::take_out_bodies() {
-  std::set<int> leaves;
+// Those that leave whole, or the others of which no more is left than is beside the side.
+PetscErrorCode Solver::take_out_bodies(bool whole) {
+  std::map<int, Leaving> leaves;
   BodyOwners owners;
   std::vector<Int3> references;
+  const auto concerned = [&](const Phase &phase) { return !is_held(phase) && leave_whole(phase.material) == whole; };
+  // All ranks with cells of a body learn the last that any says of it.
+  const auto agree = [&] {
+    std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
+    PetscFunctionBeginUser;
+    for (const int body : owners.here()) here.push_back(leaves.count(body + 1) ? double(leaves[body + 1]) : 0);
+    PetscCall(owners.reduce(1, MPI_MAX, here, &owned));
+    PetscCall(owners.bring(1, owned, &here));
+    for (std::size_t n = 0; n < here.size(); ++n)
+      if (here[n] > 0) leaves[owners.here()[n] + 1] = static_cast<Leaving>(static_cast<int>(here[n]));
+    PetscFunctionReturn(0);
+  };
   PetscFunctionBeginUser;
   for (Phase &phase : now_.phases) {
-    if (is_held(phase)) continue;
-    PetscCall(carry_labels(*grid_, *exchange_, &phase));
+    if (!concerned(phase)) continue;
+    if (whole) PetscCall(carry_labels(*grid_, *exchange_, &phase));
     for (const auto [d, high] : grid_->sides())
-      if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, &phase, &leaves);
+      if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, whole, &phase, &leaves);
   }
   PetscCall(bodies_.connect(*grid_, now_.phases, {}, &owners, &references));
-  std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
-  for (const int body : owners.here()) here.push_back(double(leaves.count(body + 1)));
-  PetscCall(owners.reduce(1, MPI_MAX, here, &owned));
-  PetscCall(owners.bring(1, owned, &here));
-  for (std::size_t n = 0; n < here.size(); ++n)
-    if (here[n] > 0) leaves.insert(owners.here()[n] + 1);
+  PetscCall(agree());
+  if (!whole) {
+    for (const Phase &phase : now_.phases)
+      if (concerned(phase)) mark_staying(*grid_, free_layers, phase, &leaves);
+    PetscCall(agree());
+    int any = std::any_of(leaves.begin(), leaves.end(), [](const auto &of) { return of.second == Leaving::leaves; });
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid_->comm()));
+    if (!any) PetscFunctionReturn(0);
+  }
   for (Phase &phase : now_.phases) {
-    if (is_held(phase)) continue;
+    if (!concerned(phase)) continue;
     take_out(*grid_, leaves, &phase);
     PetscCall(settle(phase));
   }
-  if (membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
+  if (whole && membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
   PetscFunctionReturn(0);
 }
 

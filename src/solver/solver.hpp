@@ -159,7 +159,7 @@ private:
   PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides(bool start);
-  PetscErrorCode take_out_bodies();
+  PetscErrorCode take_out_bodies(bool whole);
   PetscErrorCode feed_bodies();
   PetscErrorCode find_responses();
   /// Volume that leaves through loaded sides per time.

@@ -49,7 +49,8 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
        {"-a_shape cylinder -a_radius .2 -a_axis z -a_angular_velocity 1,0,0", {"-a_angular_velocity", "accepted:"}},
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0", {"-a_angular_velocity", "accepted:"}},
-       {"-a_shape slab -a_interval 0,.1 -a_axis y -a_velocity 0,1,0", {"-a_velocity", "accepted:"}},
+       {"-a_shape slab -a_interval .3,.5 -a_axis y -a_velocity 0,1,0 -boundary_y wall",
+        {"-a_velocity", "has no way out"}},
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
         {"-a_velocity", "sides of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");

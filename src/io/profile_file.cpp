@@ -1,0 +1,56 @@
+#include "io/profile_file.hpp"
+
+#include "io/hdf5_handle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr char dataset_name[] = "velocity";
+
+template <class Numbers>
+std::string listed(const Numbers &numbers) {
+  std::string text;
+  for (const auto n : numbers) text += (text.empty() ? "(" : ", ") + std::to_string(n);
+  return text.empty() ? "()" : text + ")";
+}
+
+}  // namespace
+
+bool is_hdf5(const std::string &bytes) { return bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") == 0; }
+
+std::string read_profile_file(const std::string &path, int slow, int fast, int component, double sign,
+                              std::vector<double> *values) {
+  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
+  const Hdf5FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (!file) return path + " is damaged or truncated: HDF5 cannot open it";
+  const Hdf5Dataset dataset(H5Dopen2(file.get(), dataset_name, H5P_DEFAULT));
+  if (!dataset) return path + " has no dataset velocity";
+  const Hdf5Type type(H5Dget_type(dataset.get()));
+  if (const H5T_class_t kind = H5Tget_class(type.get()); kind != H5T_FLOAT && kind != H5T_INTEGER)
+    return path + ": dataset velocity has no numbers";
+  const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+  std::vector<std::vector<hsize_t>> accepted{{hsize_t(slow), hsize_t(fast)}, {hsize_t(slow), hsize_t(fast), 3}};
+  if (slow == 1) {
+    accepted.push_back({hsize_t(fast)});
+    accepted.push_back({hsize_t(fast), 3});
+  }
+  const auto found = std::find(accepted.begin(), accepted.end(), shape);
+  if (found == accepted.end())
+    return path + ": dataset velocity has the shape " + listed(shape) + "; accepted: " + listed(accepted[0]) + " or " +
+           listed(accepted[1]) + ", the cells of the side, slowest first";
+  const std::size_t cells = std::size_t(slow) * std::size_t(fast);
+  const bool vector = (found - accepted.begin()) % 2 == 1;
+  std::vector<double> all(vector ? 3 * cells : cells);
+  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
+    return path + ": dataset velocity cannot be read, it is truncated or damaged";
+  if (!std::all_of(all.begin(), all.end(), [](double value) { return std::isfinite(value); }))
+    return path + ": dataset velocity has values that are not finite";
+  values->resize(cells);
+  for (std::size_t c = 0; c < cells; ++c) (*values)[c] = vector ? sign * all[3 * c + std::size_t(component)] : all[c];
+  return {};
+}
+
+}  // namespace eulastic
