@@ -15,6 +15,9 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   solver_ = solver;
   series_due_ = {config.output.series_interval, position.series_time};
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
+  const double now = solver->state().time;
+  const bool waits = position.series_time >= 0 && series_due_.at(now);  // probes do not
+  probes_time_ = waits ? now : position.series_time;
   membranes_ = std::any_of(config.species.begin(), config.species.end(),
                            [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   energy_ = position.energy;
@@ -28,8 +31,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscCall(series_.open(comm, directory + "/series.csv",
                          series_columns(crossed_sides(config_.sides, *grid_), vessel_flows(config_, 0, {}, {})),
                          same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config_.samples, *grid_, directory, position.series_time < 0 ? -1 : solver_->state().time,
-                          position.profile_time));
+  PetscCall(samples_.open(config_.samples, *grid_, directory, probes_time_, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
@@ -94,25 +96,23 @@ PetscErrorCode Outputs::write_due(bool last) {
     VerbScope scope(Verb::write);
     PetscCall(write_row());
   }
-  if (last && waits_) series_due_.last_time = series_time_before_;  // it is written now
+  const bool waited = last && waits_;
+  if (waited) series_due_.last_time = series_time_before_;  // it is written now
   const double series_time_before = series_due_.last_time;
   const bool series = now(&series_due_), snapshot = now(&snapshot_due_);
-  const bool samples = samples_.due(state.time, series, last);
+  const bool probes = series && !waited, samples = samples_.due(state.time, probes, last);
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   const std::vector<Phase> *phases = nullptr;
   if (samples) {
     PetscCall(solver_->phases_now(&phases));
-    PetscCall(samples_.write(state.time, series, last, {state.velocity, state.pressure, *phases}));
+    PetscCall(samples_.write(state.time, probes, last, {state.velocity, state.pressure, *phases}));
   }
   if (series && (last || !solver_->is_behind())) {
     PetscCall(write_row_now());
   } else if (series) {
-    row_ = {};
-    PetscCall(solver_->look_behind([this] { return look(&row_); }));
-    waits_ = true;
-    series_time_before_ = series_time_before;
+    PetscCall(await_row(series_time_before));
   }
   if (snapshot) PetscCall(snapshots_->write(config_, solver_));
   PetscFunctionReturn(0);

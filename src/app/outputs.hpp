@@ -41,6 +41,8 @@ public:
   /// row of series.csv waits where phases are behind, but for the last one.
   PetscErrorCode write_due(bool last);
   bool row_waits() const { return waits_; }
+  /// After a restart: the row of the checkpoint waits again, if it did.
+  PetscErrorCode resume_row();
   /// In the middle of the next step, of dt: the row that waits becomes what lies between that and the last middle; the
   /// next write_due() writes it.
   PetscErrorCode see_middle(double dt);
@@ -78,10 +80,12 @@ private:
   PetscErrorCode look(Measured *measured);
   PetscErrorCode look_at_energy(const Measured &measured, Row *row);
   PetscErrorCode look(Row *row);
+  PetscErrorCode await_row(double time_before);
   PetscErrorCode write_row();
   PetscErrorCode write_row_now();
 
   Config config_;
+  double probes_time_ = -1;  ///< until which those of a run that goes on stay
   bool membranes_ = false;
   const Grid *grid_ = nullptr;
   Solver *solver_ = nullptr;

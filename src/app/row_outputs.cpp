@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace eulastic {
 
@@ -74,6 +75,23 @@ PetscErrorCode Outputs::look(Row *row) {
   PetscFunctionBeginUser;
   PetscCall(look(&row->measured));
   PetscCall(look_at_energy(row->measured, row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::await_row(double time_before) {
+  PetscFunctionBeginUser;
+  row_ = {};
+  PetscCall(solver_->look_behind([this] { return look(&row_); }));
+  waits_ = true;
+  series_time_before_ = time_before;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::resume_row() {
+  PetscFunctionBeginUser;
+  const double time = solver_->state().time;
+  if (!series_due_.at(time) || !solver_->is_behind()) PetscFunctionReturn(0);
+  PetscCall(await_row(std::exchange(series_due_.last_time, time)));
   PetscFunctionReturn(0);
 }
 

@@ -256,7 +256,7 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
     PetscCall(time_thrown_away(grid.comm(), path, run->solver.state().time, &thrown_away));
   else
     PetscCall(open_outputs(run));
-  PetscCall(run->outputs.write_due(false));  // after a restart: the row that waited
+  PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
   (void)run->outputs.take_row();
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));

@@ -87,6 +87,24 @@ class SameBits(Restart):
                          (self.room / "whole/snapshots.xdmf").read_text())
         self.assertNotIn("-restart", (self.room / "run/options.txt").read_text())
 
+    def test_rows_that_wait_and_probes_that_do_not(self):
+        """A row is written after the next step: one that waits when a checkpoint is made is that of the whole run too, and
+        probes of its time are there once."""
+        for interval in (1e-9, .11):
+            options = [*FLAT[:-2], "-series_interval", interval, "-probe_points", "1.1,2,0:3,1.5,0"]
+            self.run_case("whole", *options, "-time_steps_max", 9)
+            self.run_case("run", *options, "-time_steps_max", 4)
+            self.run_case("run", *options, "-time_steps_max", 6, "-restart", "run", "-snapshot_interval", ".05")
+            self.run_case("run", *options, "-time_steps_max", 9, "-restart", "run", "-snapshot_interval", "0")
+            self.assertEqual(self.series("run"), self.series("whole"))
+            rows = lambda name: (self.room / name / "probes.csv").read_text().splitlines()
+            self.assertEqual([row for row in rows("run") if row in rows("whole")], rows("whole"))
+            self.assertEqual(len(set(rows("run"))), len(rows("run")))
+            if interval < 1e-3:
+                self.assertEqual(rows("run"), rows("whole"))
+            for name in "whole", "run":
+                shutil.rmtree(self.room / name)
+
     def test_looking_and_keeping_do_not_touch_the_run(self):
         for n, case in enumerate((FLAT, SOLID)):
             self.run_case(f"plain{n}", *case, "-time_steps_max", 15)
