@@ -99,7 +99,9 @@ TEST(GhostPieces, HoldAllThatIsNear) {
         long sums[2] = {found.needed, found.left};
         MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
         EXPECT_GT(sums[0], 0);
-        if (s.rows.near()) EXPECT_GT(sums[1], 0) << "all came";
+        if (s.rows.near()) {
+          EXPECT_GT(sums[1], 0) << "all came";
+        }
       }
     }
 }

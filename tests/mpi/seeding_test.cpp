@@ -93,7 +93,9 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
                                         [](const NumberedPlace &one, int index) { return one.index < index; });
     const bool is_there = found != near.known.end() && found->index == place.index;
     EXPECT_TRUE(!here || is_there);
-    if (is_there) EXPECT_EQ(found->centre, place.centre);
+    if (is_there) {
+      EXPECT_EQ(found->centre, place.centre);
+    }
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UNSIGNED_LONG, MPI_SUM, PETSC_COMM_WORLD);
   EXPECT_EQ(sums[0], 125000u);
