@@ -25,7 +25,7 @@ class Performance(WithFolder):
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
                                  "cost_of_bodies", "small_body", "memory", "crowd", "time_steps", "capsules",
-                                 "kinds_of_cells", "race"})
+                                 "kinds_of_cells", "race", "rigid_tubes", "cost_of_output"})
 
     def test_error_in_time(self):
         steps = load("studies/performance/time_steps")
@@ -44,6 +44,18 @@ class Performance(WithFolder):
         off = [float(percent) for percent in re.findall(r"\| 4 \| ([.\d]+) % \| - \|", made)]
         self.assertEqual(len(off), 3)
         self.assertLess(max(off), 8)  # 2.4, 6.2, 5.5 at 4 cells per radius
+
+    def test_rigid_tubes(self):
+        made = start(SCRIPTS / "studies/performance/rigid_tubes", "--quick", "--output", self.folder).stdout
+        rows = re.findall(r"\| (rigid|elastic)[^|]* \| [.\d]+ \| ([-+.\d]+) % \| (\d+) \|", made)
+        self.assertEqual([row[0] for row in rows], ["rigid"] + ["elastic"] * 3, made)
+        self.assertLess(abs(float(rows[0][1])), 3)
+        self.assertTrue(all(int(row[2]) > int(rows[0][2]) for row in rows[1:]), "what is stiff takes more steps")
+
+    def test_cost_of_output(self):
+        made = start(SCRIPTS / "studies/performance/cost_of_output", "--quick", "--output", self.folder).stdout
+        step = float(re.search(r"\| channel_rbc \| [^|]* \| (\d+) \| ([-.\d]+) \| ([-.\d]+) \|", made)[1])
+        self.assertGreater(step, 0)
 
     def test_race(self):
         done = start(SCRIPTS / "studies/performance/race", "--quick", "--output", self.folder)
