@@ -51,7 +51,6 @@ GROW_WITH_BODIES = {
     ("Main Stage", "", "Allreduce"): (40, 48),
     ("Main Stage", "", "Barrier"): (None, 0),
     ("Output", "", "Allreduce"): (40, 48),
-    ("Output", "EulSums", "Allreduce"): (4352, 5440),
     ("Setup", "EulContact", "Allreduce"): (None, 12),
     ("Setup", "EulContact", "Barrier"): (None, 0),
     ("Step", "", "Allreduce"): (40, 48),
