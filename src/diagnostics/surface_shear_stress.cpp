@@ -219,7 +219,7 @@ void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field
     for (int a = 0; a < dimension; ++a)
       for (int b = a; b < dimension; ++b) {
         Fit fit;
-        cells.for_places(at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+        cells.for_places(a == b ? at_centre : at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
           const double t[] = {1, r[0], r[1], r[2]};
           fit.add(t, dimension + 1, 1, known.at(a, b, place));
         });
