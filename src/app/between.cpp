@@ -28,15 +28,6 @@ struct Between {
     (*this)(flow.viscous_dissipation, other.viscous_dissipation);
     (*this)(flow.phase_volume, other.phase_volume);
   }
-  void operator()(RigidLoad &load, const RigidLoad &other) const {
-    (*this)(load.force, other.force);
-    (*this)(load.torque, other.torque);
-    (*this)(load.power, other.power);
-  }
-  void operator()(SurfaceLoad &load, const SurfaceLoad &other) const {
-    (*this)(load.force, other.force);
-    (*this)(load.torque, other.torque);
-  }
   void operator()(BodyMeasure &body, const BodyMeasure &other) const {
     (*this)(body.volume, other.volume);
     (*this)(body.centroid, other.centroid);
@@ -76,8 +67,6 @@ void go_between(const Measured &other, double share, Measured *measured) {
   between(measured->flow, other.flow);
   between(measured->surface.energy, other.surface.energy);
   between(measured->surface.power, other.surface.power);
-  between(measured->loads, other.loads);
-  between(measured->surface_loads, other.surface_loads);
   between(measured->bodies, other.bodies);
   between(measured->surfaces, other.surfaces);
   if (linear > 0)  // together they have that of the flow

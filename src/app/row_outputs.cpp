@@ -21,7 +21,8 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const Real3 &f = fluid.body_force.force;
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
-  if (m.time != state.time || viscosity)  // of this velocity they are known
+  const bool again = m.time == state.time;  // with the same velocity and pressure
+  if (!again || viscosity)
     PetscCall(measure_flow(
         *grid_, state.velocity,
         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
@@ -29,8 +30,9 @@ PetscErrorCode Outputs::look(Measured *measured) {
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
-  if (solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
-  PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
+  if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
+  if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
   // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
   constexpr double noise = 1e-5;  // of U/h
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
