@@ -113,6 +113,59 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
   first_.push_back(cells_.size());
 }
 
+PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
+  PetscFunctionBeginUser;
+  WorkSpace::Lease taken;
+  PetscCall(work_->take("known pressure", 2, &taken));
+  FieldBlock known = taken.part(0, 1), next = taken.part(1, 1);
+  for (FieldBlock *block : {&known, &next}) block->fill(0, 1);
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
+      const double *open = cells_[c].open;
+      if (std::all_of(open, open + 2 * grid_->dimension(), [](double part) { return part == 0; }))
+        known[0](cells_[c].i, row.j, row.k) = next[0](cells_[c].i, row.j, row.k) = 0;
+    }
+    ++at;
+  }
+  PetscCall(extend_layer(known, next, pressure));
+  PetscCall(extend_layer(next, known, pressure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_->update(known, 1));
+  PetscCall(exchange_->update(pressure, 1));
+  std::size_t at = 0;
+  const View p = pressure[0];
+  for (const Segment &row : grid_->rows()) {
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
+      const Int3 cell{cells_[c].i, row.j, row.k};
+      const double *is_known = &known[0](cell[0], cell[1], cell[2]);
+      double *value = &p(cell[0], cell[1], cell[2]);
+      if (*is_known != 0) continue;
+      double sum = 0, count = 0;
+      for (int d = 0; d < grid_->dimension(); ++d) {
+        double pair[2] = {};
+        for (int high = 0; high < 2; ++high) {
+          const std::ptrdiff_t step = high ? p.stride(d) : -p.stride(d);
+          const int global = grid_->layout().begin[d] + cell[d] + (high ? 1 : -1);
+          if ((grid_->is_wall(d) && (global < 0 || global >= grid_->cells()[d])) || is_known[step] == 0) continue;
+          pair[high] = value[step];
+          ++count;
+        }
+        sum += pair[0] + pair[1];
+      }
+      if (count == 0) continue;
+      *value = sum / count;
+      next[0](cell[0], cell[1], cell[2]) = 1;
+    }
+    ++at;
+  }
+  PetscFunctionReturn(0);
+}
+
 // dt div(open grad q); q has a layer of ghosts.
 void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) const {
   in_row_parts(*grid_, [&](const RowPart &part) {

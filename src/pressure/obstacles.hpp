@@ -23,6 +23,9 @@ public:
                  int memory, std::unique_ptr<PressureSolver> other);
   /// The faces have changed: bodies travel.
   void follow(const RigidFaces &faces);
+  /// Cells whose faces are all closed get what the pressure around them is, two layers deep: nothing corrects it there,
+  /// and where a body moves away it is what the fluid begins with. All of a ghost layer. Collective.
+  PetscErrorCode extend(FieldBlock &pressure) const;
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }
@@ -37,6 +40,7 @@ private:
     int i;
     double open[6];
   };
+  PetscErrorCode extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const;
   void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
   PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,

@@ -69,8 +69,8 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
   const bool travel = rigid_->travel();
   FieldBlock none, no_pressure;
+  if (rigid_->faces().moves) fluid.inertia = false;  // nothing passes their surface, but much the faces around them
   if (travel) {
-    fluid.inertia = false;
     no_pressure = FieldBlock(*grid_, 1);
     PetscCall(rigid_->place(now_.time, now_.time));
   }
