@@ -34,19 +34,44 @@ Interval reach(const Oscillation &factor, double end) {
   return {middle - amplitude, middle + amplitude};
 }
 
-std::string check_path(const Config &config, const SpeciesSpec &spec, const BodyPlace &place, int d) {
-  const double extent = Surface(spec, dimension_of(config)).support(rotation(place.orientation)[d]);
-  if (config.grid.boundary[d] != Boundary::wall || !std::isfinite(extent) || spec.motion.velocity[d] == 0) return {};
+// How far it reaches from its centre along d, however far it has turned.
+double largest_extent(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place,
+                      int d) {
+  const int looks = spec.turns(dimension_of(config)) ? 360 : 0;  // over a turn at most: within 4e-5 of it
+  const Interval way = reach(spec.motion.of_rotation, config.time.end);
+  const Real3 &w = spec.motion.angular_velocity;
+  const double once = 2 * M_PI / std::hypot(w[0], w[1], w[2]), high = std::min(way.high, way.low + once);
+  double extent = 0;
+  for (int n = 0; n <= looks; ++n) {
+    const double gone = looks > 0 ? way.low + (high - way.low) * n / looks : 0;
+    const Rotation R = rotation(turned(place.orientation, {w[0] * gone, w[1] * gone, w[2] * gone}));
+    extent = std::max(extent, surface.support(R[d]));
+  }
+  return extent;
+}
+
+std::string check_path(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place,
+                       int d) {
+  const bool turns = spec.turns(dimension_of(config));
   const double V = spec.motion.velocity[d], length = config.grid.length[d];
+  if (V == 0 && !turns) return {};
+  const double extent = largest_extent(config, spec, surface, place, d);
+  if (!std::isfinite(extent)) return {};
+  if (config.grid.boundary[d] != Boundary::wall) {
+    if (2 * extent < length) return {};
+    return "-" + spec.name + "_" + (turns ? "angular_velocity" : "velocity") + ": the body reaches " + to_text(extent) +
+           " from its centre along " + "xyz"[d] + ", half of the periodic box or more; accepted: below " +
+           to_text(length / 2);
+  }
   const double margin = free_cells * length / config.grid.cells[d];
   const Interval way = reach(spec.motion.of_velocity, config.time.end);
   const double low = place.centre[d] + std::min(V * way.low, V * way.high) - extent;
   const double high = place.centre[d] + std::max(V * way.low, V * way.high) + extent;
   if (low >= margin && high <= length - margin) return {};
   const bool below = low < margin;
-  return "-" + spec.name + "_velocity: carries a body to " + "xyz"[d] + " = " + to_text(below ? low : high) +
-         "; accepted: a path between " + to_text(margin) + " and " + to_text(length - margin) +
-         ", two cells from the sides";
+  return "-" + spec.name + (V == 0 ? "_angular_velocity: turns" : "_velocity: carries") + " a body to " + "xyz"[d] +
+         " = " + to_text(below ? low : high) + "; accepted: a path between " + to_text(margin) + " and " +
+         to_text(length - margin) + ", two cells from the sides";
 }
 
 // What is between two bodies at a time; infinite of shapes of which it is not known here.
@@ -94,21 +119,29 @@ std::string check_meetings(const Config &config, std::size_t which) {
 
 }  // namespace
 
+std::string check_path(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place) {
+  for (int d = 0; d < dimension_of(config); ++d)
+    if (std::string wrong = check_path(config, spec, surface, place, d); !wrong.empty()) return wrong;
+  return {};
+}
+
 std::string check_paths(const Config &config) {
   const int dimension = dimension_of(config);
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &spec = config.species[s];
     if (!spec.travels(dimension)) continue;
-    const std::string option = "-" + spec.name + "_velocity: a body that travels through the grid ";
+    const std::string option = "-" + spec.name + (spec.turns(dimension) ? "_angular_velocity" : "_velocity") +
+                               ": a body that travels through the grid, or turns there, ";
     if (!config.method.staggered())
       return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
       return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
     if (Feeders::exist(config.sides))
       return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
+    if (spec.shape == Shape::voxels) continue;
+    const Surface surface(spec, dimension);
     for (const BodyPlace &place : config.places[s].known)
-      for (int d = 0; d < dimension; ++d)
-        if (const std::string wrong = check_path(config, spec, place, d); !wrong.empty()) return wrong;
+      if (const std::string wrong = check_path(config, spec, surface, place); !wrong.empty()) return wrong;
     if (const std::string wrong = check_meetings(config, s); !wrong.empty()) return wrong;
   }
   return {};

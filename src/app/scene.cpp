@@ -2,6 +2,7 @@
 
 #include "app/initial_state.hpp"
 #include "app/openings.hpp"
+#include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "base/events.hpp"
 #include "bodies/contact.hpp"
@@ -65,7 +66,13 @@ PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver
     PetscCall(file.read_phase(species, next_label, &phase, &placed));
     phase.separate = config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
     PetscCall(separate_places(grid, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
-    if (species.law == Law::rigid) PetscCall(rigid->add(species, config.places[s], next_label, &phase));
+    if (species.law == Law::rigid) {
+      std::string wrong;
+      PetscCall(rigid->add(species, config.places[s], next_label, &phase, &wrong));
+      if (wrong.empty() && species.shape == Shape::voxels && species.travels(grid.dimension()))
+        wrong = check_path(config, species, *rigid->newest_surface(), {species.centre, {}});
+      PetscCall(fail_together(grid.comm(), wrong));
+    }
     next_label += placed.count;
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));

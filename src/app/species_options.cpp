@@ -95,7 +95,8 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
   rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
   rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
-            "angular velocity of a rigid sphere, or of a cylinder about its axis");
+            "angular velocity W cos(frequency t + phase) of a rigid body about its centre; a cylinder: about its "
+            "axis");
   rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time",
             "angular frequency");
   rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
@@ -183,11 +184,14 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   rows.choice("placement", spec.placement, placement_names,
               "one body, a list of bodies, a lattice that fills the box, or random without overlap");
   Option &centre =
-      rows.real("centre", spec.centre, any_number, "length", "centre of the body, of the lumen, of its throat");
+      rows.real("centre", spec.centre, any_number, "length",
+                "centre of the body, of the lumen, of its throat; rigid voxels: what they turn and have their torque "
+                "about");
   centre.default_note = "centre of the box";
-  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab, voxels and state";
+  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab, state and soft voxels";
   centre.applies = [&spec] {
-    return spec.placement == Placement::one && spec.shape != Shape::slab && spec.shape < Shape::voxels;
+    const bool placed = spec.shape != Shape::slab && spec.shape < Shape::voxels;
+    return spec.placement == Placement::one && (placed || (spec.shape == Shape::voxels && spec.law == Law::rigid));
   };
   Option &positions = rows.path("positions", spec.positions_file, "CSV file with the bodies");
   positions.required = positions.is_input = true;

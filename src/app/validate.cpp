@@ -131,7 +131,7 @@ bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
   return grid.boundary[slab.axis] == Boundary::periodic || (grid.open[slab.axis][0] && grid.open[slab.axis][1]);
 }
 
-// The shape must turn into itself; where it goes: check_paths().
+// Fluid must be able to pass around it; where it goes: check_paths().
 std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
   const std::string name = "-" + spec.name + "_";
@@ -142,19 +142,18 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.contact == Contact::separate)
     return no("contact", "rigid bodies go as they are told; accepted: merge, or without");
   const RigidMotion &motion = spec.motion;
-  const bool round = spec.shape == Shape::sphere || spec.shape == Shape::cylinder;
+  const bool closed = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid || spec.shape == Shape::biconcave ||
+                      spec.shape == Shape::voxels;
   for (int d = 0; d < 3; ++d) {
-    const bool axis = d == (flat(config) ? 2 : spec.axis);
-    if (motion.angular_velocity[d] != 0 && (!round || ((flat(config) || spec.shape == Shape::cylinder) && !axis)))
+    const bool along = spec.shape == Shape::cylinder && d == spec.axis;
+    if (motion.angular_velocity[d] != 0 && !(flat(config) && d != 2 ? false : closed || along))
       return no("angular_velocity",
-                "would turn the shape into another; accepted: any axis of a sphere, the axis of a cylinder, z in "
-                "2-D, else 0,0,0");
+                "would turn the body out of the box; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
+                "that of a cylinder, z alone in 2-D, else 0,0,0");
     if (motion.velocity[d] == 0) continue;
     if (flat(config) && d == 2 && spec.shape != Shape::slab)
       return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
-    const bool fluid_around = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid ||
-                              spec.shape == Shape::biconcave ||
-                              (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
+    const bool fluid_around = closed || (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
     if (spec.shape == Shape::slab && d == spec.axis) {
       if (!piston_has_way_out(config, spec))
         return no("velocity",
@@ -163,7 +162,7 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
     } else if (!spec.slides(d) && !fluid_around)
       return no("velocity",
                 "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
-                "a tube, any of a slab, sphere, ellipsoid, biconcave or cylinder, else 0,0,0");
+                "a tube, any of a slab, sphere, ellipsoid, biconcave, voxels or cylinder, else 0,0,0");
     if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
                 "the body would slide into the sides of the box; accepted: 0 along a direction that is not "

@@ -33,8 +33,7 @@ void add_body(const Grid &grid, const PlacedBody &body, double name, View fracti
 
 // Body b of the species goes to *phase_of(b).
 template <class PhaseOf>
-void add_bodies(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label, PhaseOf phase_of) {
-  const Surface surface(spec, grid.dimension());
+void add_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, PhaseOf phase_of) {
   for (const NumberedPlace &place : places.known) {
     if (!is_near(grid, grid.rank(), surface, place)) continue;
     Phase *phase = phase_of(place.index);
@@ -101,6 +100,12 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &place
 
 }  // namespace
 
+void fill_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, Phase *phase) {
+  VerbScope scope(Verb::bodies);
+  phase->empty(grid, true);
+  add_bodies(grid, surface, places, first_label, [phase](int) { return phase; });
+}
+
 void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
   phase->tensor.field = tensor_at_rest(grid);
   if (!phase->material.carries_tensor()) return;
@@ -120,8 +125,7 @@ PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const Place
   VerbScope scope(Verb::bodies);
   phase->species = spec.name;
   phase->material = spec.material();
-  phase->empty(grid, true);
-  add_bodies(grid, spec, places, first_label, [phase](int) { return phase; });
+  fill_bodies(grid, Surface(spec, grid.dimension()), places, first_label, phase);
   stretch_phase(grid, spec, phase);
   turn_stretch(grid, spec, places, first_label, [phase](int) { return phase; });
   PetscFunctionReturn(0);
@@ -134,7 +138,7 @@ void refill_phases(const Grid &grid, const SpeciesSpec &spec, const Places &plac
     const auto found = colour.find(b);
     return &(*phases)[found == colour.end() ? 0 : found->second];
   };
-  add_bodies(grid, spec, places, first_label, phase_of);
+  add_bodies(grid, Surface(spec, grid.dimension()), places, first_label, phase_of);
   for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
   turn_stretch(grid, spec, places, first_label, phase_of);
 }

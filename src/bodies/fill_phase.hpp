@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/placement.hpp"
+#include "bodies/shapes.hpp"
 #include "field/phase.hpp"
 
 #include <map>
@@ -15,6 +16,9 @@ namespace eulastic {
 /// else 0.
 PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase);
+
+/// Of bodies that carry no B: the fraction and the label.
+void fill_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, Phase *phase);
 
 /// Fills phi, B and label of phases that fill_phase() has made anew: body b goes to phases[colour[b]], or to the
 /// first.

@@ -21,52 +21,49 @@ int RigidBodies::image_of(int body, const Int3 &shift) {
 
 RigidBodies::RigidBodies(const Grid &grid, GhostExchange &exchange) : grid_(grid), exchange_(exchange) {}
 
-PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase) {
+PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase,
+                                std::string *wrong) {
   PetscFunctionBeginUser;
   const int dimension = grid_.dimension(), motion = static_cast<int>(faces_.motions.size());
   if (!exist())
     for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(grid_, 1);
   faces_.motions.push_back(spec.motion);
   faces_.motions.back().travelling = spec.travelling(dimension);
+  faces_.motions.back().turning = spec.turns(dimension);
   faces_.moves = faces_.moves || spec.motion.moves();
   faces_.travels = faces_.travels || faces_.motions.back().travels();
-  species_.push_back({spec, places, first_label});
-  const bool file = spec.shape == Shape::voxels || spec.shape == Shape::state;
-  const auto surface = file ? nullptr : std::make_shared<const Surface>(spec, dimension);
-  if (file) {
+  const bool travels = faces_.motions.back().travels(), turns = spec.turns(dimension),
+             file = spec.shape == Shape::voxels || spec.shape == Shape::state;
+  std::shared_ptr<const Surface> surface;
+  RigidMass mass;
+  if (file && travels) {
+    PetscCall(map_file(spec, *phase, &surface, &mass, wrong));
+    if (!wrong->empty()) PetscFunctionReturn(0);
+  } else if (file) {
     PetscCall(exchange_.update(phase->fraction, 1));
     fill_wall_ghosts_even(grid_, at_centre, phase->fraction[0], 1);
+  } else {
+    surface = std::make_shared<const Surface>(spec, dimension);
   }
-  const double volume = faces_.motions.back().travels() ? volume_in_box(spec, grid_.spec()) : 0;
-  const std::size_t count = file ? 1 : places.known.size();
-  for (std::size_t b = 0; b < count; ++b) {
+  if (turns && !file)
+    mass = moments(*surface, dimension);
+  else if (travels && !file)
+    mass.volume = volume_in_box(spec, grid_.spec());
+  species_.push_back({spec, file ? Places{{spec.centre, {}}} : places, first_label, surface, mass});
+  for (const NumberedPlace &place : species_.back().places.known) {
     const int index = faces_.count++;
-    for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}, volume});
-    sources_.push_back({surface, nullptr, file ? NumberedPlace{} : places.known[b]});
-    put(index, sources_.back().start);
-    for (int a = 0; a < dimension; ++a) {
+    for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}});
+    faces_.masses.push_back(mass);
+    sources_.push_back({surface, nullptr, nullptr, place});
+    put(index, place);
+    for (int a = 0; a < dimension && !travels; ++a) {
       if (file)
         mark_file(a, phase->fraction[0], index);
-      else if (!faces_.motions.back().travels())
+      else
         mark(a, index);
     }
   }
   PetscFunctionReturn(0);
-}
-
-void RigidBodies::put(int index, const BodyPlace &place) {
-  Source &source = sources_[index];
-  Real3 centre{};
-  if (source.surface) {
-    source.body = std::make_unique<PlacedBody>(*source.surface, grid_.spec(), place);
-    centre = source.body->centre();
-  }
-  for (int image = 0; image < images; ++image) {
-    const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-    Real3 &there = faces_.bodies[images * index + image].centre;
-    there = centre;
-    for (int d = 0; d < grid_.dimension(); ++d) there[d] -= shift[d] * grid_.cells()[d];
-  }
 }
 
 // visit(mark, image, place) for the owned faces that a body may touch.
@@ -145,11 +142,12 @@ void RigidBodies::mark_file(int a, ConstView phi, int index) {
 // Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.
 double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
                              double level_inside) const {
-  const PlacedBody *body = sources_[image / images].body.get();
+  const Source &source = sources_[image / images];
+  const PlacedBody *body = source.before ? source.before.get() : source.body.get();
   if (!body) return std::max(shortest, level_outside / (level_outside - level_inside));
   const Real3 &centre = faces_.bodies[image].centre, &own = body->centre();
-  const Real3 &ahead = ahead_[faces_.bodies[image].motion];
-  double low = 0, high = ahead == Real3{} ? 1 : 2;
+  const Real3 &ahead = faces_.ahead[faces_.bodies[image].motion];
+  double low = 0, high = ahead == Real3{} && !source.before ? 1 : 2;
   for (int step = 0; step < 48; ++step) {
     const double middle = 0.5 * (low + high);
     Real3 place{};
@@ -193,7 +191,7 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
         cut.body = body;
         cut.link[link] /= part;
         here[d] += one * part;
-        for (int e = 0; e < grid_.dimension(); ++e) here[e] += ahead_[faces_.bodies[body].motion][e];
+        for (int e = 0; e < grid_.dimension(); ++e) here[e] += faces_.ahead[faces_.bodies[body].motion][e];
         cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, grid_.spacing(), 0, 1);
       }
       diagonal += cut.link[link];

@@ -9,14 +9,17 @@
 
 namespace eulastic {
 
-/// Where the surface crosses a link is found from the shape itself; of bodies from files from phi, interpolated, = 1/2.
-/// The place of what travels is a function of time alone: nothing of it needs to be saved.
+/// Where the surface crosses a link is found from the shape itself; of bodies from files that stay from phi,
+/// interpolated, = 1/2, of those that travel from a LevelMap of it. The place of what travels is a function of time
+/// alone: nothing of it needs to be saved.
 class RigidBodies {
 public:
   RigidBodies(const Grid &grid, GhostExchange &exchange);
   /// Owned cells of `phase` are set, and all `places` are known. Collective. Bodies get their indices as they come;
-  /// `first_label`: of the first.
-  PetscErrorCode add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase);
+  /// `first_label`: of the first. `wrong`: one line on a body from a file that cannot travel, or nothing.
+  PetscErrorCode add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase, std::string *wrong);
+  /// Of the bodies added last.
+  const Surface *newest_surface() const { return species_.back().surface.get(); }
   bool exist() const { return faces_.count > 0; }
   bool travel() const { return faces_.travels; }
   /// The faces inside at a time, and links that end where surfaces are at another; nothing can be added afterwards.
@@ -35,16 +38,22 @@ private:
   static int image_of(int body, const Int3 &shift);
   /// A body, or all bodies of a file.
   struct Source {
-    std::shared_ptr<const Surface> surface;  ///< null: of a file
+    std::shared_ptr<const Surface> surface;  ///< null: of a file, and stays
     std::unique_ptr<PlacedBody> body;
+    std::unique_ptr<PlacedBody>
+        before;  ///< of what turns: at the time of the surfaces, but for the place of its centre
     BodyPlace start;
   };
   struct Species {
     SpeciesSpec spec;
     Places places;
     int first_label;
+    std::shared_ptr<const Surface> surface;
+    RigidMass mass;  ///< of a body that turns, in its own coordinates
   };
-  BodyPlace place_of(const BodyPlace &start, const Real3 &shift) const;
+  PetscErrorCode map_file(const SpeciesSpec &spec, const Phase &phase, std::shared_ptr<const Surface> *surface,
+                          RigidMass *mass, std::string *wrong);
+  BodyPlace place_of(const BodyPlace &start, const RigidMotion &motion, double time) const;
   void put(int index, const BodyPlace &place);
   template <class Visit>
   void for_faces(int a, int index, const Visit &visit);
@@ -60,7 +69,6 @@ private:
   const Grid &grid_;
   GhostExchange &exchange_;
   RigidFaces faces_;
-  std::vector<Real3> ahead_;          ///< of every motion: from the time of the surfaces to that of the faces, in cells
   std::vector<Source> sources_;       ///< of every body
   std::vector<Species> species_;      ///< by motion
   std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in

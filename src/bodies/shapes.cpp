@@ -41,6 +41,34 @@ Rotation rotation(const Real3 &degrees) {
            {-y.s, y.c * x.s, y.c * x.c}}};
 }
 
+Real3 turned(const Real3 &degrees, const Real3 &angle) {
+  const double size = std::sqrt(angle[0] * angle[0] + angle[1] * angle[1] + angle[2] * angle[2]);
+  if (size == 0) return degrees;
+  const Rotation start = rotation(degrees);
+  const double c = std::cos(size), s = std::sin(size) / size, q = (1 - c) / (size * size);
+  Rotation by, R{};
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3, e = (a + 2) % 3;
+    by[a][a] = c + q * angle[a] * angle[a];
+    by[b][e] = q * angle[b] * angle[e] - s * angle[a];
+    by[e][b] = q * angle[b] * angle[e] + s * angle[a];
+  }
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) R[a][b] = by[a][0] * start[0][b] + by[a][1] * start[1][b] + by[a][2] * start[2][b];
+  const double across = std::hypot(R[0][0], R[1][0]);
+  if (across < 1e-9)  // x and z turn about the same line
+    return {std::atan2(-R[1][2], R[1][1]) * (180 / pi), R[2][0] > 0 ? -90.0 : 90.0, 0};
+  return {std::atan2(R[2][1], R[2][2]) * (180 / pi), std::atan2(-R[2][0], across) * (180 / pi),
+          std::atan2(R[1][0], R[0][0]) * (180 / pi)};
+}
+
+Surface::Surface(LevelMap map)
+    : shape_(Shape::voxels),
+      axis_(0),
+      radius_(infinity),
+      inverse_{},
+      map_(std::make_shared<const LevelMap>(std::move(map))) {}
+
 Surface::Surface(const SpeciesSpec &spec, int dimension)
     : shape_(spec.shape), axis_(spec.axis), radius_(infinity), inverse_{} {
   if (is_tube(shape_)) {
@@ -60,6 +88,7 @@ Surface::Surface(const SpeciesSpec &spec, int dimension)
 }
 
 double Surface::level(const Real3 &y) const noexcept {
+  if (map_) return map_->level(y);
   if (shape_ == Shape::biconcave) {
     // z^2 - h(r)^2/4: a polynomial, also at the rim where h has a vertical tangent; linear in q outside the rim.
     const double z = y[axis_], b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
@@ -72,6 +101,7 @@ double Surface::level(const Real3 &y) const noexcept {
 }
 
 double Surface::slope(const Real3 &y, double reach) const noexcept {
+  if (map_) return map_->slope();
   if (is_tube(shape_)) return std::hypot(1.0, depth_ * pi / throat_);
   if (shape_ != Shape::biconcave) return 1;  // |grad| <= radius_ / shortest semi-axis
   const double b = y[(axis_ + 1) % 3], c = y[(axis_ + 2) % 3];
@@ -81,6 +111,7 @@ double Surface::slope(const Real3 &y, double reach) const noexcept {
 }
 
 double Surface::support(const Real3 &n) const {
+  if (map_) return map_->support(n);
   if (is_tube(shape_)) return infinity;
   if (shape_ == Shape::biconcave) {
     const double along = std::abs(n[axis_]), across = std::sqrt(std::max(0.0, 1 - along * along));
@@ -99,6 +130,7 @@ double Surface::support(const Real3 &n) const {
 }
 
 double Surface::bounding_radius() const {
+  if (map_) return map_->bounding_radius();
   if (shape_ == Shape::biconcave) return radius_;
   if (is_tube(shape_)) return infinity;
   double radius = 0;

@@ -5,7 +5,10 @@
 // lumen of radius R, constricted R - (R - R_throat) (1 + cos(2 pi s/L_throat))/2 at |s| < L_throat/2 along the axis.
 #pragma once
 
+#include "bodies/level_map.hpp"
 #include "bodies/species.hpp"
+
+#include <memory>
 
 namespace eulastic {
 
@@ -15,11 +18,14 @@ inline constexpr double red_cell_waist = 0.207161;
 using Rotation = std::array<Real3, 3>;
 /// Rotation about x, then y, then z by angles in degrees; multiples of 90 are exact.
 Rotation rotation(const Real3 &degrees);
+/// The angles of an orientation that is turned further about the direction of `angle`, by its length in rad.
+Real3 turned(const Real3 &degrees, const Real3 &angle);
 
 /// The surface of one shape in body coordinates, centred at 0. In 2-D nothing depends on z.
 class Surface {
 public:
   Surface(const SpeciesSpec &spec, int dimension);
+  explicit Surface(LevelMap map);
 
   /// Negative inside, positive outside; smooth near the surface. Not a distance: see slope().
   double level(const Real3 &y) const noexcept;
@@ -36,6 +42,7 @@ private:
   double radius_;                  ///< biconcave: half the diameter; tubes: of the lumen; else the shortest semi-axis
   Real3 inverse_;                  ///< 1 / semi-axes, 0 for an infinite one; tubes: 1 across, 0 along
   double depth_ = 0, throat_ = 1;  ///< constriction: R - R_throat, its length
+  std::shared_ptr<const LevelMap> map_;  ///< of a file, else null
 };
 
 /// Radius of the lumen of a tube at distance s from its centre along the axis.

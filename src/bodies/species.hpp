@@ -78,7 +78,14 @@ struct SpeciesSpec {
     for (int d = 0; law == Law::rigid && d < dimension; ++d) found[d] = motion.velocity[d] != 0 && !slides(d);
     return found;
   }
-  bool travels(int dimension) const { return travelling(dimension) != std::array<bool, 3>{}; }
+  /// Whether a rigid body turns in the grid, as its shape does not turn into itself.
+  bool turns(int dimension) const {
+    const Real3 &w = motion.angular_velocity;
+    const bool flat = dimension == 2, about_axis = w[(axis + 1) % 3] == 0 && w[(axis + 2) % 3] == 0;
+    const bool round = shape == Shape::sphere || ((shape == Shape::cylinder || is_tube(shape)) && about_axis);
+    return law == Law::rigid && !round && (flat ? w[2] != 0 : w != Real3{});
+  }
+  bool travels(int dimension) const { return turns(dimension) || travelling(dimension) != std::array<bool, 3>{}; }
   /// Whether a shift along d leaves the shape what it is.
   bool slides(int d) const {
     if (shape == Shape::slab) return d != axis;

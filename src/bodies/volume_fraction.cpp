@@ -131,4 +131,39 @@ double PlacedBody::fraction(const Int3 &cell) const noexcept {
   return std::ldexp(static_cast<double>(inside(from_body(cell), 0)), -fraction_bits);
 }
 
+// Exact fractions of the cells of a box around it.
+RigidMass moments(const Surface &surface, int dimension) {
+  constexpr int cells = 96;
+  GridSpec box;
+  box.cells = {1, 1, 1};
+  box.boundary = {Boundary::wall, Boundary::wall, Boundary::wall};
+  Real3 h{};
+  double volume = 1;
+  for (int d = 0; d < dimension; ++d) {
+    Real3 n{};
+    n[d] = 1;
+    box.cells[d] = cells;
+    box.length[d] = 2.1 * surface.support(n);
+    h[d] = box.length[d] / cells;
+    volume *= h[d];
+  }
+  const PlacedBody body(surface, box, {{box.length[0] / 2, box.length[1] / 2, box.length[2] / 2}, {}});
+  RigidMass sum;
+  for (int k = 0; k < box.cells[2]; ++k)
+    for (int j = 0; j < cells; ++j)
+      for (int i = 0; i < cells; ++i) {
+        const Int3 cell{i, j, k};
+        const double part = body.fraction(cell) * volume;
+        Real3 r{};
+        for (int d = 0; d < dimension; ++d) r[d] = (cell[d] + 0.5 - 0.5 * cells) * h[d];
+        sum.volume += part;
+        for (int d = 0; d < dimension; ++d) sum.second[d] += part * (r[d] * r[d] + h[d] * h[d] / 12);
+        for (int d = 0; d < 3; ++d) {
+          sum.first[d] += part * r[d];
+          sum.second[3 + d] += part * r[(d + 1) % 3] * r[(d + 2) % 3];
+        }
+      }
+  return sum;
+}
+
 }  // namespace eulastic

@@ -52,4 +52,7 @@ private:
   std::array<bool, 3> ends_{}, has_images_{};
 };
 
+/// Of a closed body, in its own coordinates.
+RigidMass moments(const Surface &surface, int dimension);
+
 }  // namespace eulastic

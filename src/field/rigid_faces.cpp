@@ -14,6 +14,10 @@ double turn_velocity(const Real3 &w, const Real3 &r, int a) {
   return w[b] * r[c] - w[c] * r[b];
 }
 
+Real3 cross(const Real3 &w, const Real3 &r) {
+  return {turn_velocity(w, r, 0), turn_velocity(w, r, 1), turn_velocity(w, r, 2)};
+}
+
 }  // namespace
 
 // sum of (neighbour - u)/(length spacing); `wall`: the velocity of the surface on links that end there.
@@ -29,12 +33,60 @@ double RigidFaces::Cut::laplacian(const double *u, const std::array<std::ptrdiff
   return sum;
 }
 
+Real3 RigidMotion::frame_velocity(const Real3 &r, double time) const {
+  Real3 v{};
+  for (int d = 0; d < 3; ++d) v[d] = travelling[d] ? velocity[d] * of_velocity.at(time) : 0;
+  if (!turning) return v;
+  const Real3 w = turned_by(of_rotation.at(time));
+  for (int d = 0; d < 3; ++d) v[d] += turn_velocity(w, r, d);
+  return v;
+}
+
+Real3 RigidMotion::acceleration(const Real3 &r, double time) const {
+  Real3 a{};
+  for (int d = 0; d < 3; ++d) a[d] = travelling[d] ? velocity[d] * of_velocity.rate(time) : 0;
+  if (!turning) return a;
+  const Real3 w = turned_by(of_rotation.at(time)), faster = cross(turned_by(of_rotation.rate(time)), r),
+              inwards = cross(w, cross(w, r));
+  for (int d = 0; d < 3; ++d) a[d] += faster[d] + inwards[d];
+  return a;
+}
+
+// Integrals of the acceleration over the body.
+Real3 RigidMass::force(const RigidMotion &motion, double time, double density) const {
+  const Real3 a = motion.acceleration({}, time), w = motion.turned_by(motion.of_rotation.at(time)),
+              faster = cross(motion.turned_by(motion.of_rotation.rate(time)), first),
+              inwards = cross(w, cross(w, first));
+  Real3 sum{};
+  for (int d = 0; d < 3; ++d) sum[d] = density * volume * a[d] + density * (faster[d] + inwards[d]);
+  return sum;
+}
+
+// With S the second moments and J = tr S - S: first x a + J dw/dt + w x J w.
+Real3 RigidMass::torque(const RigidMotion &motion, double time, double density) const {
+  const auto &[xx, yy, zz, yz, xz, xy] = second;
+  const auto inertia = [&, xx = xx, yy = yy, zz = zz, yz = yz, xz = xz, xy = xy](const Real3 &w) {
+    return Real3{(yy + zz) * w[0] - xy * w[1] - xz * w[2], (xx + zz) * w[1] - xy * w[0] - yz * w[2],
+                 (xx + yy) * w[2] - xz * w[0] - yz * w[1]};
+  };
+  const Real3 w = motion.turned_by(motion.of_rotation.at(time)), arms = cross(first, motion.acceleration({}, time)),
+              faster = inertia(motion.turned_by(motion.of_rotation.rate(time))), gyration = cross(w, inertia(w));
+  Real3 sum{};
+  for (int d = 0; d < 3; ++d) sum[d] = density * (arms[d] + faster[d] + gyration[d]);
+  return sum;
+}
+
+Real3 RigidFaces::arm(const RigidBody &body, const Real3 &place, const Real3 &spacing) {
+  Real3 r{};
+  for (int d = 0; d < 3; ++d) r[d] = (place[d] - body.centre[d]) * spacing[d];
+  return r;
+}
+
 double RigidFaces::velocity(int a, const RigidBody &body, const Real3 &place, const Real3 &spacing, double of_velocity,
                             double of_rotation) const {
   const RigidMotion &motion = motions[body.motion];
-  Real3 r{};
-  for (int d = 0; d < 3; ++d) r[d] = (place[d] - body.centre[d]) * spacing[d];
-  return motion.velocity[a] * of_velocity + turn_velocity(motion.angular_velocity, r, a) * of_rotation;
+  return motion.velocity[a] * of_velocity +
+         turn_velocity(motion.angular_velocity, arm(body, place, spacing), a) * of_rotation;
 }
 
 double RigidFaces::shortest_period() const {

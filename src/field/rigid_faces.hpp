@@ -22,27 +22,45 @@ struct Oscillation {
   double rate(double time) const { return -frequency * std::sin(frequency * time + phase); }
 };
 
-/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Its shape turns
-/// into itself: spheres may turn, cylinders and tubes about their axis; along `travelling` directions the body goes
-/// with V, along others it slides along itself.
+/// How the surface of a body moves: velocity V cos(..) + angular velocity W cos(..) x (x - centre). Along `travelling`
+/// directions the body goes with V, along others it slides along itself; `turning`: it turns with W, else its shape
+/// turns into itself, as spheres do, and cylinders and tubes about their axis.
 struct RigidMotion {
   Real3 velocity{};          ///< length / time
   Real3 angular_velocity{};  ///< rad / time
   Oscillation of_velocity, of_rotation;
   std::array<bool, 3> travelling{};
+  bool turning = false;
   bool moves() const { return velocity != Real3{} || angular_velocity != Real3{}; }
-  bool travels() const { return travelling != std::array<bool, 3>{}; }
+  /// Whether the body covers other places as time goes on.
+  bool travels() const { return turning || travelling != std::array<bool, 3>{}; }
   /// How far the body is from where it was at time 0.
   Real3 shift(double time) const {
     Real3 way{};
     for (int d = 0; d < 3; ++d) way[d] = travelling[d] ? velocity[d] * of_velocity.integral(time) : 0;
     return way;
   }
-  Real3 acceleration(double time) const {  ///< of the places that travel
-    Real3 a{};
-    for (int d = 0; d < 3; ++d) a[d] = travelling[d] ? velocity[d] * of_velocity.rate(time) : 0;
-    return a;
+  /// How far it has turned since time 0: about this direction, by its length in rad.
+  Real3 angle(double time) const { return turned_by(of_rotation.integral(time)); }
+  /// Velocity and acceleration of what travels, at r from the centre.
+  Real3 frame_velocity(const Real3 &r, double time) const;
+  Real3 acceleration(const Real3 &r, double time) const;
+  /// The angular velocity, or its rate of change, of a body that turns: 0 of others.
+  Real3 turned_by(double factor) const {
+    Real3 w{};
+    for (int d = 0; d < 3; ++d) w[d] = turning ? angular_velocity[d] * factor : 0;
+    return w;
   }
+};
+
+/// Of a body that travels, at the density 1, about its centre; in 2-D per depth.
+struct RigidMass {
+  double volume = 0;
+  Real3 first{};                   ///< integral of r
+  std::array<double, 6> second{};  ///< of r r^T: xx, yy, zz, yz, xz, xy
+  /// What its own acceleration takes, at a density.
+  Real3 force(const RigidMotion &motion, double time, double density) const;
+  Real3 torque(const RigidMotion &motion, double time, double density) const;
 };
 
 /// A body, or one of its images across periodic sides.
@@ -50,7 +68,6 @@ struct RigidBody {
   int index = 0;   ///< among all rigid bodies
   int motion = 0;  ///< index in RigidFaces::motions
   Real3 centre{};  ///< from the middle of the box, in cells
-  double volume = 0;  ///< of what travels, else 0; area in 2-D
 };
 
 class RigidFaces {
@@ -80,7 +97,9 @@ public:
 
   std::vector<RigidMotion> motions;
   std::vector<RigidBody> bodies;
-  int count = 0;  ///< of bodies, images not counted
+  std::vector<RigidMass> masses;  ///< by the index of the body
+  std::vector<Real3> ahead;       ///< of every motion: from the time of the surfaces to that of the faces, in cells
+  int count = 0;                  ///< of bodies, images not counted
   bool moves = false, travels = false;
   Real3 speed{};  ///< largest of any surface, along every direction
 
@@ -94,6 +113,8 @@ public:
   /// Component a of the velocity of a body at a face, at the times of the factors of its motion.
   double velocity(int a, const RigidBody &body, const Real3 &place, const Real3 &spacing, double of_velocity,
                   double of_rotation) const;
+  /// From the centre of a body to a place.
+  static Real3 arm(const RigidBody &body, const Real3 &place, const Real3 &spacing);
 
   double shortest_period() const;  ///< of what moves; infinite if nothing oscillates
 

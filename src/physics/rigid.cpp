@@ -71,23 +71,27 @@ Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFace
   return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
 }
 
-// dV/dt - V.grad u beside a body that travels: what a face sees of a flow that does not change about the body. Upwind
-// and half implicit: where the surface comes, u - u_s falls in a step as the distance to it does.
-double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
-                          double dt, const double *u, const Strides &s) {
-  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
-  const double middle = time + 0.5 * dt, factor = motion.of_velocity.at(middle);
+// dV/dt - V.grad u beside a body that travels, V its velocity at `place`: what a face sees of a flow that does not
+// change about the body. Upwind and half implicit: where the surface comes, u - u_s falls in a step as the distance to
+// it does.
+double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, Real3 place,
+                          double time, double dt, const double *u, const Strides &s) {
+  const RigidBody &body = faces.bodies[cut.body];
+  const RigidMotion &motion = faces.motions[body.motion];
+  const double middle = time + 0.5 * dt;
+  for (int d = 0; d < grid.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
+  const Real3 r = RigidFaces::arm(body, place, grid.spacing()), frame = motion.frame_velocity(r, middle);
   double wall[6], sum = 0, stiffness = 0;
   surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
   for (int d = 0; d < grid.dimension(); ++d) {
-    const double V = motion.travelling[d] ? motion.velocity[d] * factor : 0;
+    const double V = frame[d];
     const int link = 2 * d + (V < 0);
     const double rate = std::fabs(V) * cut.link[link] * grid.spacing()[d];
     const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
     sum += rate * (upwind - u[0]);
     stiffness += rate;
   }
-  return motion.acceleration(middle)[a] + sum / (1 + 0.5 * dt * stiffness);
+  return motion.acceleration(r, middle)[a] + sum / (1 + 0.5 * dt * stiffness);
 }
 
 }  // namespace
@@ -103,8 +107,8 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] +=
-            (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, time, dt, u + cut->i, strides(velocity[a]));
+        out[cut->i] += (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, place_of_face(grid, a, cut->i, j, k),
+                                                             time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -237,13 +241,16 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const double mass = fluid.density * grid.cell_volume();
-  std::vector<Real3> acceleration;  // of every motion
-  for (const RigidMotion &motion : faces.motions) acceleration.push_back(carried ? motion.acceleration(time) : Real3{});
   ExactSums sums(6 * faces.count);
+  const auto acceleration = [&](int body, int a, const Real3 &place) {
+    const RigidBody &b = faces.bodies[body];
+    const RigidMotion &motion = faces.motions[b.motion];
+    return carried ? motion.acceleration(RigidFaces::arm(b, place, grid.spacing()), time)[a] : 0;
+  };
   const auto add = [&](int body, int a, const Real3 &place, double push) {
     const RigidBody &b = faces.bodies[body];
-    Real3 r{}, f{};
-    for (int d = 0; d < 3; ++d) r[d] = (place[d] - b.centre[d]) * grid.spacing()[d];
+    const Real3 r = RigidFaces::arm(b, place, grid.spacing());
+    Real3 f{};
     f[a] = push;
     sums.add(6 * b.index + a, push);
     for (int d = 0; d < 3; ++d) {
@@ -266,21 +273,24 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
       if (volume == 0) continue;
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      const Real3 place = place_of_face(grid, a, cut->i, j, k);
       double of_face = volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut);
-      if (const int motion = faces.bodies[cut->body].motion; faces.motions[motion].travels()) {
+      if (faces.motions[faces.bodies[cut->body].motion].travels()) {
         const double *p = pressure[0].row(j, k) + cut->i;
         const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
-        const double lacks = rate[a](cut->i, j, k) - force[a] - acceleration[motion][a];
+        const double lacks = rate[a](cut->i, j, k) - force[a] - acceleration(cut->body, a, place);
         of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * lacks + (cut->open - cut->share) * slope);
       }
-      add(cut->body, a, place_of_face(grid, a, cut->i, j, k), of_face);
+      add(cut->body, a, place, of_face);
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        add(run->body, a, place_of_face(grid, a, i, j, k),
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) {
+        const Real3 place = place_of_face(grid, a, i, j, k);
+        add(run->body, a, place,
             push(a, i, j, k,
-                 acceleration[faces.bodies[run->body].motion][a] +
+                 acceleration(run->body, a, place) +
                      fluid.kinematic_viscosity() * laplacian_of_sides(grid, a, i, j, k, velocity[a])));
+      }
   });
   std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
   PetscCall(sums.reduce(grid.comm(), total.data()));
@@ -293,12 +303,16 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
       load.power -= total[6 * body.index + d] * motion.velocity[d] * motion.of_velocity.at(time) +
                     total[6 * body.index + 3 + d] * motion.angular_velocity[d] * motion.of_rotation.at(time);
   }
-  for (const RigidBody &body : faces.bodies)
+  for (const RigidBody &body : faces.bodies) {
+    const RigidMotion &motion = faces.motions[body.motion];
+    const RigidMass &own = faces.masses[body.index];
+    const Real3 by_force = carried ? own.force(motion, time, fluid.density) : Real3{},
+                by_torque = carried ? own.torque(motion, time, fluid.density) : Real3{};
     for (int d = 0; d < 3; ++d) {
-      const double own = fluid.density * body.volume * acceleration[body.motion][d];
-      (*loads)[body.index].force[d] = total[6 * body.index + d] + own;
-      (*loads)[body.index].torque[d] = total[6 * body.index + 3 + d];
+      (*loads)[body.index].force[d] = total[6 * body.index + d] + by_force[d];
+      (*loads)[body.index].torque[d] = total[6 * body.index + 3 + d] + by_torque[d];
     }
+  }
   PetscFunctionReturn(0);
 }
 

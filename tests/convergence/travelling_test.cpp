@@ -119,4 +119,70 @@ TEST(TravellingCylinder, IsOneAtRestInAStream) {
   EXPECT_LT(scatter[1], 0.7 * scatter[0]);
 }
 
+// An ellipse turns in a round vessel at rest; in its own frame the vessel turns the other way. In 2-D the torque is the
+// same: what the frame adds to the pressure has none. Mean over a third of a turn from the first radian on.
+struct Torque {
+  double mean, scatter;  // parts of the mean
+  double vessel;         // mean of that on the vessel
+};
+
+Torque turning(int cells, bool turns, bool file) {
+  const Real3 centre{0.503, 0.497, 0.5};
+  Scene scene;
+  GridSpec grid;
+  grid.cells = {cells, cells, 1};
+  EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, fast_solver(0.02, true)), 0);
+  SpeciesSpec paddle = rigid_body(Shape::ellipsoid, 0, centre), vessel = rigid_body(Shape::tube, 0.4, centre);
+  paddle.semi_axes = {0.25, 0.12, 1};
+  (turns ? paddle : vessel).motion.angular_velocity = {0, 0, turns ? 1. : -1.};
+  for (int d = 0; d < 2 && !turns; ++d)
+    set(scene.grid, scene.solver.state().velocity[d], at_face[d],
+        [&](double x, double y, double) { return d == 0 ? y - centre[1] : centre[0] - x; });
+  add_rigid(&scene, {paddle, vessel}, file);
+  EXPECT_EQ(scene.solver.prepare(), 0);
+  std::vector<RigidLoad> loads;
+  const int steps = 80 * cells / 32;
+  double sum = 0, squares = 0, vessels = 0;
+  int count = 0;
+  for (int n = 1; n <= steps; ++n) {
+    EXPECT_EQ(scene.run(2. * n / steps, 1), 0);
+    if (2 * n <= steps) continue;
+    EXPECT_EQ(scene.solver.rigid_loads(&loads), 0);
+    sum += loads[0].torque[2];
+    squares += loads[0].torque[2] * loads[0].torque[2];
+    vessels += loads[1].torque[2];
+    ++count;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(0., squares / count - mean * mean)) / std::fabs(mean), vessels / count};
+}
+
+TEST(TurningEllipse, IsOneAtRestInATurningVessel) {
+  double off[2], vessel[2], scatter[2];
+  for (int n = 0; n < 2; ++n) {
+    const Torque turns = turning(32 << n, true, false), rests = turning(32 << n, false, false);
+    off[n] = turns.mean / rests.mean - 1;
+    vessel[n] = -turns.vessel / rests.mean - 1;
+    scatter[n] = turns.scatter;
+  }
+  std::printf(
+      "  ellipse turning in a vessel, 3.8 and 7.7 cells in the short half axis: torque %+.2e %+.2e off, scatter %.2e "
+      "%.2e; "
+      "on the vessel %+.2e %+.2e\n",
+      off[0], off[1], scatter[0], scatter[1], vessel[0], vessel[1]);
+  EXPECT_LT(std::fabs(off[1]), 0.01);
+  EXPECT_LT(std::fabs(vessel[1]), 0.02);
+  EXPECT_LT(scatter[1], 0.02);
+}
+
+// Known by its solid fraction alone, as from a file.
+TEST(TurningEllipse, OfAFile) {
+  const Torque shape = turning(64, true, false), file = turning(64, true, true);
+  std::printf("  ellipse of a file turning, 7.7 cells in the short half axis: torque %+.2e off, on the vessel %+.2e\n",
+              file.mean / shape.mean - 1, file.vessel / shape.vessel - 1);
+  EXPECT_LT(std::fabs(file.mean / shape.mean - 1), 0.01);
+  EXPECT_LT(std::fabs(file.vessel / shape.vessel - 1), 0.01);
+  EXPECT_NE(file.mean, shape.mean);
+}
+
 }  // namespace

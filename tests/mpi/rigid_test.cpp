@@ -1,5 +1,5 @@
-// Rigid bodies that reach across ranks and sides, one of them turning, beside a soft one: the same bits on any number
-// of ranks.
+// Rigid bodies that reach across ranks and sides, one of them turning into itself or, an ellipsoid, through the grid,
+// beside a soft one: the same bits on any number of ranks.
 #include "support/rigid_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Case {
   PressureKind pressure;
   Int3 cells;
   bool bounded;  // along y
-  bool split_x = false, travels = false;
+  bool split_x = false, travels = false, turns = false, file = false;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
@@ -56,7 +56,12 @@ End run(MPI_Comm comm, const Case &c) {
   plate.axis = 1;
   plate.interval = {l[1] - 0.33, l[1] - 0.06};
   plate.motion.velocity = {0.4, 0, 0};
-  add_rigid(&scene, {rotor, plate});
+  if (c.turns) {
+    rotor.shape = Shape::ellipsoid;
+    rotor.semi_axes = {0.45, 0.25, 0.35};
+  }
+  if (c.file) rotor.centre = {0.9, 0.95, 0.5 * l[2]};  // of one piece
+  add_rigid(&scene, {rotor, plate}, c.file);
   scene.add_phase(0.5, [&](double x, double y, double z) {
     const double r = std::hypot(x - 0.5 * l[0], y - 0.5 * l[1], flat ? 0 : z - 0.5 * l[2]);
     return std::min(1.0, std::max(0.0, 0.5 + (0.35 - r) / 0.1));
@@ -90,7 +95,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RigidBodies,
                                          Case{"flat_periodic", fast, acm, {23, 21, 1}, false},
                                          Case{"split_x", fast, acm, {1030, 21, 1}, true, true},
                                          Case{"travelling", fast, acm, {18, 20, 14}, true, false, true},
-                                         Case{"travelling_flat", fast, smac, {23, 21, 1}, false, false, true}),
+                                         Case{"travelling_flat", fast, smac, {23, 21, 1}, false, false, true},
+                                         Case{"turning", fast, acm, {18, 20, 14}, true, false, false, true},
+                                         Case{"turning_file", fast, acm, {23, 21, 1}, false, false, true, true, true}),
                          [](const auto &test) { return test.param.name; });
 
 }  // namespace

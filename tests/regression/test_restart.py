@@ -53,6 +53,19 @@ class SameBits(Restart):
                                                           ".7 -bead_velocity_phase .4 -bead_angular_velocity 0,0,1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
+    def test_turning_bodies(self):
+        """An ellipse that turns as it goes, and a cross from a file that rocks."""
+        cross = numpy.zeros((1, 16, 20))
+        cross[0, 5:12, 12:15], cross[0, 7:10, 10:17] = 1, 1
+        with h5py.File(self.room / "cross.h5", "w") as file:
+            file["solid"] = cross
+        at = FLAT.index("-bead_shape")
+        case = [word.replace("cell,bead", "cell,bead,cross") for word in FLAT[:at]] + (
+            "-bead_shape ellipsoid -bead_semi_axes .4,.3,1 -bead_centre 1.6,1.5,0 -bead_law rigid -bead_velocity .05,0,0 "
+            "-bead_angular_velocity 0,0,1 -cross_shape voxels -cross_voxels cross.h5:solid -cross_law rigid "
+            "-cross_centre 3.4,2.1,0 -cross_angular_velocity 0,0,.8 -cross_angular_velocity_frequency 3").split()
+        self.check(case + FLAT[-4:], [], before=2, after=3)
+
     def test_pulled_membrane(self):
         case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law membrane -bead_surface_shear_modulus .5 "
                                                           "-bead_stretch_force .2 -bead_stretch_volume .1")

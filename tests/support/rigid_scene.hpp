@@ -9,8 +9,9 @@
 
 namespace eulastic::test {
 
-/// Adds one body of every species, all of them rigid, at its centre; before prepare().
-inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species) {
+/// Adds one body of every species, all of them rigid, at its centre; before prepare(). `file`: the first one is known
+/// by its solid fraction alone.
+inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species, bool file = false) {
   auto bodies = std::make_unique<RigidBodies>(scene->grid, scene->solver.exchange());
   int label = 1;
   for (SpeciesSpec spec : species) {
@@ -21,7 +22,10 @@ inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species) {
     EXPECT_EQ(place_bodies(spec, scene->grid.spec(), &places), "");
     Phase phase;
     EXPECT_EQ(fill_phase(scene->grid, spec, places, label, &phase), 0);
-    EXPECT_EQ(bodies->add(spec, places, label++, &phase), 0);
+    if (file && label == 1) spec.shape = Shape::voxels;
+    std::string wrong;
+    EXPECT_EQ(bodies->add(spec, places, label++, &phase, &wrong), 0);
+    EXPECT_EQ(wrong, "");
     scene->solver.state().phases.push_back(std::move(phase));
   }
   EXPECT_EQ(scene->solver.set_rigid(std::move(bodies)), 0);

@@ -21,7 +21,8 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
     EXPECT_EQ(fill_phase(scene->grid, spec, {{spec.centre, {}}}, 1, &phase), 0);
   }
   RigidBodies bodies(scene->grid, scene->solver.exchange());
-  EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase), 0);
+  std::string wrong;
+  EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase, &wrong), 0);
   EXPECT_EQ(bodies.place(0, 0), 0);
   return std::make_unique<RigidFaces>(bodies.faces());
 }
@@ -155,7 +156,8 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   for (int n = 0; n < 2; ++n) {
     ASSERT_EQ(fill_phase(scene.grid, ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
     bodies[n] = std::make_unique<RigidBodies>(scene.grid, scene.solver.exchange());
-    ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
+    std::string wrong;
+    ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n], &wrong), 0);
   }
   for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before, before - 0.1), 0);
   ASSERT_EQ(bodies[1]->place(time, time - 0.1), 0);
@@ -207,7 +209,8 @@ TEST(TravellingBodies, TouchingIsFound) {
     species->law = Law::rigid;
     Phase phase;
     ASSERT_EQ(fill_phase(scene.grid, *species, {{species->centre, {}}}, 1, &phase), 0);
-    ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase), 0);
+    std::string wrong;
+    ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase, &wrong), 0);
   }
   ASSERT_EQ(bodies.place(0.1, 0.1), 0);  // .3 apart
   EXPECT_EQ(bodies.touching(), "");
