@@ -311,9 +311,8 @@ private:
       if (const auto [count, volume] = count_and_volume(s);
           config_.species[s].material().attached || config_.species[s].law == Law::rigid)
         free -= count * volume / box;
-    const Real3 given = inflow_speed(config_.sides);
     for (int d = 0; d < dimension_ && free > 0; ++d) {
-      const double speed = 2 * given[d] / free;
+      const double speed = 2 * inflow_speed(config_.sides)[d] / free;
       scale.speed[d] = std::max(scale.speed[d], speed);
       scale.shear_rate = std::max(scale.shear_rate, 4 * speed / scale.length);
     }
@@ -321,10 +320,11 @@ private:
 
   void driven_by_bodies(FlowScale &scale) const {
     for (const SpeciesSpec &spec : config_.species) {
-      const Real3 &v = spec.motion.velocity, &w = spec.motion.angular_velocity;
+      const Real3 &v = spec.motion.velocity, &w = spec.motion.angular_velocity, &l = config_.grid.length;
+      double reach = spec.shape == Shape::voxels ? std::max(l[0], l[1]) / 2 : spec.radius;
+      for (int d = 0; d < dimension_; ++d) reach = std::max(reach, spec.semi_axes[d]);
       for (int d = 0; d < dimension_; ++d)
-        scale.speed[d] =
-            std::max(scale.speed[d], std::fabs(v[d]) + spec.radius * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
+        scale.speed[d] = std::max(scale.speed[d], std::fabs(v[d]) + reach * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
       scale.shear_rate =
           std::max({scale.shear_rate, std::hypot(w[0], w[1], w[2]), std::hypot(v[0], v[1], v[2]) / scale.length});
     }

@@ -9,6 +9,7 @@ namespace eulastic {
 namespace {
 
 constexpr double inward = 1e-6;      // in cells
+constexpr double on_surface = 1e-9;  // likewise
 constexpr double shortest = 1e-3;    // of a link, in spacings
 constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
 
@@ -102,8 +103,11 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
 
 void RigidBodies::mark(int a, int index) {
   const PlacedBody &body = *sources_[index].body;
+  // Faces on a surface are fluid, whatever round-off makes of them.
+  const Real3 &h = grid_.spacing();
+  const double least = on_surface * (grid_.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
   for_faces(a, index, [&](double &mark, int image, const Real3 &place) {
-    if (!(body.level(place) < 0)) return;
+    if (!(body.level(place) < -least)) return;
     if (mark == 0)
       mark = 1 + image;
     else
@@ -117,9 +121,13 @@ void RigidBodies::clear(int a, int index) {
   });
 }
 
+// A piston goes along the tube or the plates that it is between.
 void RigidBodies::note_contact(int image, int other) {
   const RigidBody &one = faces_.bodies[image], &two = faces_.bodies[other];
   if (one.index == two.index || !(faces_.motions[one.motion].travels() || faces_.motions[two.motion].travels())) return;
+  const SpeciesSpec &first = species_[one.motion].spec, &second = species_[two.motion].spec;
+  if (first.shape == Shape::slab && second.slides(first.axis)) return;
+  if (second.shape == Shape::slab && first.slides(second.axis)) return;
   contact_ = std::max(contact_, {std::min(one.index, two.index), std::max(one.index, two.index)});
 }
 
