@@ -9,6 +9,11 @@
 
 namespace eulastic {
 
+/// Advection of cut faces whose neighbour upwind is inside: by the difference between the surface there and the face
+/// ahead, in place of WENO5. To `advection`, -v.grad v of now (may be null), and `scale` times to `rate`, which have
+/// that of WENO5 (`epsilon`); before all below.
+void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time, double epsilon, double scale,
+                          const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate);
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
 /// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in
 /// their frame, within a step of dt; faces inside 0.

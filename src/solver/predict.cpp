@@ -41,6 +41,9 @@ PetscErrorCode Solver::add_local_viscous_force(double scale, FieldBlock &to) {
 PetscErrorCode Solver::predict_explicitly(const Fluid &fluid, const MomentumStep &step) {
   PetscFunctionBeginUser;
   PetscCall(predict_velocity(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, velocity_star_));
+  if (rigid_ && fluid.inertia)
+    advect_from_surfaces(*grid_, rigid_->faces(), now_.time, weno_epsilon(step.speed_scale), step.dt, now_.velocity,
+                         nullptr, velocity_star_);
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, step.dt / fluid.density, true, velocity_star_));
   add_species_forces(*grid_, now_.phases, step.force_time, step.dt, velocity_star_);
@@ -63,6 +66,9 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
   PetscCall(work_->take("viscous stage before", dim, &before));
   PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection, rate.fields(),
                           slope));
+  if (rigid_ && fluid.inertia)
+    advect_from_surfaces(*grid_, rigid_->faces(), now_.time, weno_epsilon(step.speed_scale), step.weights.now,
+                         now_.velocity, now_.advection ? &now_.advection : nullptr, rate.fields());
   if (surface_tension_)
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));

@@ -62,6 +62,7 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
   Fluid fluid = spec_.fluid;
+  fluid.inertia = false;  // nothing passes a surface, but where it moves much the faces around it
   const Real3 force = fluid.body_force.at(now_.time);
   const FieldBlock *viscosity = nullptr;
   PetscCall(viscosity_now(&viscosity));
@@ -69,7 +70,6 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
   const bool travel = rigid_->travel();
   FieldBlock none, no_pressure;
-  if (rigid_->faces().moves) fluid.inertia = false;  // nothing passes their surface, but much the faces around them
   if (travel) {
     no_pressure = FieldBlock(*grid_, 1);
     PetscCall(rigid_->place(now_.time, now_.time));

@@ -1,0 +1,49 @@
+// What verbs of rigid bodies in the momentum equation share: rows with faces inside or cut, and what cut faces see.
+#pragma once
+
+#include "field/field_block.hpp"
+#include "field/rigid_faces.hpp"
+#include "kernels/momentum.hpp"
+
+namespace eulastic {
+
+using Strides = std::array<std::ptrdiff_t, 3>;
+
+inline Strides strides(ConstView q) { return {1, q.sy, q.sz}; }
+
+// The velocity of the surface on the links of a cut face that end there.
+inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity,
+                             double of_rotation, double *wall) {
+  const double along = faces.motions[faces.bodies[cut.body].motion].velocity[a] * of_velocity;
+  for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
+}
+
+inline double regular_laplacian(const Grid &grid, const double *u, const Strides &s) {
+  const InverseSquares h = grid.inverse_squares();
+  return grid.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
+}
+
+// visit(component, row, j, k) for all owned rows that a body is in or beside.
+template <class Visit>
+void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
+  for (int a = 0; a < grid.dimension(); ++a)
+    for (int k = 0; k < grid.faces_end(a, 2); ++k)
+      for (int j = 0; j < grid.faces_end(a, 1); ++j)
+        if (const RigidFaces::Row row = faces.row(a, j, k); !row.empty()) visit(a, row, j, k);
+}
+
+inline bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
+
+// The viscous rate at a cut face, and how much of it a regular face has.
+struct Viscous {
+  double cut, regular;
+};
+inline Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
+                             const double *u, const Strides &s) {
+  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
+  double wall[6];
+  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
+}
+
+}  // namespace eulastic
