@@ -145,8 +145,8 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   const bool closed = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid || spec.shape == Shape::biconcave ||
                       spec.shape == Shape::voxels;
   for (int d = 0; d < 3; ++d) {
-    const bool along = spec.shape == Shape::cylinder && d == spec.axis;
-    if (motion.angular_velocity[d] != 0 && !(flat(config) && d != 2 ? false : closed || along))
+    const bool about_axis = spec.shape == Shape::cylinder && d == spec.axis;
+    if (motion.angular_velocity[d] != 0 && ((flat(config) && d != 2) || !(closed || about_axis)))
       return no("angular_velocity",
                 "would turn the body out of the box; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
                 "that of a cylinder, z alone in 2-D, else 0,0,0");

@@ -265,6 +265,7 @@ RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
 
 std::size_t RigidBodies::bytes() const {
   std::size_t sum = faces_.bytes();
+  for (const Species &species : species_) sum += species.surface ? species.surface->bytes() : 0;
   for (int a = 0; a < 3; ++a) sum += inside_[a].bytes() + level_[a].bytes();
   return sum;
 }

@@ -35,6 +35,8 @@ public:
   double support(const Real3 &n) const;
   /// Radius of a sphere around the body, infinite for cylinder, slab and tubes.
   double bounding_radius() const;
+  /// Memory, of what is more than a few numbers.
+  std::size_t bytes() const { return map_ ? map_->bytes() : 0; }
 
 private:
   Shape shape_;

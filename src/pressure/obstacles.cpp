@@ -115,6 +115,7 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
 
 PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
   PetscFunctionBeginUser;
+  VerbScope scope(Verb::rigid);
   WorkSpace::Lease taken;
   PetscCall(work_->take("known pressure", 2, &taken));
   FieldBlock known = taken.part(0, 1), next = taken.part(1, 1);
