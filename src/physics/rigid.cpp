@@ -37,7 +37,7 @@ double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const Rigid
 void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
                         double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
@@ -55,13 +55,14 @@ void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscos
         if (m) m[i] = 0;
       }
   });
+  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + (faces.travels ? 70 : 5)));
 }
 
 // By WENO5 a cut face in the wind of a body would take its difference from inside, across the kink of the velocity.
 void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time, double epsilon, double scale,
                           const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate) {
   VerbScope scope(Verb::rigid);
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const Strides s = strides(velocity[a]);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
       if (!owned(grid, a, cut->i)) continue;
@@ -85,12 +86,13 @@ void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time
       rate[a].row(j, k)[cut->i] += scale * more;
     }
   });
+  scope.flops(cut_faces * (12 + grid.dimension() * 8));
 }
 
 void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
                                 double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
   VerbScope scope(Verb::rigid);
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = velocity_star[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
@@ -100,6 +102,7 @@ void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, doubl
       out[cut->i] = u[cut->i] + cut->share * change;
     }
   });
+  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 7));
 }
 
 std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field) {
@@ -155,13 +158,14 @@ void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &fi
 void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity) {
   VerbScope scope(Verb::rigid);
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *q = increment[0].row(j, k), factor = dt_over_density / grid.spacing()[a];
     double *u = velocity[a].row(j, k);
     const std::ptrdiff_t step = increment[0].stride(a);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (const int i = cut->i; owned(grid, a, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
   });
+  scope.flops(cut_faces * 5);
 }
 
 RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached)

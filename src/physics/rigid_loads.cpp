@@ -70,7 +70,7 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
     const double *p = &pressure[0](i, j, k);
     return inside + side * grid.cell_volume() / grid.spacing()[a] * 0.5 * (p[0] + p[-pressure[0].stride(a)]);
   };
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
       if (!owned(grid, a, cut->i)) continue;
@@ -96,6 +96,7 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
                      fluid.kinematic_viscosity() * laplacian_of_sides(grid, a, i, j, k, velocity[a])));
       }
   });
+  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 20));
   std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
   PetscCall(sums.reduce(grid.comm(), total.data()));
   loads->assign(faces.count, {});

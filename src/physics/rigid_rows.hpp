@@ -23,16 +23,24 @@ inline double regular_laplacian(const Grid &grid, const double *u, const Strides
   return grid.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
 }
 
-// visit(component, row, j, k) for all owned rows that a body is in or beside.
+// visit(component, row, j, k) for all owned rows that a body is in or beside; returns how many cut faces they have.
 template <class Visit>
-void for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
+double for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
+  double cut_faces = 0;
   for (int a = 0; a < grid.dimension(); ++a)
     for (int k = 0; k < grid.faces_end(a, 2); ++k)
-      for (int j = 0; j < grid.faces_end(a, 1); ++j)
-        if (const RigidFaces::Row row = faces.row(a, j, k); !row.empty()) visit(a, row, j, k);
+      for (int j = 0; j < grid.faces_end(a, 1); ++j) {
+        const RigidFaces::Row row = faces.row(a, j, k);
+        if (row.empty()) continue;
+        visit(a, row, j, k);
+        cut_faces += double(row.cuts_end - row.cuts);
+      }
+  return cut_faces;
 }
 
 inline bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
+
+inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 
 // The viscous rate at a cut face, and how much of it a regular face has.
 struct Viscous {

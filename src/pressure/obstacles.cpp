@@ -64,6 +64,7 @@ EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scal
 
 void combine_all(const Grid &grid, double scale, double factor, const FieldBlock &from, FieldBlock &to) {
   in_row_parts(grid, [&](const RowPart &part) { combine(grid, part, scale, factor, from, to); });
+  (void)PetscLogFlops(grid.owned_count() * 3);
 }
 
 }  // namespace
@@ -172,6 +173,8 @@ void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) cons
   in_row_parts(*grid_, [&](const RowPart &part) {
     (grid_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*grid_, part, dt, q, out);
   });
+  (void)PetscLogFlops(grid_->owned_count() * (4 * grid_->dimension() + 1) +
+                      double(cells_.size()) * (7 * grid_->dimension() + 1));
   const ConstView from = q[0];
   const Real3 &h = grid_->spacing();
   std::size_t at = 0;
@@ -223,6 +226,7 @@ PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b
   PetscCall(sum_row_parts(
       *grid_, 2,
       [&](const RowPart &part, ExactSums &sums) { add_products(*grid_, part, a[0], b[0], c[0], d[0], sums); }, total));
+  PetscCall(PetscLogFlops(grid_->owned_count() * 4));
   *ab = total[0];
   *cd = total[1];
   PetscFunctionReturn(0);

@@ -98,6 +98,23 @@ class CommandLine(unittest.TestCase):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(list(self.room.iterdir()), [])
 
+    def test_log_counts_flops_of_what_computes(self):
+        scene = ("-grid_cells 60,50,1 -grid_length 6,5,1 -time_end 100 -time_steps_max 2 -body_force 1,0,0 -fluid_viscosity .1 "
+                 "-species cell,drop,capsule,post -cell_shape sphere -cell_radius .7 -cell_centre 1,1,0 -cell_shear_modulus 1 "
+                 "-drop_shape sphere -drop_shear_modulus 0 -drop_viscosity .2 -drop_surface_tension 1 -drop_radius .7 "
+                 "-drop_centre 3,1,0 -capsule_shape sphere -capsule_radius .7 -capsule_centre 5,1,0 -capsule_law membrane "
+                 "-capsule_surface_shear_modulus 1 -post_shape sphere -post_radius .7 -post_centre 3,3.5,0 -post_law rigid "
+                 "-post_velocity .1,0,0").split()
+        result = self.run_program(*scene, "-log_view", ":log.txt")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        flops = dict.fromkeys("EulMomentum EulViscous EulTension EulMembrane EulRigid EulDivergence EulACM EulCorrect "
+                              "EulFraction EulLeftCauchy EulExterior EulSums".split(), 0.)
+        for line in (self.room / "log.txt").read_text().splitlines():
+            words = line.split()
+            if words and words[0] in flops:
+                flops[words[0]] += float(words[5])
+        self.assertEqual([verb for verb, count in flops.items() if not count > 0], [])
+
     def test_log_that_cannot_be_written(self):
         for ranks in (0, 2):
             result = self.run_program(*SCENE, "-log_view", ":/nowhere/log", "-output_dir", f"run{ranks}", ranks=ranks)
