@@ -65,6 +65,7 @@ private:
   RigidFaces::Cut cut_at(int a, int i, int j, int k);
   RigidFaces::Component component(int a, const Int3 &layers);
   void note_contact(int image, int other);
+  void say_touching(const std::array<int, 2> &bodies, double time);
 
   const Grid &grid_;
   GhostExchange &exchange_;

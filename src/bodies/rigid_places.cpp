@@ -167,19 +167,22 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
   std::copy_n(most.begin(), 3, faces_.speed.begin());
   faces_.set(layers, grid_.owned()[1] + 2 * layers[1], std::move(components));
   touching_.clear();
-  if (most[3] == 0) PetscFunctionReturn(0);
-  const std::array<int, 2> two{static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))};
+  if (most[3] != 0)
+    say_touching({static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))}, time);
+  PetscFunctionReturn(0);
+}
+
+void RigidBodies::say_touching(const std::array<int, 2> &bodies, double time) {
   const auto species = [&](int index) { return species_[faces_.bodies[images * index].motion].spec; };
-  const bool first = species(two[0]).travels(grid_.dimension());
-  const SpeciesSpec mover = species(two[first ? 0 : 1]);
+  const SpeciesSpec first = species(bodies[0]), second = species(bodies[1]),
+                    mover = first.travels(grid_.dimension()) ? first : second;
   char text[320];
   std::snprintf(text, sizeof text,
                 "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
                 "paths with fluid between the bodies",
-                mover.name.c_str(), mover.turns(grid_.dimension()) ? "angular_" : "", species(two[0]).name.c_str(),
-                species(two[1]).name.c_str(), time);
+                mover.name.c_str(), mover.turns(grid_.dimension()) ? "angular_" : "", first.name.c_str(),
+                second.name.c_str(), time);
   touching_ = text;
-  PetscFunctionReturn(0);
 }
 
 bool RigidBodies::travels(const Phase &phase) const {

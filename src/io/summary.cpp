@@ -6,27 +6,34 @@
 
 namespace eulastic {
 
+namespace {
+
+Json body_json(const BodyRecord &b) {
+  return Json()
+      .add("id", b.id)
+      .add("species", b.species)
+      .add("centroid", b.centroid)
+      .add("velocity", b.velocity)
+      .add("volume", b.volume)
+      .add("taylor_deformation", b.taylor_deformation)
+      .add("inclination", b.inclination)
+      .add("elastic_energy", b.elastic_energy)
+      .add("largest_stretch", b.largest_stretch)
+      .add("rest_deformation", b.rest_deformation)
+      .add("surface_area", b.surface_area)
+      .add("shear_energy", b.shear_energy)
+      .add("area_energy", b.area_energy)
+      .add("bending_energy", b.bending_energy)
+      .add("turning_rate", b.turning_rate)
+      .add("force", b.force)
+      .add("torque", b.torque);
+}
+
+}  // namespace
+
 std::string summary_text(const Summary &s) {
   std::vector<Json> bodies;
-  for (const BodyRecord &b : s.bodies)
-    bodies.push_back(Json()
-                         .add("id", b.id)
-                         .add("species", b.species)
-                         .add("centroid", b.centroid)
-                         .add("velocity", b.velocity)
-                         .add("volume", b.volume)
-                         .add("taylor_deformation", b.taylor_deformation)
-                         .add("inclination", b.inclination)
-                         .add("elastic_energy", b.elastic_energy)
-                         .add("largest_stretch", b.largest_stretch)
-                         .add("rest_deformation", b.rest_deformation)
-                         .add("surface_area", b.surface_area)
-                         .add("shear_energy", b.shear_energy)
-                         .add("area_energy", b.area_energy)
-                         .add("bending_energy", b.bending_energy)
-                         .add("turning_rate", b.turning_rate)
-                         .add("force", b.force)
-                         .add("torque", b.torque));
+  for (const BodyRecord &b : s.bodies) bodies.push_back(body_json(b));
   std::vector<Json> sides;
   for (const Summary::SideRecord &side : s.sides)
     sides.push_back(Json().add("side", side.side).add("flow_rate", side.flow_rate).add("pressure", side.pressure));

@@ -32,6 +32,97 @@ double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstVie
   return sum;
 }
 
+// Sums over the faces that bodies are at, of what they push.
+class RigidLoadSums {
+public:
+  RigidLoadSums(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time, bool carried,
+                const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate, const Real3 &force)
+      : grid_(grid),
+        faces_(faces),
+        fluid_(fluid),
+        time_(time),
+        carried_(carried),
+        velocity_(velocity),
+        pressure_(pressure),
+        rate_(rate),
+        force_(force),
+        mass_(fluid.density * grid.cell_volume()),
+        sums_(6 * faces.count) {}
+
+  void add_row(int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) add_cut(a, *cut, j, k);
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid_.faces_end(a, 0)); ++i)
+        add(run->body, a, i, j, k, push_of_inner(run->body, a, i, j, k));
+  }
+  /// Force and torque of each body, without what accelerates the body itself.
+  PetscErrorCode reduce(std::vector<double> *total) {
+    PetscFunctionBeginUser;
+    total->assign(6 * faces_.count, 0);
+    PetscCall(sums_.reduce(grid_.comm(), total->data()));
+    PetscFunctionReturn(0);
+  }
+
+private:
+  Real3 arm(int body, int a, int i, int j, int k) const {
+    return RigidFaces::arm(faces_.bodies[body], place_of_face(grid_, a, i, j, k), grid_.spacing());
+  }
+  const RigidMotion &motion(int body) const { return faces_.motions[faces_.bodies[body].motion]; }
+  double acceleration(int body, int a, int i, int j, int k) const {
+    return carried_ ? motion(body).acceleration(arm(body, a, i, j, k), time_)[a] : 0;
+  }
+
+  void add(int body, int a, int i, int j, int k, double push) {
+    const Real3 r = arm(body, a, i, j, k);
+    const int at = 6 * faces_.bodies[body].index;
+    Real3 f{};
+    f[a] = push;
+    sums_.add(at + a, push);
+    for (int d = 0; d < 3; ++d) {
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+      if (e == a || g == a) sums_.add(at + 3 + d, r[e] * f[g] - r[g] * f[e]);
+    }
+  }
+
+  double push_of_inner(int body, int a, int i, int j, int k) const {
+    const double given = acceleration(body, a, i, j, k) +
+                         fluid_.kinematic_viscosity() * laplacian_of_sides(grid_, a, i, j, k, velocity_[a]);
+    const int side = side_of_face(grid_, a, i, j, k);
+    const double volume = volume_of_face(grid_, a, side);
+    const double inside = volume > 0 ? volume * mass_ * (rate_[a](i, j, k) - force_[a] - given) : 0;
+    if (side == 0) return inside;
+    const double *p = &pressure_[0](i, j, k);
+    return inside + side * grid_.cell_volume() / grid_.spacing()[a] * 0.5 * (p[0] + p[-pressure_[0].stride(a)]);
+  }
+
+  void add_cut(int a, const RigidFaces::Cut &cut, int j, int k) {
+    const int i = cut.i;
+    if (!owned(grid_, a, i)) return;
+    const double volume = volume_of_face(grid_, a, side_of_face(grid_, a, i, j, k));
+    if (volume == 0) return;
+    const Viscous rates =
+        viscous_rates(grid_, faces_, cut, a, time_, velocity_[a].row(j, k) + i, strides(velocity_[a]));
+    double push = volume * mass_ * fluid_.kinematic_viscosity() * (rates.regular - rates.cut);
+    if (motion(cut.body).travels()) {
+      const double *p = pressure_[0].row(j, k) + i;
+      const double slope = (p[0] - p[-pressure_[0].stride(a)]) / (grid_.spacing()[a] * fluid_.density);
+      const double lacks = rate_[a](i, j, k) - force_[a] - acceleration(cut.body, a, i, j, k);
+      push = cut.share * push + volume * mass_ * ((1 - cut.share) * lacks + (cut.open - cut.share) * slope);
+    }
+    add(cut.body, a, i, j, k, push);
+  }
+
+  const Grid &grid_;
+  const RigidFaces &faces_;
+  const Fluid &fluid_;
+  double time_;
+  bool carried_;
+  const FieldBlock &velocity_, &pressure_, &rate_;
+  const Real3 &force_;
+  double mass_;  // of the fluid in a cell
+  ExactSums sums_;
+};
+
 }  // namespace
 
 // The momentum equation of the faces inside holds the stress on the stair of faces around them, and what cut faces feel
@@ -44,61 +135,12 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
-  const double mass = fluid.density * grid.cell_volume();
-  ExactSums sums(6 * faces.count);
-  const auto acceleration = [&](int body, int a, const Real3 &place) {
-    const RigidBody &b = faces.bodies[body];
-    const RigidMotion &motion = faces.motions[b.motion];
-    return carried ? motion.acceleration(RigidFaces::arm(b, place, grid.spacing()), time)[a] : 0;
-  };
-  const auto add = [&](int body, int a, const Real3 &place, double push) {
-    const RigidBody &b = faces.bodies[body];
-    const Real3 r = RigidFaces::arm(b, place, grid.spacing());
-    Real3 f{};
-    f[a] = push;
-    sums.add(6 * b.index + a, push);
-    for (int d = 0; d < 3; ++d) {
-      const int e = (d + 1) % 3, g = (d + 2) % 3;
-      if (e == a || g == a) sums.add(6 * b.index + 3 + d, r[e] * f[g] - r[g] * f[e]);
-    }
-  };
-  const auto push = [&](int a, int i, int j, int k, double given) {
-    const int side = side_of_face(grid, a, i, j, k);
-    const double volume = volume_of_face(grid, a, side);
-    const double inside = volume > 0 ? volume * mass * (rate[a](i, j, k) - force[a] - given) : 0;
-    if (side == 0) return inside;
-    const double *p = &pressure[0](i, j, k);
-    return inside + side * grid.cell_volume() / grid.spacing()[a] * 0.5 * (p[0] + p[-pressure[0].stride(a)]);
-  };
-  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *u = velocity[a].row(j, k);
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
-      const double volume = volume_of_face(grid, a, side_of_face(grid, a, cut->i, j, k));
-      if (volume == 0) continue;
-      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
-      const Real3 place = place_of_face(grid, a, cut->i, j, k);
-      double of_face = volume * mass * fluid.kinematic_viscosity() * (rates.regular - rates.cut);
-      if (faces.motions[faces.bodies[cut->body].motion].travels()) {
-        const double *p = pressure[0].row(j, k) + cut->i;
-        const double slope = (p[0] - p[-pressure[0].stride(a)]) / (grid.spacing()[a] * fluid.density);
-        const double lacks = rate[a](cut->i, j, k) - force[a] - acceleration(cut->body, a, place);
-        of_face = cut->share * of_face + volume * mass * ((1 - cut->share) * lacks + (cut->open - cut->share) * slope);
-      }
-      add(cut->body, a, place, of_face);
-    }
-    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) {
-        const Real3 place = place_of_face(grid, a, i, j, k);
-        add(run->body, a, place,
-            push(a, i, j, k,
-                 acceleration(run->body, a, place) +
-                     fluid.kinematic_viscosity() * laplacian_of_sides(grid, a, i, j, k, velocity[a])));
-      }
-  });
+  RigidLoadSums sums(grid, faces, fluid, time, carried, velocity, pressure, rate, force);
+  const double cut_faces =
+      for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) { sums.add_row(a, row, j, k); });
   scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 20));
-  std::vector<double> total(6 * faces.count);  // without what accelerates the body itself
-  PetscCall(sums.reduce(grid.comm(), total.data()));
+  std::vector<double> total;
+  PetscCall(sums.reduce(&total));
   loads->assign(faces.count, {});
   for (const RigidBody &body : faces.bodies) {
     RigidLoad &load = (*loads)[body.index];
