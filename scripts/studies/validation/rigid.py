@@ -1,4 +1,4 @@
-"""S13 to S21: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
+"""S13 to S22: rigid bodies, alone and between an inlet and an outlet; docs/method.md, sections 19 and 20."""
 import math
 
 import numpy
@@ -88,6 +88,16 @@ def strouhal(run):
     at = numpy.flatnonzero((lift[:-1] < 0) & (lift[1:] >= 0))
     rises = t[at] - lift[at] * (t[at + 1] - t[at]) / (lift[at + 1] - lift[at])
     return float(.1 * (len(rises) - 1) / (rises[-1] - rises[0]))
+
+
+def swinging(run):
+    """Coefficients of drag and of added mass, diameter, density and largest speed 1: the force of Morison et al. (1950) that fits
+    the last period best."""
+    frequency, last = 2 * math.pi / 5, run.bodies.time > run.bodies.time[-1] - 5
+    t, force = run.bodies.time[last], run.bodies.force[last, 0, 0]
+    speed, rate = -numpy.cos(frequency * t), frequency * numpy.sin(frequency * t)
+    terms = numpy.stack([-abs(speed) * speed / 2, -math.pi / 4 * rate], axis=1)
+    return numpy.linalg.lstsq(terms, force, rcond=None)[0]
 
 
 def upper_share():
@@ -180,4 +190,13 @@ CASES = (
           Measure("largest lift coefficient", lambda run: float(late(run)[2].max()), {}, "the reference is good to 1 %", 1, True),
           Measure("Strouhal number", strouhal, {"fast": lambda n: .01 * (40 / n)**2}, "asked for: 1 % at 40 cells", .3, True)),
          lambda run: ((run.bodies.time[1:], 20 * run.bodies.force[1:, 0, 1]), None), ("t", "lift coefficient")),
+    # Duetsch, Durst, Becker & Lienhart, J. Fluid Mech. 360, 1998, table 2
+    Case("S22", "Cylinder that swings in fluid at rest, Re = 100, Keulegan-Carpenter number 5", "oscillating_cylinder",
+         lambda n, _: {"grid_cells": f"{24 * n},{16 * n},1", "grid_length": "24,16,1", "time_end": 15, "snapshot_interval": 0},
+         fast_at((10, 20, 40)), (),
+         (Measure("drag coefficient", lambda run: float(swinging(run)[0]), {"fast": lambda n: .04 * max(1, 20 / n)},
+                  "asked for: 4 % from 20 cells in the diameter on", 2.09, True),
+          Measure("coefficient of added mass", lambda run: float(swinging(run)[1]), {"fast": lambda n: .04 * max(1, 20 / n)},
+                  "asked for: 4 % from 20 cells in the diameter on", 1.45, True)),
+         lambda run: ((run.bodies.time[5:], run.bodies.force[5:, 0, 0]), None), ("t", "force")),
 )
