@@ -5,17 +5,12 @@ import matplotlib
 import numpy
 
 from . import derived
+from .rounding import round_down
 
 ANGLE = 28  # of view, degrees
 INK = 0.15, 0.15, 0.2
 FONT = str(pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf")  # VTK's own has no rho
 WIDTH = 1500  # of a picture, whose height follows from the box
-
-
-def round_length(length):
-    """The largest of 1, 2, 5, 10, ... that is not above."""
-    power = 10.0 ** numpy.floor(numpy.log10(length))
-    return power * max(part for part in (1, 2, 5) if part * power <= length * (1 + 1e-9))
 
 
 class Framed:
@@ -73,7 +68,7 @@ class Framed:
         left, right, bottom, top = self.frame()
         low, high = (end(self.seen(self.eye(None)), axis=0) for end in (numpy.min, numpy.max))
         shape = (high - low)[1] / (high - low)[0] * (right - left) / (top - bottom)
-        return WIDTH, int(numpy.clip(WIDTH * shape, 0.4 * WIDTH, WIDTH))
+        return WIDTH, round(float(numpy.clip(WIDTH * shape, 0.4 * WIDTH, WIDTH)))
 
     def place_camera(self, renderer):
         width, height = self.window.GetSize()
@@ -106,7 +101,7 @@ class Framed:
     def add_scale(self, renderer, snapshot):
         """A length on the lower edge in front, which is the nearest one, and where the fluid goes on average."""
         place = numpy.array([0, -self.gap(), self.run.length[2]])
-        length = round_length(self.run.length[0] / 4)
+        length = round_down(self.run.length[0] / 4)
         line = self.vtk.vtkLineSource()
         line.SetPoint1(*place)
         line.SetPoint2(*(place + [length, 0, 0]))

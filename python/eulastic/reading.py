@@ -69,13 +69,13 @@ class Snapshot:
         return numpy.linalg.norm(self["wall_shear_stress"].astype(float), axis=-1)
 
     def plane(self, d=2, place=None):
-        """Index of the plane of cells normal to d (0, 1, 2) at `place`; by default the one that cuts the most solid, without
-        any the middle."""
+        """Index of the plane of cells normal to d (0, 1, 2) at `place`; by default the one that cuts the most solid, the first
+        of those that differ by round-off only, and without any solid the middle one."""
         if place is not None:
             return int(numpy.clip(place / self.run.spacing[d], 0, self.run.cells[d] - 1))
         others = tuple({0, 1, 2} - {2 - d})
-        solid = self["solid_fraction"].sum(axis=others) if "solid_fraction" in self else numpy.zeros(1)
-        return int(solid.argmax()) if solid.any() else self.run.cells[d] // 2
+        solid = self["solid_fraction"].sum(axis=others, dtype=float) if "solid_fraction" in self else numpy.zeros(1)
+        return int((solid >= (1 - 1e-6) * solid.max()).argmax()) if solid.any() else self.run.cells[d] // 2
 
 
 def is_finished(directory):

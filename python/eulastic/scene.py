@@ -9,6 +9,7 @@ import numpy
 from . import derived
 from .contours import VESSELS, Contours, species_of
 from .framing import Framed
+from .rounding import round_up
 from .surfaces import at_points, spread
 
 BLUES = (.97, .98, 1), (.80, .88, .95), (.58, .76, .88), (.30, .58, .79), (.10, .36, .62)  # of a size
@@ -72,9 +73,7 @@ def plane_range(snapshots, name="velocity_x"):
     if low < -0.02 * high and derived.is_signed(name):
         high = max(high, -low)
         low = -high if high > 0 else low
-    quarter = (high - low) / 4 or 1.0
-    digit = 10 ** (numpy.floor(numpy.log10(quarter)) - 1)
-    quarter = digit * numpy.ceil(quarter / digit - 1e-9)
+    quarter = round_up((high - low) / 4 or 1.0)
     return (-2 * quarter, 2 * quarter) if low < -0.02 * high else (0.0, 4 * quarter)
 
 
@@ -82,8 +81,7 @@ def stress_range(snapshots):
     """Largest shear stress on walls and surfaces in all frames, rounded up to two digits; 0 without any."""
     walls = [name for name in snapshots[-1].fields if name.startswith("wall_shear_stress")]
     largest = max((numpy.linalg.norm(snapshot[name], axis=-1).max() for snapshot in snapshots for name in walls), default=0)
-    digit = 10 ** (numpy.floor(numpy.log10(largest)) - 1) if largest > 0 else 1
-    return float(digit * numpy.ceil(largest / digit))
+    return round_up(largest)
 
 
 def field_range(snapshots, name):

@@ -203,7 +203,7 @@ def model(machine, step, split):
     if split.count == 1:
         return parts
     messages = step.plain.messages + step.cycle.messages + more_messages(step, split)
-    rounds = math.ceil(math.log2(split.count))
+    rounds = (split.count - 1).bit_length()  # the logarithm to base 2, rounded up
     hop = machine.latency + 2 * machine.overhead
     gathered = 8 * math.prod(split.cells) / 8 ** shared_levels(split.cells)
     parts.update(exchanges(machine, split, messages, split.bytes(step.plain.w) + split.bytes(step.cycle.w)))

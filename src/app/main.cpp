@@ -1,10 +1,9 @@
-// eulastic: soft bodies in incompressible flow. Parses, then runs; every end of the program is in this file.
-#include "app/check_only.hpp"
-#include "app/overlap_warning.hpp"
+// eulastic: soft bodies in incompressible flow. Starts MPI and PETSc, parses the command line, acts on it
+// (app/program.hpp) and ends.
+#include "app/program.hpp"
 #include "app/run.hpp"
-#include "app/scene_warnings.hpp"
 #include "app/signals.hpp"
-#include "base/events.hpp"
+#include "base/message_keeper.hpp"
 #include "base/rank_zero.hpp"
 #include "io/hdf5_file.hpp"
 
@@ -17,79 +16,13 @@ using namespace eulastic;
 
 namespace {
 
-// Keeps PETSc's first message for our one line, not those of cleaning up after it, and prints no traceback.
-PetscErrorCode keep_message(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
-                            const char *message, void *text) {
-  std::string &kept = *static_cast<std::string *>(text);
-  if (type == PETSC_ERROR_INITIAL && message && kept.empty()) kept = message;
-  return code;
-}
-
-void print_error(const std::string &message) {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
-}
-
-// What -help, -check_only and -print_options print.
-PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
-  PetscFunctionBeginUser;
-  std::string text = parsed.message, overlap;
-  if (text.empty() && parsed.config.print_options) text = options_text(parsed);
-  if (text.empty()) {
-    text = check_report(parsed.config, ranks);
-    PetscCall(find_overlap_warning(PETSC_COMM_WORLD, parsed.config, &overlap));
-    if (!overlap.empty()) text += "warning: " + overlap + "\n";
-    for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
-  }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", text.c_str()));
-  PetscFunctionReturn(0);
-}
-
-int act(ParseResult &parsed) {
-  int ranks = 1, code = exit_usage;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-  if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
-  if (parsed.error.empty() && parsed.config.check_only && parsed.config.balance && ranks > 1)
-    parsed.error =
-        "-balance: -check_only on more than one rank speaks of equal parts only, a run cuts by what its fields hold; "
-        "accepted: -balance false with it";
-  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
-  if (!parsed.error.empty()) {
-    print_error(parsed.error);
-    return exit_usage;
-  }
-  if (!parsed.message.empty() || parsed.config.check_only || parsed.config.print_options) {
-    return print_answer(parsed, ranks) ? exit_failed : parsed.alone ? exit_usage : exit_fine;
-  }
-  std::string kept, refusal;
-  (void)PetscPushErrorHandler(keep_message, &kept);
-  (void)register_events();
-  const PetscErrorCode failed = run(parsed, &code, &refusal);
-  (void)PetscPopErrorHandler();
-  // Files (io/fail_together.hpp), linear systems and options are everybody's: all ranks know.
-  if (failed == PETSC_ERR_FILE_UNEXPECTED || failed == PETSC_ERR_NOT_CONVERGED || failed == PETSC_ERR_USER_INPUT) {
-    print_error(kept);
-    return failed == PETSC_ERR_USER_INPUT ? exit_usage : exit_failed;
-  }
-  if (failed) {
-    // A rank that fails alone must not leave the others waiting in a collective call.
-    std::fprintf(stderr, "eulastic: error: %s\n", kept.empty() ? "internal error" : kept.c_str());
-    std::fflush(stderr);
-    MPI_Abort(PETSC_COMM_WORLD, exit_failed);
-  }
-  if (!refusal.empty()) print_error(refusal);
-  return code;
-}
-
-// Whether it failed: -log_view and its like write here, to files that may not be there.
+// Ends PETSc and MPI. Returns whether that failed, as when -log_view cannot write its file.
 bool finalize() {
   int rank = 0;
-  std::string kept;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  (void)PetscPushErrorHandler(keep_message, &kept);
+  const MessageKeeper kept;
   if (!PetscFinalize()) return MPI_Finalize() != MPI_SUCCESS;
-  if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", kept.c_str());
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", kept.text().c_str());
   return true;
 }
 

@@ -1,5 +1,7 @@
 #include "app/petsc_options.hpp"
 
+#include "base/rank_zero.hpp"
+
 #include <petscsys.h>
 
 #include <algorithm>
@@ -84,7 +86,8 @@ PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string 
     const auto has = [name = name](const char *part) { return name.find(part) != std::string::npos; };
     if (has("_view") || has("_converged_reason") || has("options_") || name == "citations") continue;
     int unread = static_cast<int>(std::count(left.begin(), left.end(), name));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &unread, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));  // some on one rank only
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, &unread, 1, MPI_INT, MPI_MIN, run_communicator()));  // some on one rank only
     if (!unread || !refusal->empty()) continue;
     *refusal = "-" + name + ": unknown to PETSc, or to what it does here";
     if (is_pressure_ksp_option(name)) *refusal += " (KSP and PC as chosen); -pressure_ksp_view shows them";

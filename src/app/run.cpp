@@ -13,6 +13,7 @@
 #include "app/time_step_control.hpp"
 #include "base/events.hpp"
 #include "base/progress.hpp"
+#include "base/rank_zero.hpp"
 #include "grid/threads.hpp"
 #include "io/fail_together.hpp"
 #include "io/run_directory.hpp"
@@ -290,12 +291,12 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   const double begin = MPI_Wtime();
   *code = exit_usage;
   catch_signals();
-  PetscCall(check_sizes(PETSC_COMM_WORLD, config, refusal));
+  PetscCall(check_sizes(run_communicator(), config, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   set_threads(config.threads);
-  print_warning(PETSC_COMM_WORLD, thread_warning(config.threads));
+  print_warning(run_communicator(), thread_warning(config.threads));
   Grid grid;
-  PetscCall(grid.create(PETSC_COMM_WORLD, config.grid));
+  PetscCall(grid.create(run_communicator(), config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
   Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
   PetscCall(begin_run(&grid, &run, refusal));

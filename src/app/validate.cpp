@@ -255,8 +255,8 @@ std::string place_species(std::size_t which, const SolidBodies &solids, const Ke
 std::string place_all(const SolidBodies &solids, Config *config) {
   const std::vector<SpeciesSpec> &species = config->species;
   int rank, ranks;
-  (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  (void)MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  (void)MPI_Comm_rank(run_communicator(), &rank);
+  (void)MPI_Comm_size(run_communicator(), &ranks);
   config->places.clear();
   config->colours.clear();
   for (std::size_t s = 0; s < species.size(); ++s) {

@@ -109,7 +109,7 @@ constexpr int most_cells = 1 << 24;  // in memory at a time
 
 bool on_any_rank(bool here) {
   int any = here;
-  (void)MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  (void)MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, run_communicator());
   return any > 0;
 }
 

@@ -5,6 +5,16 @@
 #include <filesystem>
 
 namespace eulastic {
+namespace {
+
+MPI_Comm current = MPI_COMM_NULL;  // MPI_COMM_WORLD
+
+}  // namespace
+
+MPI_Comm run_communicator() noexcept { return current == MPI_COMM_NULL ? MPI_COMM_WORLD : current; }
+
+RunOnRanks::RunOnRanks(MPI_Comm comm) noexcept : before_(current) { current = comm; }
+RunOnRanks::~RunOnRanks() { current = before_; }
 
 int share_bytes(void *bytes, std::size_t count, MPI_Comm comm) {
   constexpr std::size_t piece = std::size_t{1} << 26;

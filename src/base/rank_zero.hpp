@@ -1,5 +1,5 @@
-// What files hold is read by rank 0 alone and told to the others: a file system serves one reader, not all ranks at
-// once. Everything here is collective over all ranks of the program, from MPI_Init on; PETSc need not be there yet.
+// Rank 0 alone reads files and broadcasts their contents, because a file system serves one reader better than all
+// ranks at once. Everything here is collective over run_communicator() and needs MPI, but not PETSc.
 #pragma once
 
 #include <mpi.h>
@@ -10,8 +10,24 @@
 
 namespace eulastic {
 
+/// The communicator of the ranks that run one case: MPI_COMM_WORLD, except within the life of a RunOnRanks.
+MPI_Comm run_communicator() noexcept;
+
+/// Parses and runs cases on `comm` instead of MPI_COMM_WORLD until it is destroyed, so that one process can run cases
+/// on several numbers of ranks.
+class RunOnRanks {
+public:
+  explicit RunOnRanks(MPI_Comm comm) noexcept;
+  ~RunOnRanks();
+  RunOnRanks(const RunOnRanks &) = delete;
+  RunOnRanks &operator=(const RunOnRanks &) = delete;
+
+private:
+  MPI_Comm before_;
+};
+
 /// Makes the bytes of rank 0 everybody's, in pieces of bounded size. Returns MPI's error code.
-int share_bytes(void *bytes, std::size_t count, MPI_Comm comm = MPI_COMM_WORLD);
+int share_bytes(void *bytes, std::size_t count, MPI_Comm comm = run_communicator());
 
 /// Makes `value` of rank 0 everybody's: plain bytes, or a string or vector of such, which takes its size.
 template <class T>
@@ -30,7 +46,7 @@ void share(T *value) {
 template <class Look>
 auto on_rank_0(Look look) {
   int rank;
-  (void)MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  (void)MPI_Comm_rank(run_communicator(), &rank);
   decltype(look()) found{};
   if (rank == 0) found = look();
   share(&found);

@@ -1,5 +1,7 @@
 #include "bodies/resample.hpp"
 
+#include "base/rank_zero.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -64,7 +66,7 @@ void for_overlaps(const Overlaps &overlaps, int voxel, Visit visit) {
 std::pair<Int3, Int3> voxels_of_all(const Overlaps &x, const Overlaps &y, const Overlaps &z) {
   std::array<int, 6> bounds{x.begin, y.begin, z.begin, -x.end, -y.end, -z.end};
   if (x.begin == x.end || y.begin == y.end || z.begin == z.end) bounds.fill(std::numeric_limits<int>::max());
-  (void)MPI_Allreduce(MPI_IN_PLACE, bounds.data(), 6, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  (void)MPI_Allreduce(MPI_IN_PLACE, bounds.data(), 6, MPI_INT, MPI_MIN, run_communicator());
   return {{bounds[0], bounds[1], bounds[2]}, {-bounds[3], -bounds[4], -bounds[5]}};
 }
 

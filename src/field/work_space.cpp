@@ -1,16 +1,19 @@
 #include "field/work_space.hpp"
 
+#include "grid/skipping.hpp"
+
 #include <algorithm>
 
 namespace eulastic {
 namespace {
 
-#if !defined(NDEBUG) || defined(EULASTIC_SKIP_NOTHING)
-constexpr bool spoils = true;
+#ifdef NDEBUG
+constexpr bool debug = false;
 #else
-constexpr bool spoils = false;
+constexpr bool debug = true;
 #endif
-// Who reads what it has not written gets wrong results; not NaN, since the coefficient 0 stands for a wall.
+// A routine that reads what it has not written then gets wrong results. Not NaN, because 0 times NaN is NaN and the
+// coefficient 0 stands for a wall.
 constexpr double spoilt = 1e200;
 
 }  // namespace
@@ -45,7 +48,7 @@ PetscErrorCode WorkSpace::take(const char *name, int count, Lease *lease) {
   lease->space_ = this;
   lease->first_ = static_cast<int>(at - holder_.begin());
   lease->fields_ = fields_.part(lease->first_, count);
-  for (int f = 0; f < count && spoils; ++f) lease->fields_.fill(f, spoilt);
+  for (int f = 0; f < count && (debug || skips_nothing()); ++f) lease->fields_.fill(f, spoilt);
   PetscFunctionReturn(0);
 }
 

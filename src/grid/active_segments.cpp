@@ -1,5 +1,6 @@
 #include "grid/active_segments.hpp"
 
+#include "grid/skipping.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -57,10 +58,10 @@ void ActiveSegments::build_all(const Grid &grid) {
 // Adds the runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last
 // points of a run that ends within a vector would be done one by one.
 void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const {
-#ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
-  segments->push_back({begin_[0], begin_[0] + points_x_, j, k});
-  return;
-#endif
+  if (skips_nothing()) {
+    segments->push_back({begin_[0], begin_[0] + points_x_, j, k});
+    return;
+  }
   const std::size_t row_begin = segments->size();
   for (int i = 0, count; marked && i < points_x_; i += count) {
     count = std::min(vector_length - ((begin_[0] + i) & (vector_length - 1)), points_x_ - i);

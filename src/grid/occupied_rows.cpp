@@ -1,5 +1,6 @@
 #include "grid/occupied_rows.hpp"
 
+#include "grid/skipping.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -129,9 +130,7 @@ void OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &b
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
     for (int z = std::max(k - reach_z, 0); z < std::min(k + reach_z + 1, n[2]); ++z)
       for (int y = 0; y < n[1]; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * z]);
-#ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
-  spans_.assign(spans_.size(), whole_);
-#endif
+  if (skips_nothing()) spans_.assign(spans_.size(), whole_);
   inside_ = true;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
+#include "grid/skipping.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
 
@@ -21,6 +22,7 @@ struct TransportTerms {
   EvolveRule rule;
   bool second_of_heun;
   const ActiveSegments *stale;
+  bool whole_rows;  ///< evolves all points of the segments, also those outside of bodies
 };
 
 // Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
@@ -36,7 +38,7 @@ constexpr int position(int x, int y) {
 
 // One component at the points of a batch: advection, then stretching and the stage. One loop for both would need more
 // registers than there are: a fifth slower.
-template <int Dim, bool SecondOfHeun>
+template <int Dim>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
                                        kernels::Batch &batch, const double *const *carried, double *rate,
                                        FieldBlock &out) {
@@ -50,6 +52,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
   const double *aa = B[a].origin, *bb = B[b].origin, *now = B[f].origin, *ab = B[position<Dim>(a, other)].origin;
   const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
+  const bool second_of_heun = t.second_of_heun;
   double *next = out[f].origin;
   if (Dim == 3) {  // the next plane
     batch.ahead[0] = now + (1 + Grid::stencil_width) * phi.sz;
@@ -62,7 +65,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
     // positive_definite.hpp; minus infinity stays, so that it is noticed.
     constexpr double lowest = -std::numeric_limits<double>::max();
     double moved = kernels::fma(dt, total, now[o]);
-    if constexpr (SecondOfHeun) moved = 0.5 * (next[o] + moved);
+    if (second_of_heun) moved = 0.5 * (next[o] + moved);
     next[o] = share < threshold ? exterior : moved < least && moved >= lowest ? least : moved;
   };
   if (a == b)
@@ -97,7 +100,7 @@ struct Location {
 };
 
 // All components of one location at the points of a batch.
-template <int Dim, bool SecondOfHeun>
+template <int Dim>
 EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
                                    const Location &location, kernels::Batch &batch, FieldBlock &out) {
   alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
@@ -108,14 +111,14 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, 
     kernels::carry_velocity(batch, face, e, location.at, Dim, velocity[e]);
   }
   if (location.centre())
-    for (int c = 0; c < Dim; ++c) advance_component<Dim, SecondOfHeun>(t, phase, B, c, c, batch, carried, rate, out);
+    for (int c = 0; c < Dim; ++c) advance_component<Dim>(t, phase, B, c, c, batch, carried, rate, out);
   else
-    advance_component<Dim, SecondOfHeun>(t, phase, B, location.a, location.b, batch, carried, rate, out);
+    advance_component<Dim>(t, phase, B, location.a, location.b, batch, carried, rate, out);
 }
 
 // The components of one location on rows of plane k, but for the vectors that are `left` for later. Adds the points
 // that evolve to `evolved`.
-template <int Dim, bool SecondOfHeun>
+template <int Dim>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
                                   const Location &location, int j_begin, int j_end, int k, FieldBlock &out,
                                   kernels::Batch &left, std::ptrdiff_t &evolved) {
@@ -129,7 +132,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
   const auto advance = [&](kernels::Batch &batch)
-                           EULASTIC_BODY { advance_batch<Dim, SecondOfHeun>(t, phase, B, location, batch, out); };
+                           EULASTIC_BODY { advance_batch<Dim>(t, phase, B, location, batch, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.tensor.evolving.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
@@ -148,10 +151,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
     // Whether any point of a vector does: segments are those of all locations together.
     const auto evolves = [&](std::ptrdiff_t at_first, int count) EULASTIC_BODY {
-#ifdef EULASTIC_SKIP_NOTHING  // tests/regression/test_same_bits.py
-      return true;
-#endif
-      if (phi.origin[at_first] > 0.5) return true;  // as within bodies
+      if (t.whole_rows || phi.origin[at_first] > 0.5) return true;  // the latter within bodies
       bool any = false;
 #pragma omp simd reduction(| : any)
       for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + at_first + i, centre, da, db) >= threshold;
@@ -193,7 +193,7 @@ struct Evolved {
   std::ptrdiff_t centres = 0, edges = 0;  // points, each of all its components
 };
 
-template <int Dim, bool SecondOfHeun>
+template <int Dim>
 EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                        const FieldBlock &B, FieldBlock &out) {
   constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
@@ -206,21 +206,19 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &p
   for (int j = part.j_begin; j < j_end; j += block)
     for (int k = part.k_begin; k < k_end; ++k)
       for (int l = 0; l < count; ++l)
-        advance_rows<Dim, SecondOfHeun>(t, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
-                                        l == 0 ? sum.centres : sum.edges);
-  for (int l = 0; l < count; ++l) advance_batch<Dim, SecondOfHeun>(t, phase, B, locations[l], left[l], out);
+        advance_rows<Dim>(t, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
+                          l == 0 ? sum.centres : sum.edges);
+  for (int l = 0; l < count; ++l) advance_batch<Dim>(t, phase, B, locations[l], left[l], out);
   return sum;
 }
 
 EULASTIC_CLONES Evolved tensor_2d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
                                   FieldBlock &out) {
-  return t.second_of_heun ? advance_tensor<2, true>(t, part, phase, B, out)
-                          : advance_tensor<2, false>(t, part, phase, B, out);
+  return advance_tensor<2>(t, part, phase, B, out);
 }
 EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
                                   FieldBlock &out) {
-  return t.second_of_heun ? advance_tensor<3, true>(t, part, phase, B, out)
-                          : advance_tensor<3, false>(t, part, phase, B, out);
+  return advance_tensor<3>(t, part, phase, B, out);
 }
 
 }  // namespace
@@ -231,7 +229,8 @@ PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, cons
   VerbScope scope(Verb::left_cauchy_green);
   const Real3 &h = grid.spacing();
   const TransportTerms terms{
-      &grid, stage.dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun, stage.stale};
+      &grid,       stage.dt,       &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun,
+      stage.stale, skips_nothing()};
   const bool flat = grid.dimension() == 2;
   const int parts = row_parts(grid);
   std::vector<Evolved> found(parts);

@@ -1,5 +1,6 @@
 // ACM sweeps: any residual is reached on any boundaries, the same bits on any decomposition, what memory buys.
 #include "pressure/acm_sweeps.hpp"
+#include "base/rank_zero.hpp"
 #include "pressure/smac.hpp"
 #include "support/poisson_scene.hpp"
 
@@ -61,7 +62,7 @@ TEST(AcmSweeps, ReachesAnyTargetOnAllBoundariesAndDecompositions) {
         one.solve(target);
         const std::vector<GridSpec> decompositions = all_decompositions(spec);
         for (const GridSpec &shared : decompositions) {
-          Sweeper many(PETSC_COMM_WORLD, shared, {40, 2, true});
+          Sweeper many(run_communicator(), shared, {40, 2, true});
           many.set(noise);
           many.solve(target);
           EXPECT_LE(many.rms_residual(), 1.2 * target * many.rms_divergence()) << name(shared);
@@ -86,7 +87,7 @@ TEST(AcmSweeps, SameBitsOnLargerGrids) {
         for (const GridSpec &shared : all_decompositions(spec))
           for (const int team : {1, 3}) {
             set_threads(team);
-            Sweeper many(PETSC_COMM_WORLD, shared, {6, 2, multigrid});
+            Sweeper many(run_communicator(), shared, {6, 2, multigrid});
             many.set(f);
             for (int repeat = 0; repeat < 2; ++repeat) many.solve(1e-5);
             set_threads(1);
@@ -103,7 +104,7 @@ TEST(AcmSweeps, LeavesWhatItSays) {
       for (const bool multigrid : {true, false})
         for (const int memory : {0, 1, 3})
           for (int sweeps = 1; sweeps <= 5; ++sweeps) {
-            Sweeper s(PETSC_COMM_WORLD, spec, {sweeps, memory, multigrid});
+            Sweeper s(run_communicator(), spec, {sweeps, memory, multigrid});
             for (int step = 0; step < 3; ++step) {
               s.set([&](int i, int j, int k) { return smooth_and_rough(cells, 0.3 * step, i, j, k); });
               s.solve(1e-14);
@@ -120,7 +121,7 @@ TEST(AcmSweeps, MemoryOfLittleUse) {
   for (const bool multigrid : {true, false})
     for (const double share : {1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15}) {
       const GridSpec spec = all_boundaries(cells)[0];
-      Sweeper s(PETSC_COMM_WORLD, spec, {100, 1, multigrid});
+      Sweeper s(run_communicator(), spec, {100, 1, multigrid});
       const auto old = [&](int i, int, int) { return std::sin(2 * M_PI * (i + 0.5) / cells[0]); };
       s.set(old);
       s.solve(1e-12);
@@ -138,8 +139,8 @@ TEST(AcmSweeps, AgreesWithTheExactSolver) {
   if (!SmacSolver::available()) GTEST_SKIP() << "built without FFTW";
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{32, 24, 16}, Int3{40, 26, 1}})
     for (const GridSpec &spec : all_boundaries(cells)) {
-      Sweeper sweeps(PETSC_COMM_WORLD, spec, {});
-      PoissonScene exact(PETSC_COMM_WORLD, spec);
+      Sweeper sweeps(run_communicator(), spec, {});
+      PoissonScene exact(run_communicator(), spec);
       std::unique_ptr<PressureSolver> smac;
       ASSERT_EQ(SmacSolver::create(exact.grid, *exact.exchange, &smac), 0);
       const auto f = [&](int i, int j, int k) { return smooth_and_rough(cells, 0.9, i, j, k); };
@@ -164,7 +165,7 @@ TEST(AcmSweeps, MemoryForetellsTheNextIncrement) {
   double foretold[4] = {};
   long sweeps[4] = {};
   for (const int memory : {0, 1, 2, 3}) {
-    Sweeper s(PETSC_COMM_WORLD, spec, {20, memory, true});
+    Sweeper s(run_communicator(), spec, {20, memory, true});
     for (int step = 0; step < 12; ++step) {
       s.set([&](int i, int j, int k) { return smooth_and_rough(spec.cells, 0.05 * step, i, j, k); });
       s.solve(1e-3);
@@ -175,7 +176,7 @@ TEST(AcmSweeps, MemoryForetellsTheNextIncrement) {
     s.solve(1);  // any residual is small enough
     foretold[memory] = s.rms_residual() / s.rms_divergence();
     EXPECT_EQ(s.solver.sweeps() - sweeps[memory], memory > 0 ? 0 : 1);
-    PetscPrintf(PETSC_COMM_WORLD, "memory %d: leaves %.1e; 12 steps to 1e-3 took %ld sweeps\n", memory,
+    PetscPrintf(run_communicator(), "memory %d: leaves %.1e; 12 steps to 1e-3 took %ld sweeps\n", memory,
                 foretold[memory], sweeps[memory]);
   }
   EXPECT_LT(foretold[1], 0.06);
@@ -190,7 +191,7 @@ TEST(AcmSweeps, MemoryIsAllThatARestartNeeds) {
     const auto at = [&](int step) {
       return [&spec, step](int i, int j, int k) { return smooth_and_rough(spec.cells, 0.2 * step, i, j, k); };
     };
-    Sweeper on(PETSC_COMM_WORLD, spec, {3, 3, true}), restarted(PETSC_COMM_WORLD, spec, {3, 3, true});
+    Sweeper on(run_communicator(), spec, {3, 3, true}), restarted(run_communicator(), spec, {3, 3, true});
     for (int step = 0; step < 5; ++step) {
       on.set(at(step));
       on.solve(1e-3);
@@ -215,11 +216,11 @@ TEST(AcmSweeps, WithoutMultigridItIsTheConjugateResidualMethod) {
   for (const Int3 &cells : {Int3{24, 20, 12}, Int3{32, 24, 1}})
     for (const GridSpec &spec : all_boundaries(cells)) {
       double before = 1, plain = 1;
-      Sweeper one(PETSC_COMM_WORLD, spec, {1, 0, false});
+      Sweeper one(run_communicator(), spec, {1, 0, false});
       const auto f = [&](int i, int j, int k) { return smooth_and_rough(cells, 0.4, i, j, k); };
       one.set(f);
       for (const int sweeps : {1, 2, 3, 5, 10, 20, 40}) {
-        Sweeper s(PETSC_COMM_WORLD, spec, {sweeps, 0, false});
+        Sweeper s(run_communicator(), spec, {sweeps, 0, false});
         s.set(f);
         s.solve(0);
         const double residual = s.rms_residual(), relative = residual / s.rms_divergence();
@@ -238,7 +239,7 @@ TEST(AcmSweeps, WithoutMultigridItIsTheConjugateResidualMethod) {
         for (const Segment &s : one.grid.rows())
           for (int i = 0; i < s.i_end; ++i) one.divergence[0](i, s.j, s.k) = *value++;
       }
-      Sweeper start(PETSC_COMM_WORLD, spec, {1, 0, false});
+      Sweeper start(run_communicator(), spec, {1, 0, false});
       start.set(f);
       EXPECT_LT(before, 0.5 * plain / start.rms_divergence()) << name(spec);
     }
@@ -247,7 +248,7 @@ TEST(AcmSweeps, WithoutMultigridItIsTheConjugateResidualMethod) {
 TEST(AcmSweeps, SurvivesNothingToDoAndNotANumber) {
   for (const bool multigrid : {true, false})
     for (const GridSpec &spec : all_boundaries({12, 12, 1})) {
-      Sweeper s(PETSC_COMM_WORLD, spec, {5, 2, multigrid});
+      Sweeper s(run_communicator(), spec, {5, 2, multigrid});
       s.set([](int, int, int) { return 0.0; });
       s.solve(0);
       EXPECT_EQ(s.rms(s.increment[0]), 0.0);

@@ -1,4 +1,5 @@
 // Measures of bodies: right values, and the same bits on any number of ranks.
+#include "base/rank_zero.hpp"
 #include "bodies/labels.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "field/sides.hpp"
@@ -18,7 +19,7 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
     GridSpec spec = box(cells, {2.1, 2.6, 3.1});
     spec.boundary[1] = Boundary::wall;
     std::vector<BodyMeasure> all[2];
-    const MPI_Comm comms[2] = {PETSC_COMM_WORLD, PETSC_COMM_SELF};
+    const MPI_Comm comms[2] = {run_communicator(), PETSC_COMM_SELF};
     for (int c = 0; c < 2; ++c) {
       BodyScene scene(comms[c], spec);
       const bool flat = cells[2] == 1;
@@ -64,7 +65,7 @@ TEST(BodyMeasures, EllipsoidsHaveTheirAxesAcrossSeams) {
     const GridSpec full = box({36, 40, 44}, {3.6, 4.0, 4.4}), flat = box({72, 80, 1}, {3.6, 4.0, 1});
     for (const GridSpec &spec : {full, flat}) {
       const bool is_flat = spec.cells[2] == 1;
-      BodyScene scene(PETSC_COMM_WORLD, spec);
+      BodyScene scene(run_communicator(), spec);
       const Real3 centre{0.123, 3.9, is_flat ? 0.5 : 0.05};
       scene.add(species(Shape::ellipsoid, 0, {1.2, 0.7, 0.9}), {{centre, {0, 0, angle}}});
       scene.set_velocity([](int d, const Real3 &) { return 0.3 - 0.7 * d; });
@@ -89,7 +90,7 @@ TEST(BodyMeasures, EllipsoidsHaveTheirAxesAcrossSeams) {
 // B = diag(l^2) everywhere inside: W = G/2 (tr B - 3), per body of its own species.
 TEST(BodyMeasures, StretchedBodiesHaveTheirEnergy) {
   for (const bool flat : {false, true}) {
-    BodyScene scene(PETSC_COMM_WORLD, box({24, 24, flat ? 1 : 24}, {1, 1, 1}));
+    BodyScene scene(run_communicator(), box({24, 24, flat ? 1 : 24}, {1, 1, 1}));
     double trace[2];
     for (int s = 0; s < 2; ++s) {
       SpeciesSpec spec = species(Shape::sphere, 0.15);
@@ -118,7 +119,7 @@ TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
           species(Shape::ellipsoid, 0, {.25 * longer * stretch[0], .25 * stretch[1], .25 * stretch[2]}, turned);
       spec.initial_stretch = stretch;
       spec.shear_modulus = 1;
-      BodyScene scene(PETSC_COMM_WORLD, box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
+      BodyScene scene(run_communicator(), box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
       scene.add(spec, {{{.1, .5, .5}, turned}});
       GhostExchange exchange(scene.grid);
       ASSERT_EQ(exchange.update(scene.phases[0].tensor.field, 1), 0);
@@ -142,7 +143,7 @@ TEST(BodyMeasures, RedCellHasItsSecondMoments) {
     along += 2 * pi * r * h * h * h / 12 / n;
     across += pi * r * r * r * h / n;
   }
-  BodyScene scene(PETSC_COMM_WORLD, box({44, 44, 44}, {2.4, 2.4, 2.4}));
+  BodyScene scene(run_communicator(), box({44, 44, 44}, {2.4, 2.4, 2.4}));
   scene.add(species(Shape::biconcave, 1), {{{0.03, 1.2, 1.25}, {20, 0, 35}}});
   const BodyMeasure body = scene.measure()[0];
   const double a = std::sqrt(5 * across / volume), c = std::sqrt(5 * along / volume);
@@ -155,7 +156,7 @@ TEST(BodyMeasures, RedCellHasItsSecondMoments) {
 TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   const GridSpec spec = box({20, 18, 16}, {2.0, 1.8, 1.6});
   const SpeciesSpec sphere = species(Shape::sphere, 0.4);
-  BodyScene scene(PETSC_COMM_WORLD, spec), silent(PETSC_COMM_WORLD, spec);
+  BodyScene scene(run_communicator(), spec), silent(run_communicator(), spec);
   const Real3 start{1.9, 0.05, 0.8}, step{0.05, -0.03, 0.04};
   for (BodyScene *s : {&scene, &silent}) s->add(sphere, {{start, {}}});
   GhostExchange exchange(scene.grid);
@@ -177,7 +178,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   ASSERT_EQ(silent.tracker.known(silent.grid, &others, &volumes), 0);
   EXPECT_EQ(references, others);
   references.resize(1);
-  ASSERT_EQ(MPI_Bcast(references[0].data(), 3, MPI_INT, 0, PETSC_COMM_WORLD), 0);
+  ASSERT_EQ(MPI_Bcast(references[0].data(), 3, MPI_INT, 0, run_communicator()), 0);
   EXPECT_EQ(scene.measure()[0].centroid, silent.measure()[0].centroid);
   // A restart: a new tracker with the carried references measures the same.
   const BodyMeasure last = scene.measure()[0];
@@ -190,7 +191,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
 TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   SpeciesSpec slab = species(Shape::slab, 0);
   slab.interval = {0.2, 0.5};
-  BodyScene scene(PETSC_COMM_WORLD, box({12, 10, 7}, {1.2, 1.0, 0.7}));
+  BodyScene scene(run_communicator(), box({12, 10, 7}, {1.2, 1.0, 0.7}));
   Places places;
   ASSERT_EQ(place_bodies(slab, scene.grid.spec(), &places), "");
   scene.add(slab, places);

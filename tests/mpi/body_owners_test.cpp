@@ -1,4 +1,5 @@
 // Sums of bodies go to the ranks that own them, and bodies.h5 is the same whoever they are.
+#include "base/rank_zero.hpp"
 #include "bodies/body_sums.hpp"
 #include "io/bodies_file.hpp"
 #include "support/files.hpp"
@@ -13,8 +14,8 @@ using namespace test;
 struct Ranks {
   int rank = 0, ranks = 1;
   Ranks() {
-    (void)MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-    (void)MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+    (void)MPI_Comm_rank(run_communicator(), &rank);
+    (void)MPI_Comm_size(run_communicator(), &ranks);
   }
 };
 
@@ -30,10 +31,10 @@ TEST(BodyOwners, ReduceAndBring) {
       return count;
     };
     BodyOwners owners;
-    ASSERT_EQ(owners.connect(PETSC_COMM_WORLD, bodies, here), 0);
+    ASSERT_EQ(owners.connect(run_communicator(), bodies, here), 0);
     const BodyRange &own = owners.owned();
     int all = own.size();
-    ASSERT_EQ(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+    ASSERT_EQ(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_SUM, run_communicator()), 0);
     EXPECT_EQ(all, bodies);
     BodySums sums(here.size(), 2);
     std::vector<double> largest, owned(static_cast<std::size_t>(own.size()), -1), brought(here.size());
@@ -59,7 +60,7 @@ TEST(BodyOwners, ReduceAndBring) {
     ASSERT_EQ(owners.bring(1, owned, &brought), 0);
     for (std::size_t slot = 0; slot < here.size(); ++slot) EXPECT_EQ(brought[slot], here[slot]);
     std::vector<double> first;
-    ASSERT_EQ(gather_bodies(PETSC_COMM_WORLD, bodies, 5, owned, &first), 0);
+    ASSERT_EQ(gather_bodies(run_communicator(), bodies, 5, owned, &first), 0);
     ASSERT_EQ(first.size(), static_cast<std::size_t>(world.rank == 0 ? std::min(5, bodies) : 0));
     for (std::size_t b = 0; b < first.size(); ++b) EXPECT_EQ(first[b], double(b));
   }
@@ -82,8 +83,8 @@ TEST(BodyOwners, WriteOneFile) {
   std::string path = base / "bodies.h5";
   char shared[1000] = "";
   std::snprintf(shared, sizeof shared, "%s", path.c_str());
-  ASSERT_EQ(MPI_Bcast(shared, sizeof shared, MPI_CHAR, 0, PETSC_COMM_WORLD), 0);
-  BodiesFile file(PETSC_COMM_WORLD, shared, true, true);
+  ASSERT_EQ(MPI_Bcast(shared, sizeof shared, MPI_CHAR, 0, run_communicator()), 0);
+  BodiesFile file(run_communicator(), shared, true, true);
   constexpr int rows = 23, before = 7, after = 9, change = 11;
   const auto value = [](int row, int body, int n) { return 1000. * row + 100 * body + n; };
   for (int row = 0; row < rows; ++row) {

@@ -1,5 +1,6 @@
 // Checkpoints on 1-4 ranks: a solver that reads one goes on with the bits of the one that wrote it.
 #include "app/saved_state.hpp"
+#include "base/rank_zero.hpp"
 #include "support/files.hpp"
 #include "support/scene.hpp"
 
@@ -70,7 +71,7 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
   position.dt = 0.125;
   position.outputs = {3, 2, 1, 0.5, 0.25, 0.75, {}};
   std::uint64_t expected = 0, hash = 0;
-  ASSERT_EQ(build(PETSC_COMM_WORLD, GetParam(), &writer), 0);
+  ASSERT_EQ(build(run_communicator(), GetParam(), &writer), 0);
   ASSERT_EQ(advance(&writer, 7, &hash), 0);
   std::vector<double> volumes(writer.solver.grid().rank() == writer.solver.grid().ranks() - 1 ? 1 : 0, 1.5);
   ASSERT_EQ(writer.solver.bodies().follow(writer.grid, writer.solver.state().phases), 0);  // it goes to its owner,
@@ -81,7 +82,7 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
   // On all ranks, then on one: both must end where the writer does.
   Scene reader;
   for (Scene *scene : {&reader, &alone}) {
-    const MPI_Comm comm = scene == &reader ? PETSC_COMM_WORLD : PETSC_COMM_SELF;
+    const MPI_Comm comm = scene == &reader ? run_communicator() : PETSC_COMM_SELF;
     CheckpointFile file;
     std::string options;
     RunPosition found;
@@ -127,11 +128,11 @@ TEST(CheckpointFile, RefusesAnotherScene) {
   Scene writer, reader;
   RunPosition position;
   const std::string path = directory / "checkpoint_00000000.h5";
-  ASSERT_EQ(build(PETSC_COMM_WORLD, flat, &writer), 0);
+  ASSERT_EQ(build(run_communicator(), flat, &writer), 0);
   ASSERT_EQ(save_state(&writer.solver, position, "-x\n", path), 0);
-  ASSERT_EQ(build(PETSC_COMM_WORLD, larger, &reader), 0);
+  ASSERT_EQ(build(run_communicator(), larger, &reader), 0);
   CheckpointFile file;
-  ASSERT_EQ(file.open(PETSC_COMM_WORLD, path), 0);
+  ASSERT_EQ(file.open(run_communicator(), path), 0);
   EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("the grid needs"),
             std::string::npos);
   reader.solver.bodies().add_phase(reader.grid, {BodyPlace{}});
@@ -149,7 +150,7 @@ TEST(CheckpointFile, NamesAndLists) {
     for (const char *name : {"checkpoint_00000009.h5", "checkpoint_00000010.h5", "checkpoint_123456789.h5", "x.h5",
                              "checkpoint_00000011.h5.tmp"})
       std::ofstream(directory / name) << "";
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   std::vector<long> steps;
   for (const std::string &path : list_checkpoints(directory / "")) steps.push_back(checkpoint_step(path));
   EXPECT_EQ(steps, (std::vector<long>{123456789, 10, 9}));

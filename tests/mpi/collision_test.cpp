@@ -1,6 +1,7 @@
 // Two beads that a shear flow drives together: separate, whole, the same bits on any ranks and after a restart.
 #include "app/saved_state.hpp"
 #include "app/scene.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/colours.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "support/all_bodies.hpp"
@@ -91,7 +92,7 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
 std::string with_beads(const SharedDirectory &directory, std::string options, const std::string &places) {
   const std::string path = directory / "beads.csv";
   if (world_rank() == 0) std::ofstream(path) << "x,y,z\n" << places;
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   return options.replace(options.find("beads.csv"), 9, path);
 }
 
@@ -108,11 +109,11 @@ TEST(Collision, CollisionsHaveTheSameBitsOnAnyRanksAndAfterARestart) {
     const Outcome one = collide(PETSC_COMM_SELF, options, steps, dt);
     EXPECT_EQ(one.phases_before, 1u);
     EXPECT_EQ(one.phases, 2u) << "nothing has met";
-    EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt).hash, one.hash);
+    EXPECT_EQ(collide(run_communicator(), options, steps, dt).hash, one.hash);
     for (const int stop : {3, steps - 2}) {  // before and after they get two phases
       const std::string path = directory / checkpoint_name(stop);
-      EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path, stop).phases, stop == 3 ? 1u : 2u);
-      EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path).hash, one.hash) << stop;
+      EXPECT_EQ(collide(run_communicator(), options, steps, dt, path, stop).phases, stop == 3 ? 1u : 2u);
+      EXPECT_EQ(collide(run_communicator(), options, steps, dt, path).hash, one.hash) << stop;
     }
   }
 }
@@ -128,20 +129,20 @@ TEST(Collision, AColourIsGivenBackWhenBodiesHaveParted) {
   EXPECT_EQ(one.phases_before, 2u);
   EXPECT_EQ(one.phases, 1u);
   for (const double change : one.change) EXPECT_LT(std::fabs(change), 1e-7);
-  EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt).hash, one.hash);
+  EXPECT_EQ(collide(run_communicator(), options, steps, dt).hash, one.hash);
   for (const int stop : {5, steps - 2}) {
     const std::string path = directory / checkpoint_name(stop);
-    EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path, stop).phases, stop == 5 ? 2u : 1u);
-    EXPECT_EQ(collide(PETSC_COMM_WORLD, options, steps, dt, path).hash, one.hash) << stop;
+    EXPECT_EQ(collide(run_communicator(), options, steps, dt, path, stop).phases, stop == 5 ? 2u : 1u);
+    EXPECT_EQ(collide(run_communicator(), options, steps, dt, path).hash, one.hash) << stop;
   }
 }
 
 TEST(Collision, BodiesThatNeverMeetHaveTheirBits) {
   const SharedDirectory directory;
   const std::string options = with_beads(directory, flat_beads, "1.2,2.3,.5\n3.7,2.2,.5\n");
-  const Outcome separate = collide(PETSC_COMM_WORLD, options, 20, .012);
+  const Outcome separate = collide(run_communicator(), options, 20, .012);
   EXPECT_EQ(separate.phases, 1u);
-  EXPECT_EQ(collide(PETSC_COMM_WORLD, options + "-bead_contact merge", 20, .012).hash, separate.hash);
+  EXPECT_EQ(collide(run_communicator(), options + "-bead_contact merge", 20, .012).hash, separate.hash);
 }
 
 TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
@@ -154,7 +155,7 @@ TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
     Grid grid;
     Solver solver;
     std::string reason;
-    ASSERT_EQ(grid.create(PETSC_COMM_WORLD, parsed.config.grid), 0);
+    ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);
     ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
     ASSERT_EQ(advance(&solver, 8, .012), 0);
     if (!merge) {
@@ -179,8 +180,8 @@ TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
 TEST(Collision, PressedBodiesKeepTheirVolumes) {
   const SharedDirectory directory;
   const std::string options = with_beads(directory, flat_beads, "1.2,2.6,.5\n3.1,2.1,.5\n2.35,3.1,.5\n");
-  const Outcome separate = collide(PETSC_COMM_WORLD, options, 110, .012);
-  const Outcome merged = collide(PETSC_COMM_WORLD, options + "-bead_contact merge", 110, .012);
+  const Outcome separate = collide(run_communicator(), options, 110, .012);
+  const Outcome merged = collide(run_communicator(), options + "-bead_contact merge", 110, .012);
   for (int b = 0; b < 3; ++b) {
     EXPECT_LT(std::fabs(separate.change[b]), 1e-9);
     EXPECT_GT(std::fabs(merged.change[b]), 0.01);
@@ -196,7 +197,7 @@ TEST(Collision, BodiesThatOverlapAtTheStartAreBothWhole) {
     Grid grid;
     Solver solver;
     std::string reason;
-    ASSERT_EQ(grid.create(PETSC_COMM_WORLD, parsed.config.grid), 0);
+    ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);
     ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
     for (const double volume : volumes(solver)) {
       if (merge) {

@@ -1,5 +1,6 @@
 // Bodies of one species that come near get phases of their own: whole, at the right moment, the same on any ranks.
 #include "bodies/contact.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_bodies.hpp"
 #include "bodies/near_groups.hpp"
@@ -127,7 +128,7 @@ std::vector<NearBodies> near_cubes(MPI_Comm comm, bool flat, const Int3 &corner,
 }  // namespace
 
 TEST(NearBodies, AreFoundAtTheReachAndNotBeyond) {
-  for (const MPI_Comm comm : {PETSC_COMM_WORLD, PETSC_COMM_SELF})
+  for (const MPI_Comm comm : {run_communicator(), PETSC_COMM_SELF})
     for (const bool flat : {false, true})
       for (const Int3 &corner : {Int3{3, 2, 0}, Int3{20, 3, flat ? 0 : 17}, Int3{11, 10, flat ? 0 : 9}})
         for (const Int3 &way : {Int3{1, 0, 0}, Int3{0, 1, 0}, Int3{1, 1, 0}, Int3{0, 0, 1}, Int3{1, 1, 1}}) {
@@ -140,7 +141,7 @@ TEST(NearBodies, AreFoundAtTheReachAndNotBeyond) {
 }
 
 TEST(NearBodies, AcrossSeamsAndNotAcrossWalls) {
-  for (const MPI_Comm comm : {PETSC_COMM_WORLD, PETSC_COMM_SELF})
+  for (const MPI_Comm comm : {run_communicator(), PETSC_COMM_SELF})
     for (const bool walls : {false, true}) {
       Marks marks(comm, {40, 40, 1}, walls);
       marks.add({{{10, 1, 0}, {14, 3, 1}}, {{10, 37, 0}, {14, 39, 1}}});
@@ -155,7 +156,7 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
   for (const Int3 &cells : {Int3{24, 22, 1}, Int3{18, 20, 19}}) {
     const int z = cells[2];
     const std::vector<Block> blocks{{{4, 4, 0}, {8, 9, z / 2 + 1}}, {{10, 5, 0}, {13, 9, z / 2 + 1}}};
-    Marks marks(PETSC_COMM_WORLD, cells, true), before(PETSC_COMM_WORLD, cells, true);
+    Marks marks(run_communicator(), cells, true), before(run_communicator(), cells, true);
     marks.add(blocks);
     before.add(blocks);
     const std::vector<BodyMove> moves = marks.separate();
@@ -205,7 +206,7 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
 
 // Remains of one body, phi < 1e-5, reach cells of another in the phase that it goes to: nothing is overwritten.
 TEST(Contact, RemainsOfABodyOverwriteNobody) {
-  Marks marks(PETSC_COMM_WORLD, {40, 20, 1}, true);
+  Marks marks(run_communicator(), {40, 20, 1}, true);
   marks.add({{{3, 5, 0}, {7, 9, 1}}, {{9, 5, 0}, {13, 9, 1}}, {{22, 5, 0}, {26, 9, 1}}});
   ASSERT_EQ(marks.separate().size(), 1u);  // bead 2 goes
   const Int3 &begin = marks.grid.layout().begin;
@@ -240,14 +241,14 @@ TEST(Contact, RemainsOfABodyOverwriteNobody) {
 
 TEST(Contact, LowestFreeColourAndNoMoreThanNeeded) {
   // A chain of five: two colours do. Then a sixth that touches two of either.
-  Marks chain(PETSC_COMM_WORLD, {60, 24, 1}, true);
+  Marks chain(run_communicator(), {60, 24, 1}, true);
   std::vector<Block> blocks;
   for (int b = 0; b < 5; ++b) blocks.push_back({{3 + (2 + r) * b, 3, 0}, {6 + (2 + r) * b, 6, 1}});
   chain.add(blocks);
   EXPECT_FALSE(chain.separate().empty());
   EXPECT_EQ(chain.phases.size(), 2u);
   EXPECT_TRUE(chain.separate().empty());
-  Marks third(PETSC_COMM_WORLD, {60, 24, 1}, true);
+  Marks third(run_communicator(), {60, 24, 1}, true);
   blocks.push_back({{7, 8, 0}, {13, 11, 1}});
   third.add(blocks);
   EXPECT_GE(third.separate().size(), 3u);
@@ -257,8 +258,8 @@ TEST(Contact, LowestFreeColourAndNoMoreThanNeeded) {
 
 TEST(NearGroups, OneRankKnowsAllOfAGroup) {
   int rank, ranks;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_rank(run_communicator(), &rank);
+  MPI_Comm_size(run_communicator(), &ranks);
   // Rank r sees bodies 10 r + 1 ... 10 r + 11 of which the last is the next rank's; the first half of a chain goes
   // through all ranks, the others are pairs or alone.
   std::vector<int> seen;
@@ -266,12 +267,12 @@ TEST(NearGroups, OneRankKnowsAllOfAGroup) {
   std::vector<NearBodies> pairs{{10 * rank + 11, 10 * rank + 1, 0}, {10 * rank + 4, 10 * rank + 3, 1}};
   for (const int n : {2, 11}) pairs.push_back({10 * rank + n, 0, 5});
   NearGroups groups;
-  ASSERT_EQ(groups.connect(PETSC_COMM_WORLD, seen), 0);
+  ASSERT_EQ(groups.connect(run_communicator(), seen), 0);
   ASSERT_EQ(groups.gather(&pairs), 0);
   int count = static_cast<int>(pairs.size()), chain = 0;
   for (const NearBodies &pair : pairs) chain += pair.body % 10 == 1;
   EXPECT_TRUE(chain == 0 || chain == 2 * ranks);
-  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT, MPI_SUM, run_communicator());
   EXPECT_EQ(count, 4 * ranks);
   EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
   std::vector<BodyMove> moves;
@@ -286,7 +287,7 @@ TEST(NearGroups, OneRankKnowsAllOfAGroup) {
 TEST(Contact, AsOnOneRank) {
   std::mt19937 random(1);
   for (const Int3 &cells : {Int3{70, 61, 1}, Int3{33, 29, 26}}) {
-    Marks many(PETSC_COMM_WORLD, cells, false), one(PETSC_COMM_SELF, cells, false);
+    Marks many(run_communicator(), cells, false), one(PETSC_COMM_SELF, cells, false);
     for (int phase = 0; phase < 2; ++phase) {
       std::vector<Block> blocks(phase * 30);  // labels go on
       for (int b = 0; b < 30; ++b) {
@@ -309,14 +310,14 @@ TEST(Contact, AsOnOneRank) {
 }
 
 TEST(Contact, MoreThanTheLimitIsReportedAndNothingMoves) {
-  Marks marks(PETSC_COMM_WORLD, {12, 12, 1}, true);
+  Marks marks(run_communicator(), {12, 12, 1}, true);
   std::vector<Block> blocks;
   for (int b = 0; b < 144; ++b) blocks.push_back({{b % 12, b / 12, 0}, {b % 12 + 1, b / 12 + 1, 1}});
   marks.add(blocks);
   EXPECT_FALSE(marks.separate().empty());
   EXPECT_LE(marks.phases.size(), std::size_t(most_colours));
   // A periodic box in which each is near all others.
-  Marks tight(PETSC_COMM_WORLD, {6, 6, 12}, false);
+  Marks tight(run_communicator(), {6, 6, 12}, false);
   blocks.clear();
   for (int b = 0; b < 144; ++b) blocks.push_back({{b % 6, b / 6 % 6, b / 36}, {b % 6 + 1, b / 6 % 6 + 1, b / 36 + 1}});
   tight.add(blocks);

@@ -1,4 +1,5 @@
 // Every rank's view of the decomposition: complete, disjoint, the same everywhere and the same as the DMDA's.
+#include "base/rank_zero.hpp"
 #include "field/field_block.hpp"
 #include "field/global_vector.hpp"
 
@@ -9,7 +10,7 @@ namespace {
 
 int world_size() {
   int size = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  MPI_Comm_size(run_communicator(), &size);
   return size;
 }
 
@@ -18,7 +19,7 @@ void check(const GridSpec &spec) {
                                     << spec.processors[0] << " x " << spec.processors[1] << " x "
                                     << spec.processors[2]);
   Grid grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   const Layout &own = grid.layout();
 
   PetscInt x, y, z, nx, ny, nz;
@@ -39,7 +40,7 @@ void check(const GridSpec &spec) {
   // What layout_of says of another rank is what that rank says of itself.
   std::vector<int> sizes(grid.ranks());
   const int size = static_cast<int>(own.size);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, run_communicator());
 
   const Int3 &n = grid.cells();
   std::vector<int> times(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
@@ -102,7 +103,7 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       spec.boundary = {x, Boundary::wall, Boundary::periodic};
       if (!Grid::why_not(spec, world_size()).empty()) continue;
       Grid grid;
-      ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+      ASSERT_EQ(grid.create(run_communicator(), spec), 0);
       FieldBlock before(grid, 1), after(grid, 1);
       const Int3 &begin = grid.layout().begin;
       const auto truth = [&](int i, int j, int k) {

@@ -1,4 +1,5 @@
 // Powers of force, walls and elastic stress: the sums of velocity times the discrete forces, on any number of ranks.
+#include "base/rank_zero.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "physics/momentum.hpp"
@@ -111,7 +112,7 @@ TEST(EnergyRates, WallsAndDissipationAreThePowerOfTheViscousForce) {
   for (const bool flat : {false, true})
     for (const std::array<bool, 3> &has_walls :
          {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}}) {
-      Box box(PETSC_COMM_WORLD, flat, has_walls);
+      Box box(run_communicator(), flat, has_walls);
       box.move_walls({0.7, -0.4, flat ? 0 : 0.3});
       const Measures m = measure(box, 0.2);
       EXPECT_GT(std::fabs(m.rates.wall_power), 0.1);
@@ -123,7 +124,7 @@ TEST(EnergyRates, WallsAndDissipationAreThePowerOfTheViscousForce) {
 // With solids, one of them Mooney-Rivlin, on walls that move along x.
 TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
   for (const bool flat : {false, true}) {
-    Box box(PETSC_COMM_WORLD, flat, {false, true, true});
+    Box box(run_communicator(), flat, {false, true, true});
     box.move_walls({0.7, 0, 0});
     box.add_phase(Material{0.6}, 4);
     box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
@@ -140,7 +141,7 @@ TEST(EnergyRates, SameBitsAsOnOneRank) {
   for (const bool flat : {false, true}) {
     Measures m[2];
     for (int alone = 0; alone < 2; ++alone) {
-      Box box(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, flat, {true, true, false});
+      Box box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false});
       box.move_walls({0.7, -0.4, 0});
       box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
       m[alone] = measure(box, 0.2);

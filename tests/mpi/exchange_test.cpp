@@ -1,4 +1,5 @@
 // Ghost exchange: every ghost inside the domain and across periodic sides, at odd sizes, in every decomposition.
+#include "base/rank_zero.hpp"
 #include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
@@ -23,7 +24,7 @@ double sentinel(std::ptrdiff_t offset) { return -1.0 - static_cast<double>(offse
 // Calls `visit` for each decomposition, boundary and size that fits on these ranks.
 void for_each_grid(const std::function<void(const Grid &)> &visit) {
   int ranks = 0, visited = 0, split_x = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 12, 3}, Int3{12, 3, 1}})
     for (int sides = 0; sides < (cells[2] == 1 ? 4 : 8); ++sides)
       for (int px = 1; px <= ranks; ++px)
@@ -34,7 +35,7 @@ void for_each_grid(const std::function<void(const Grid &)> &visit) {
           spec.processors = {px, py, 0};
           if (!Grid::why_not(spec, ranks).empty()) continue;
           Grid grid;
-          ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+          ASSERT_EQ(grid.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message()
                        << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << grid.processors(0) << " x "
                        << grid.processors(1) << " x " << grid.processors(2) << ", walls " << sides);
@@ -129,7 +130,7 @@ TEST(GhostExchange, FillsThoseOfLargeBoxes) {
         spec.cells = cells;
         spec.boundary = {x, y, Boundary::periodic};
         Grid grid;
-        ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+        ASSERT_EQ(grid.create(run_communicator(), spec), 0);
         GhostExchange exchange(grid);
         FieldBlock block(grid, 3);
         prepare(grid, block);

@@ -1,4 +1,5 @@
 // -method fast: the same bits on any ranks, with moving and attached bodies, walls, two phases, both pressure solvers.
+#include "base/rank_zero.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -47,14 +48,14 @@ std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, 
 
 TEST(FastStep, SameBitsOnAnyRanks) {
   int ranks = 1;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (const Int3 cells : {Int3{24, 20, 1}, Int3{18, 16, 14}})
     for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac}) {
       const std::uint64_t one = run_hash(PETSC_COMM_SELF, cells, pressure, {0, 0, 0});
-      EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {0, 0, 0}), one);
-      EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {1, ranks, 1}), one);
+      EXPECT_EQ(run_hash(run_communicator(), cells, pressure, {0, 0, 0}), one);
+      EXPECT_EQ(run_hash(run_communicator(), cells, pressure, {1, ranks, 1}), one);
       if (cells[2] > 1) {
-        EXPECT_EQ(run_hash(PETSC_COMM_WORLD, cells, pressure, {1, 1, ranks}), one);
+        EXPECT_EQ(run_hash(run_communicator(), cells, pressure, {1, 1, ranks}), one);
       }
     }
 }
@@ -85,11 +86,11 @@ std::uint64_t thin_hash(MPI_Comm comm, const Int3 &processors) {
 
 TEST(FastStep, SameBitsWhereGhostsReachBeyondANeighboursWall) {
   int ranks = 1;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   const std::uint64_t one = thin_hash(PETSC_COMM_SELF, {0, 0, 0});
-  EXPECT_EQ(thin_hash(PETSC_COMM_WORLD, {0, 0, 0}), one);
+  EXPECT_EQ(thin_hash(run_communicator(), {0, 0, 0}), one);
   if (ranks <= 3) {
-    EXPECT_EQ(thin_hash(PETSC_COMM_WORLD, {1, ranks, 1}), one);
+    EXPECT_EQ(thin_hash(run_communicator(), {1, ranks, 1}), one);
   }
 }
 

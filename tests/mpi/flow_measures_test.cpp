@@ -1,5 +1,6 @@
 // Flow measures against integrals known in closed form, and the same bits on any ranks as on one.
 #include "diagnostics/flow_measures.hpp"
+#include "base/rank_zero.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
 
@@ -67,7 +68,7 @@ TEST(FlowMeasures, TaylorGreen) {
   const double pi = M_PI, rho = 1.5, mu = 0.3;
   for (const int nz : {1, 9}) {
     SCOPED_TRACE(nz);
-    Flow flow(PETSC_COMM_WORLD, {20, 12, nz}, {2 * pi, 2 * pi, 1}, {});
+    Flow flow(run_communicator(), {20, 12, nz}, {2 * pi, 2 * pi, 1}, {});
     const std::array<Field, 3> v{[](double x, double y, double) { return std::sin(x) * std::cos(y); },
                                  [](double x, double y, double) { return -std::cos(x) * std::sin(y); }, zero};
     const FlowMeasures m = flow.measure(v, {rho, mu, 0, 0});
@@ -85,7 +86,7 @@ TEST(FlowMeasures, TaylorGreen) {
 }
 
 TEST(FlowMeasures, UniformFlow) {
-  Flow flow(PETSC_COMM_WORLD, {5, 13, 7}, {1, 2, 3}, {});
+  Flow flow(run_communicator(), {5, 13, 7}, {1, 2, 3}, {});
   const std::array<Field, 3> v{[](double, double, double) { return -3.0; }, [](double, double, double) { return 4.0; },
                                [](double, double, double) { return -12.0; }};
   const FlowMeasures m = flow.measure(v, {2.0, 1.0, 0, 0});
@@ -107,7 +108,7 @@ TEST(FlowMeasures, LinearShear) {
       std::array<bool, 3> walls{};
       walls[d] = true;
       const Real3 length{1, 2, 3};
-      Flow flow(PETSC_COMM_WORLD, {5, 13, 7}, length, walls);
+      Flow flow(run_communicator(), {5, 13, 7}, length, walls);
       const double speed = 0.7, mu = 0.3;
       flow.walls[d][1].motion.velocity[c] = speed;
       std::array<Field, 3> v{zero, zero, zero};
@@ -122,7 +123,7 @@ TEST(FlowMeasures, LinearShear) {
 TEST(FlowMeasures, DissipationIsThePowerOfTheDiscreteViscousForce) {
   for (const std::array<bool, 3> &walls :
        {std::array<bool, 3>{true, true, true}, {true, false, true}, {false, true, false}}) {
-    Flow flow(PETSC_COMM_WORLD, {5, 13, 7}, {1, 2, 3}, walls);
+    Flow flow(run_communicator(), {5, 13, 7}, {1, 2, 3}, walls);
     const auto wild = [](double a) {
       return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z); };
     };
@@ -139,13 +140,13 @@ TEST(FlowMeasures, DissipationIsThePowerOfTheDiscreteViscousForce) {
             if (*p != 0) power -= *p * (p[q.stride(d)] - 2 * *p + p[-q.stride(d)]) / (h * h) * grid.cell_volume();
           }
     }
-    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, run_communicator());
     EXPECT_NEAR(m.viscous_dissipation, power, 1e-12 * power);
   }
 }
 
 TEST(FlowMeasures, DivergenceIsInUnitsOfSpeedAndSpacing) {
-  Flow flow(PETSC_COMM_WORLD, {8, 9, 7}, {1, 9, 7}, {});
+  Flow flow(run_communicator(), {8, 9, 7}, {1, 9, 7}, {});
   // u alternates by +-1 from face to face: |div v| = 2/h_x everywhere; half as fast, the ratio is the same.
   for (const double amplitude : {1.0, 0.5}) {
     const Field u = [=](double x, double, double) { return amplitude * (std::lround(x * 8) % 2 ? 1 : -1); };
@@ -165,7 +166,7 @@ TEST(FlowMeasures, DivergenceIsInUnitsOfSpeedAndSpacing) {
 
 TEST(FlowMeasures, ElasticEnergyAndVolumes) {
   for (const int nz : {1, 7}) {
-    Flow flow(PETSC_COMM_WORLD, {5, 13, nz}, {1, 2, 3}, {false, true, false});
+    Flow flow(run_communicator(), {5, 13, nz}, {1, 2, 3}, {false, true, false});
     const double box = nz == 1 ? 2 : 6;
     flow.add_phase(0.5, [](double, double, double) { return 0.25; }, {4, 0.5, 0.75});
     flow.add_phase(2.0, [](double, double y, double) { return y / 2; }, {1, 3, 1});
@@ -179,7 +180,7 @@ TEST(FlowMeasures, ElasticEnergyAndVolumes) {
 }
 
 TEST(FlowMeasures, NotANumberIsSeen) {
-  Flow flow(PETSC_COMM_WORLD, {5, 13, 7}, {1, 2, 3}, {});
+  Flow flow(run_communicator(), {5, 13, 7}, {1, 2, 3}, {});
   const Field ill = [](double x, double y, double z) { return x + y + z < 0.5 ? std::nan("") : 1.0; };
   const FlowMeasures m = flow.measure({zero, ill, zero}, {});
   for (const double value : {m.kinetic_energy, m.bulk_velocity[1], m.velocity_max[1], m.speed_max, m.divergence_rms,
@@ -194,7 +195,7 @@ TEST(FlowMeasures, SameBitsAsOnOneRank) {
     SCOPED_TRACE(cells[0]);
     std::vector<double> results[2];
     for (int alone = 0; alone < 2; ++alone) {
-      Flow flow(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, cells, {1, 2, 3}, {false, true, false});
+      Flow flow(alone ? PETSC_COMM_SELF : run_communicator(), cells, {1, 2, 3}, {false, true, false});
       const auto wild = [](double a) {
         return [a](double x, double y, double z) {
           const double s = std::sin(a + 171 * x + 235 * y * y + 53 * z);

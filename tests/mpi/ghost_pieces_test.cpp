@@ -1,4 +1,5 @@
 // Pieces of ghost rows near what a field has: all ghosts that are near come, and the ranks agree when pieces change.
+#include "base/rank_zero.hpp"
 #include "field/ghost_exchange.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ struct Scene {
     GridSpec spec;
     spec.cells = cells;
     for (int d = 0; d < 3; ++d) spec.boundary[d] = walls >> d & 1 ? Boundary::wall : Boundary::periodic;
-    EXPECT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+    EXPECT_EQ(grid.create(run_communicator(), spec), 0);
     exchange = std::make_unique<GhostExchange>(grid);
     value = FieldBlock(grid, 1);
   }
@@ -97,7 +98,7 @@ TEST(GhostPieces, HoldAllThatIsNear) {
         const Ghosts found = bring(s, width);
         EXPECT_EQ(found.wrong, 0);
         long sums[2] = {found.needed, found.left};
-        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
+        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_LONG, MPI_SUM, run_communicator());
         EXPECT_GT(sums[0], 0);
         if (s.rows.near()) {
           EXPECT_GT(sums[1], 0) << "all came";
@@ -114,7 +115,7 @@ TEST(GhostPieces, ChangeOnAllRanksAtOnce) {
   for (int step = 0; step < 24; ++step) {
     s.set({{10 + step, 1, 0}});
     int changed[2] = {s.rows.near() != before, s.rows.near() == before};
-    MPI_Allreduce(MPI_IN_PLACE, changed, 2, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, changed, 2, MPI_INT, MPI_MAX, run_communicator());
     EXPECT_NE(changed[0], changed[1]) << "ranks differ";
     changes += changed[0];
     before = s.rows.near();

@@ -1,5 +1,6 @@
 // HDF5 files on 1-4 ranks: what is in the file depends on the global index alone, and damage is an error.
 #include "base/body_range.hpp"
+#include "base/rank_zero.hpp"
 #include "io/fail_together.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/text_file.hpp"
@@ -24,7 +25,7 @@ TEST_P(Fields, RoundTrip) {
     scene.fill(block[0], place);
     const std::string path = directory / ("field_" + location_name(place) + ".h5");
     Hdf5File out;
-    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(out.create(run_communicator(), path), 0);
     const ConstView view = block[0];
     ASSERT_EQ(out.write_field(scene.grid, {"q", place, stored, high_wall}, {view}), 0);
     EXPECT_FALSE(fs::exists(path)) << "visible before it is complete";
@@ -43,7 +44,7 @@ TEST_P(Fields, RoundTrip) {
 
     Hdf5File in;
     std::string location;
-    ASSERT_EQ(in.open(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(in.open(run_communicator(), path), 0);
     ASSERT_EQ(in.read_field(scene.grid, "q", place, block[1]), 0);
     ASSERT_EQ(in.read_attribute("q", "location", &location), 0);
     EXPECT_EQ(location, location_name(place));
@@ -68,7 +69,7 @@ TEST(Hdf5, ChecksumIsThatOfOneRank) {
   std::string sums[2];
   for (int alone = 0; alone < 2; ++alone) {
     if (alone && world_rank() > 0) continue;
-    const NumberedFields scene({5, 13, 7}, true, alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD);
+    const NumberedFields scene({5, 13, 7}, true, alone ? PETSC_COMM_SELF : run_communicator());
     FieldBlock block(scene.grid, 1);
     scene.fill(block[0], at_face[1]);
     Hdf5File out, in;
@@ -92,16 +93,16 @@ TEST(Hdf5, DamageIsAnError) {
   scene.fill(block[0], at_centre);
   {
     Hdf5File out;
-    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(out.create(run_communicator(), path), 0);
     ASSERT_EQ(out.write_field(scene.grid, {"q"}, {block[0]}), 0);
     ASSERT_EQ(out.write_array("numbers", {3}, std::vector<double>{1, 2, 3}), 0);
     ASSERT_EQ(out.commit(), 0);
   }
   const std::string good = text_of(path);
   const auto rewrite = [&](const std::string &bytes) {
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
     if (world_rank() == 0) std::ofstream(path, std::ios::binary) << bytes;
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
   };
   const auto flipped = [&](double value, int bit) {
     std::string bytes = good;
@@ -115,7 +116,7 @@ TEST(Hdf5, DamageIsAnError) {
     Hdf5File in;
     std::vector<hsize_t> shape;
     std::vector<double> numbers;
-    PetscCall(in.open(PETSC_COMM_WORLD, path));
+    PetscCall(in.open(run_communicator(), path));
     PetscCall(in.read_field(scene.grid, "q", at_centre, block[0]));
     PetscCall(in.read_array("numbers", &shape, &numbers));
     EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
@@ -148,14 +149,14 @@ TEST(Hdf5, WrongInputIsNamed) {
   {
     FieldBlock source(scene.grid, 1);
     Hdf5File out;
-    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(out.create(run_communicator(), path), 0);
     ASSERT_EQ(out.write_field(scene.grid, {"q"}, {source[0]}), 0);
     ASSERT_EQ(out.write_array("numbers", {2, 2}, std::vector<long>{1, 2, 3, 4}), 0);
     ASSERT_EQ(out.write_attribute("/", "version", std::string("1.2")), 0);
     ASSERT_EQ(out.commit(), 0);
   }
   Hdf5File in;
-  ASSERT_EQ(in.open(PETSC_COMM_WORLD, path), 0);
+  ASSERT_EQ(in.open(run_communicator(), path), 0);
   const auto reading = [&](const Grid &grid, const char *name, const Staggering &s, FieldBlock &to) {
     return error_of([&] { return in.read_field(grid, name, s, to[0]); });
   };
@@ -177,10 +178,11 @@ TEST(Hdf5, WrongInputIsNamed) {
   EXPECT_EQ(numbers, (std::vector<long>{1, 2, 3, 4}));
   Hdf5File missing, nowhere;
   EXPECT_NE(
-      error_of([&] { return missing.open(PETSC_COMM_WORLD, directory / "none.h5"); }).find("none.h5: No such file"),
+      error_of([&] { return missing.open(run_communicator(), directory / "none.h5"); }).find("none.h5: No such file"),
       std::string::npos);
-  EXPECT_NE(error_of([&] { return nowhere.create(PETSC_COMM_WORLD, directory / "no/where.h5"); }).find("No such file"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { return nowhere.create(run_communicator(), directory / "no/where.h5"); }).find("No such file"),
+      std::string::npos);
 }
 
 TEST(Hdf5, UnfinishedFilesVanish) {
@@ -188,11 +190,11 @@ TEST(Hdf5, UnfinishedFilesVanish) {
   const std::string path = directory / "unfinished.h5";
   {
     Hdf5File out;
-    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(out.create(run_communicator(), path), 0);
     EXPECT_TRUE(fs::exists(temporary_name(path)));
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
   }
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   EXPECT_FALSE(fs::exists(temporary_name(path)));
   EXPECT_FALSE(fs::exists(path));
 }
@@ -204,7 +206,7 @@ TEST(Hdf5, AFullDiskIsAnError) {
   const FieldBlock block(scene.grid, 1);
   {
     Hdf5File out;
-    ASSERT_EQ(out.create(PETSC_COMM_WORLD, path), 0);
+    ASSERT_EQ(out.create(run_communicator(), path), 0);
     std::string error;
     {
       const FullDisk full_disk(10000);
@@ -217,17 +219,17 @@ TEST(Hdf5, AFullDiskIsAnError) {
     }
     EXPECT_EQ(error, temporary_name(path) + ": File too large");
   }
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   EXPECT_FALSE(fs::exists(path));
   EXPECT_FALSE(fs::exists(temporary_name(path)));
 }
 
 TEST(FailTogether, EveryRankGetsTheText) {
   int ranks;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-  EXPECT_EQ(fail_together(PETSC_COMM_WORLD, ""), 0);
+  MPI_Comm_size(run_communicator(), &ranks);
+  EXPECT_EQ(fail_together(run_communicator(), ""), 0);
   const std::string mine = world_rank() == ranks - 1 ? "the last rank is ill" : "";
-  EXPECT_EQ(error_of([&] { return fail_together(PETSC_COMM_WORLD, mine); }), "the last rank is ill");
+  EXPECT_EQ(error_of([&] { return fail_together(run_communicator(), mine); }), "the last rank is ill");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The interface on 1-4 ranks: the bits of plain sweeps over whole rows on one rank, mirrored scenes, kept volume.
+#include "base/rank_zero.hpp"
 #include "kernels/interface_flux.hpp"
 #include "support/interface_scene.hpp"
 
@@ -105,7 +106,7 @@ void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt)
 // Scenes of one rank need not run on all of them.
 bool on_first_rank() {
   int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_rank(run_communicator(), &rank);
   return rank == 0;
 }
 
@@ -120,7 +121,7 @@ double largest_courant_sum(const InterfaceScene &scene) {
 
 TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
   int ranks = 0, visited = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (const Int3 &cells : {Int3{13, 12, 14}, Int3{21, 9, 12}, Int3{6, 13, 7}, Int3{29, 18, 1}, Int3{12, 13, 1}})
     for (const int walls : {0, 2, cells[2] == 1 ? 1 : 5, cells[2] == 1 ? 3 : 7})
       for (int px = 1; px <= ranks; ++px)
@@ -130,7 +131,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
           ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
           spec.processors = {px, py, 0};
           if (!Grid::why_not(spec, ranks).empty()) continue;
-          ASSERT_EQ(part.create(PETSC_COMM_WORLD, spec), 0);
+          ASSERT_EQ(part.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << px
                                             << " x " << py << ", walls " << walls);
           for (InterfaceScene *scene : {&whole, &part}) {

@@ -1,5 +1,6 @@
 // Labels follow their bodies, on any number of ranks.
 #include "bodies/labels.hpp"
+#include "base/rank_zero.hpp"
 #include "field/ghost_exchange.hpp"
 #include "support/body_scene.hpp"
 
@@ -11,7 +12,7 @@ TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
   for (int layers : {1, 14}) {
     const GridSpec spec = box({28, 15, layers}, {28, 15, double(layers)});
     const SpeciesSpec sphere = species(Shape::sphere, 4);
-    BodyScene scene(PETSC_COMM_WORLD, spec);
+    BodyScene scene(run_communicator(), spec);
     const auto places_at = [&](int n) {
       const double z = layers / 2.0;
       return std::vector<BodyPlace>{{{wrap(5 + 0.5 * n, 28), wrap(6 + 0.25 * n, 15), z}, {}},
@@ -39,7 +40,7 @@ TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
 TEST(Labels, ABodyOfLessThanACellKeepsItsNameWhenItLeavesItsCell) {
   // All of phi in one cell, .11, that is the next one at every call, all around the box along y.
   const int n = 12;
-  BodyScene scene(PETSC_COMM_WORLD, box({6, n, 1}, {6, double(n), 1}));
+  BodyScene scene(run_communicator(), box({6, n, 1}, {6, double(n), 1}));
   scene.add(species(Shape::sphere, 0.4), {{{2.5, 0.5, 0.5}, {}}});
   GhostExchange exchange(scene.grid);
   Phase &phase = scene.phases[0];
@@ -65,7 +66,7 @@ TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
     const double x = std::remainder(cell[0] + 0.5 - centre, nx), y = cell[1] + 0.5 - 6.5, z = cell[2] + 0.5 - 6;
     return 0.5 * (1 - std::tanh(std::sqrt(x * x + y * y + z * z) - 4));
   };
-  const MPI_Comm comms[2] = {PETSC_COMM_WORLD, PETSC_COMM_SELF};
+  const MPI_Comm comms[2] = {run_communicator(), PETSC_COMM_SELF};
   BodyScene world(comms[0], box({nx, ny, nz}, {30, 13, 12})), alone(comms[1], box({nx, ny, nz}, {30, 13, 12}));
   for (BodyScene *scene : {&world, &alone}) {
     scene->add(species(Shape::sphere, 4), {{{5, 6.5, 6}, {}}, {{16, 6.5, 6}, {}}});
@@ -101,7 +102,7 @@ TEST(Labels, NewCellsAloneAreNamedAndOldOnesStay) {
   // Half a cell onwards: those that the surface has reached, and no others.
   const GridSpec spec = box({28, 15, 14}, {28, 15, 14});
   const SpeciesSpec sphere = species(Shape::sphere, 4);
-  BodyScene scene(PETSC_COMM_WORLD, spec);
+  BodyScene scene(run_communicator(), spec);
   const auto places_at = [](double shift) {
     return std::vector<BodyPlace>{{{5 + shift, 7, 7}, {}}, {{wrap(17 + shift, 28), 7, 7}, {}}};
   };
@@ -122,7 +123,7 @@ TEST(Labels, NewCellsAloneAreNamedAndOldOnesStay) {
       counts[0] += is_new;
       counts[1] += label(i, row.j, row.k) != (is_new ? expected(i, row.j, row.k) : old(i, row.j, row.k));
     }
-  MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, run_communicator());
   EXPECT_GT(counts[0], 20);
   EXPECT_EQ(counts[1], 0);
 }

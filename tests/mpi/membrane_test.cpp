@@ -1,5 +1,6 @@
 // Capsules that reach across ranks and walls of the split, and that have to be kept apart: the same bits on any number
 // of ranks.
+#include "base/rank_zero.hpp"
 #include "bodies/fill_phase.hpp"
 #include "support/all_bodies.hpp"
 #include "support/scene.hpp"
@@ -82,7 +83,7 @@ End run(MPI_Comm comm, const Case &c) {
 class Capsules : public testing::TestWithParam<Case> {};
 
 TEST_P(Capsules, SameBitsAsOnOneRank) {
-  const End all = run(PETSC_COMM_WORLD, GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
+  const End all = run(run_communicator(), GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
   EXPECT_EQ(all.hash, alone.hash);
   EXPECT_EQ(std::memcmp(&all.surface, &alone.surface, sizeof all.surface), 0);
   EXPECT_EQ(all.stretch_power, alone.stretch_power);

@@ -1,5 +1,6 @@
 // The V-cycle: the same bits however cells are shared among ranks and threads, and however many stages share a pass.
 #include "pressure/multigrid.hpp"
+#include "base/rank_zero.hpp"
 #include "grid/blocks.hpp"
 #include "support/poisson_scene.hpp"
 
@@ -51,16 +52,17 @@ int differences(const Cycle &s, const Cycle &one) {
 // Two ghost layers allow two stages to a pass, five three. Threads of more than two ranks would wait for each other.
 TEST(MultigridCycle, SameBitsOnAnyRanksThreadsAndStages) {
   int ranks = 0, deepest = 1;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (const Int3 &cells : {Int3{64, 48, 40}, Int3{45, 65, 51}, Int3{50, 61, 66}})
     for (GridSpec spec : all_boundaries(cells)) {
+      if (cells[0] != 45 && spec.boundary[0] == spec.boundary[1]) continue;  // all boundaries at odd sizes
       spec.ghosts = 2;
       const Cycle one(PETSC_COMM_SELF, spec);
       for (GridSpec &shared : all_decompositions(spec, false))
         for (shared.ghosts = 2; shared.ghosts <= 5; shared.ghosts += 3)
           for (int team = 1; team <= (ranks > 2 ? 1 : 3); team += 2) {
             set_threads(team);
-            const Cycle many(PETSC_COMM_WORLD, shared);
+            const Cycle many(run_communicator(), shared);
             set_threads(1);
             EXPECT_EQ(differences(many, one), 0) << name(shared) << shared.ghosts << " ghosts, " << team << " threads";
             deepest = std::max(deepest, many.stages_of_a_pass());
@@ -72,7 +74,7 @@ TEST(MultigridCycle, SameBitsOnAnyRanksThreadsAndStages) {
 // Three cells to a rank are too few for half of them, and the level too large for every rank.
 TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
   int ranks = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (int d = 0; d < 3; ++d)
     for (const bool flat : {false, true}) {
       if (flat && d == 2) continue;
@@ -83,7 +85,7 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         for (int c = 0; c < 3; ++c) spec.length[c] = cells[c];
         const Cycle one(PETSC_COMM_SELF, spec);
         spec.processors = processors;
-        const Cycle many(PETSC_COMM_WORLD, spec);
+        const Cycle many(run_communicator(), spec);
         EXPECT_EQ(differences(many, one), 0) << name(spec) << "split along "
                                              << "xyz"[d];
         bool joined = false;

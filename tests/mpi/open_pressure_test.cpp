@@ -1,4 +1,5 @@
 // The pressure solvers where the pressure is given on some sides: the increment is 0 there and its mean is not free.
+#include "base/rank_zero.hpp"
 #include "field/open_sides.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
@@ -84,7 +85,7 @@ TEST(OpenPressure, SameBitsOnAnyRanks) {
         OpenScene one(PETSC_COMM_SELF, spec, kind);
         one.solve(1e-6);
         for (const GridSpec &shared : all_decompositions(spec)) {
-          OpenScene many(PETSC_COMM_WORLD, shared, kind);
+          OpenScene many(run_communicator(), shared, kind);
           many.solve(1e-6);
           EXPECT_EQ(differences(many, one), 0) << open_name(shared) << " " << int(kind);
         }

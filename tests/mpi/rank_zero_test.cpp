@@ -15,13 +15,13 @@ protected:
   std::string place(const std::string &name) const { return room_ / (name + std::to_string(test::world_rank())); }
   void put(int there, const std::string &name, const std::string &text) const {
     if (test::world_rank() == there) std::ofstream(place(name), std::ios::binary) << text;
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
   }
   static bool same_everywhere(std::string text) {
     const std::string mine = text;
     share(&text);
     int same = text == mine;
-    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, run_communicator());
     return same == 1;
   }
   const test::SharedDirectory room_;

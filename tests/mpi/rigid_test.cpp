@@ -1,5 +1,6 @@
 // Rigid bodies that reach across ranks and sides, one of them turning into itself or, an ellipsoid, through the grid,
 // beside a soft one: the same bits on any number of ranks.
+#include "base/rank_zero.hpp"
 #include "support/rigid_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -80,7 +81,7 @@ End run(MPI_Comm comm, const Case &c) {
 class RigidBodies : public testing::TestWithParam<Case> {};
 
 TEST_P(RigidBodies, SameBitsAsOnOneRank) {
-  const End all = run(PETSC_COMM_WORLD, GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
+  const End all = run(run_communicator(), GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
   EXPECT_EQ(all.hash, alone.hash);
   for (std::size_t b = 0; b < all.loads.size(); ++b)
     EXPECT_EQ(std::memcmp(&all.loads[b], &alone.loads[b], sizeof all.loads[b]), 0);

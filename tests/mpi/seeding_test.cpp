@@ -1,5 +1,6 @@
 // A vessel with red cells and platelets at random: the same scene, and the same first steps, on any ranks.
 #include "app/scene.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/near_places.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
@@ -47,7 +48,7 @@ TEST(Seeding, SameSceneOnAnyRanks) {
   ASSERT_EQ(result.error, "");
   std::uint64_t alone[2] = {}, together[2] = {};
   ASSERT_EQ(first_steps(PETSC_COMM_SELF, test::with_all_places(result.config), alone), 0);
-  ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, together), 0);
+  ASSERT_EQ(first_steps(run_communicator(), result.config, together), 0);
   EXPECT_EQ(alone[0], together[0]);
   EXPECT_EQ(alone[1], together[1]);
   EXPECT_NE(alone[0], alone[1]);
@@ -59,27 +60,27 @@ TEST(BodySeries, OffTheFlowIsTheSame) {
     const ParseResult result =
         parse_line(capillary + "-rbc_contact merge -plt_contact merge -body_series " + (on ? "true" : "false"));
     ASSERT_EQ(result.error, "");
-    ASSERT_EQ(first_steps(PETSC_COMM_WORLD, result.config, hash, &flow[on]), 0);
+    ASSERT_EQ(first_steps(run_communicator(), result.config, hash, &flow[on]), 0);
     EXPECT_EQ(hash[1] == flow[on], !on) << "labels are part of the state, or are not there";
   }
   EXPECT_EQ(flow[0], flow[1]);
 }
 
 TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
-  // 125000 bodies of radius 0.4 cells; those with a centre up to a cell and that much outside count.
+  // 27000 bodies of radius 0.4 cells; those with a centre up to a cell and that much outside count.
   const ParseResult result = parse_line(
       "-time_end 1 -grid_cells 80,80,80 -grid_length 200,200,200 -species ball -ball_shape sphere -ball_radius 1 "
-      "-ball_shear_modulus 1 -ball_placement lattice -ball_count 50,50,50 -ball_jitter 1");
+      "-ball_shear_modulus 1 -ball_placement lattice -ball_count 30,30,30 -ball_jitter 1");
   ASSERT_EQ(result.error, "");
   Grid grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, result.config.grid), 0);
+  ASSERT_EQ(grid.create(run_communicator(), result.config.grid), 0);
   const Places all = test::with_all_places(result.config).places[0], &mine = result.config.places[0];
-  EXPECT_EQ(int(mine.known.size()), BodyRange::of(125000, test::world_rank(), grid.ranks()).size());
+  EXPECT_EQ(int(mine.known.size()), BodyRange::of(27000, test::world_rank(), grid.ranks()).size());
   Places near;
   ASSERT_EQ(bring_near(grid.comm(), grid, result.config.species[0], mine, &near), 0);
   double most = 1;
   for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.owned()[d] + 2 * (0.4 + 1) + 2) / 80.0);
-  EXPECT_LE(double(near.known.size()), most * 125000);
+  EXPECT_LE(double(near.known.size()), most * 27000);
   // Nobody is left out: every body with its centre in a cell of this rank is there.
   unsigned long sums[2] = {0, near.known.size()};
   for (const NumberedPlace &place : all.known) {
@@ -97,7 +98,7 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
       EXPECT_EQ(found->centre, place.centre);
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UNSIGNED_LONG, MPI_SUM, PETSC_COMM_WORLD);
-  EXPECT_EQ(sums[0], 125000u);
-  EXPECT_GE(sums[1], 125000u);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UNSIGNED_LONG, MPI_SUM, run_communicator());
+  EXPECT_EQ(sums[0], 27000u);
+  EXPECT_GE(sums[1], 27000u);
 }

@@ -1,5 +1,6 @@
 // The exact pressure solver: residual, ghosts, known modes, and the same bits on any decomposition.
 #include "pressure/smac.hpp"
+#include "base/rank_zero.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "support/lopsided.hpp"
@@ -61,7 +62,7 @@ struct Solution {
 };
 
 double largest(double value) {
-  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, run_communicator());
   return value;
 }
 
@@ -131,7 +132,7 @@ std::vector<GridSpec> all_boundaries(const Int3 &cells) {
 // Every way to share the cells of `spec` among the ranks of this run.
 std::vector<GridSpec> all_decompositions(GridSpec spec) {
   int ranks = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   std::vector<GridSpec> specs;
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks / px; ++py) {
@@ -161,7 +162,7 @@ protected:
 
 TEST(SmacAvailability, CreateFailsExactlyWithoutFftw) {
   Grid grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, all_boundaries({12, 12, 12})[0]), 0);
+  ASSERT_EQ(grid.create(run_communicator(), all_boundaries({12, 12, 12})[0]), 0);
   GhostExchange exchange(grid);
   std::unique_ptr<PressureSolver> solver;
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
@@ -182,7 +183,7 @@ TEST_F(Smac, RandomRightHandSideOnAllBoundariesAndDecompositions) {
       const std::vector<GridSpec> decompositions = all_decompositions(spec);
       ASSERT_FALSE(decompositions.empty());
       for (const GridSpec &shared : decompositions) {
-        const Solution many(PETSC_COMM_WORLD, shared, noise);
+        const Solution many(run_communicator(), shared, noise);
         EXPECT_LT(residual(many).relative, 1e-13) << name(shared);
         EXPECT_LT(std::abs(mean(many.grid, many.increment[0])), 1e-16) << name(shared);
         EXPECT_EQ(differences(many, one), 0) << name(shared);
@@ -200,7 +201,7 @@ TEST_F(Smac, SameBitsForOtherTransformLengths) {
       spec.boundary = {b, Boundary::wall, b};
       const Solution one(PETSC_COMM_SELF, spec, noise);
       for (const GridSpec &shared : all_decompositions(spec)) {
-        const Solution many(PETSC_COMM_WORLD, shared, noise);
+        const Solution many(run_communicator(), shared, noise);
         EXPECT_LT(residual(many).backward, 2e-15) << name(shared);
         EXPECT_EQ(differences(many, one), 0) << name(shared);
       }
@@ -225,7 +226,7 @@ TEST_F(Smac, SolvesEigenmodesExactly) {
                                                       : std::cos(2 * M_PI * m[d] * cell[d] / spec.cells[d]);
         return value;
       };
-      const Solution s(PETSC_COMM_WORLD, spec, [&](int i, int j, int k) { return eigenvalue * dt * mode(i, j, k); });
+      const Solution s(run_communicator(), spec, [&](int i, int j, int k) { return eigenvalue * dt * mode(i, j, k); });
       double worst = 0;
       s.each(0, [&](int i, int j, int k) {
         const Int3 &begin = s.grid.layout().begin;
@@ -240,12 +241,12 @@ TEST_F(Smac, SolvesEigenmodesExactly) {
 // A constant is no divergence that any pressure could remove: it is left out, and solving again repeats the bits.
 TEST_F(Smac, IgnoresTheMeanAndRepeatsItself) {
   for (const GridSpec &spec : all_boundaries({13, 12, 12})) {
-    Solution s(PETSC_COMM_WORLD, spec, [](int i, int j, int k) { return 5 + noise(i, j, k); });
+    Solution s(run_communicator(), spec, [](int i, int j, int k) { return 5 + noise(i, j, k); });
     EXPECT_LT(residual(s).relative, 1e-13) << name(spec);
     const std::uint64_t first = hash_points(s.grid, s.increment[0], at_centre, 1);
     s.solve();
     EXPECT_EQ(hash_points(s.grid, s.increment[0], at_centre, 1), first) << name(spec);
-    Solution constant(PETSC_COMM_WORLD, spec, [](int, int, int) { return 5.0; });
+    Solution constant(run_communicator(), spec, [](int, int, int) { return 5.0; });
     double worst = 0;
     constant.each(1, [&](int i, int j, int k) { worst = std::max(worst, std::abs(constant.increment[0](i, j, k))); });
     EXPECT_LT(largest(worst), 1e-15) << name(spec);

@@ -1,4 +1,5 @@
 // Snapshots on 1-4 ranks: every dataset at its place, and an XDMF index that names what is there.
+#include "base/rank_zero.hpp"
 #include "field/ghost_exchange.hpp"
 #include "io/snapshot_fields.hpp"
 #include "io/text_file.hpp"
@@ -69,7 +70,7 @@ void check_vtkhdf(const SharedDirectory &directory, const Grid &grid, int snapsh
     Hdf5File file;
     std::string type;
     std::vector<double> extent, spacing;
-    ASSERT_EQ(file.open(PETSC_COMM_WORLD, directory / (name + ".vtkhdf")), 0);
+    ASSERT_EQ(file.open(run_communicator(), directory / (name + ".vtkhdf")), 0);
     ASSERT_EQ(file.read_attribute("VTKHDF", "Type", &type), 0);
     ASSERT_EQ(file.read_attribute("VTKHDF", "WholeExtent", &extent), 0);
     ASSERT_EQ(file.read_attribute("VTKHDF", "Spacing", &spacing), 0);
@@ -110,7 +111,7 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   check_vtkhdf(directory, scene.grid, 2);
 
   Hdf5File file;
-  ASSERT_EQ(file.open(PETSC_COMM_WORLD, directory / "snapshot_000001.h5"), 0);
+  ASSERT_EQ(file.open(run_communicator(), directory / "snapshot_000001.h5"), 0);
   double time, step;
   std::vector<double> spacing, length;
   ASSERT_EQ(file.read_attribute("/", "time", &time), 0);

@@ -1,4 +1,5 @@
 // Global sums and the state hash: the same bits on every decomposition as on one rank.
+#include "base/rank_zero.hpp"
 #include "field/exact_sum.hpp"
 
 #include <gtest/gtest.h>
@@ -31,13 +32,13 @@ GridSpec box(const Int3 &cells, int walls = 0, const Int3 &processors = {0, 0, 0
 // All decompositions of `cells` over the world that fit.
 void for_each_split(const Int3 &cells, int walls, const std::function<void(const Grid &)> &visit) {
   int ranks = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks; ++py) {
       const GridSpec spec = box(cells, walls, {px, py, 0});
       if (!Grid::why_not(spec, ranks).empty()) continue;
       Grid grid;
-      ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+      ASSERT_EQ(grid.create(run_communicator(), spec), 0);
       SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on "
                                         << grid.processors(0) << " x " << grid.processors(1) << " x "
                                         << grid.processors(2) << ", walls " << walls);
@@ -91,8 +92,8 @@ TEST(GlobalSums, SameBitsOnAnyRanksInAnyOrder) {
 
 TEST(GlobalSums, CancellationAcrossRanks) {
   int rank = 0, ranks = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_rank(run_communicator(), &rank);
+  MPI_Comm_size(run_communicator(), &ranks);
   ExactSums sums(2);
   sums.add(0, 1e300);
   sums.add(0, 1);
@@ -100,19 +101,19 @@ TEST(GlobalSums, CancellationAcrossRanks) {
     for (int n = 0; n < ranks; ++n) sums.add(0, -1e300);
   sums.add(1, rank == ranks - 1 ? std::nan("") : 1);
   double result[2];
-  ASSERT_EQ(sums.reduce(PETSC_COMM_WORLD, result), 0);
+  ASSERT_EQ(sums.reduce(run_communicator(), result), 0);
   EXPECT_EQ(result[0], ranks);
   EXPECT_TRUE(std::isnan(result[1]));
 }
 
 TEST(GlobalSums, ReduceStartsAnew) {
   int ranks = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   ExactSums sums(1);
   double result = 0;
   for (int round = 0; round < 3; ++round) {
     sums.add(0, 1.5);
-    ASSERT_EQ(sums.reduce(PETSC_COMM_WORLD, &result), 0);
+    ASSERT_EQ(sums.reduce(run_communicator(), &result), 0);
     EXPECT_EQ(result, 1.5 * ranks);
   }
 }

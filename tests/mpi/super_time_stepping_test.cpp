@@ -1,5 +1,6 @@
 // RKL2 on eigenmodes of the discrete Laplacian: the stages of a number, as Meyer, Balsara & Aslam (2014) write them.
 #include "physics/super_time_stepping.hpp"
+#include "base/rank_zero.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,7 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   spec.length = {1.6, 6, planes * 0.1};
   spec.boundary = {Boundary::periodic, boundary, Boundary::periodic};
   Grid grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   GhostExchange exchange(grid);
   const double viscosity = 0.7, dt = 0.02, first = 1.3, slope = -40, start = 0.25;
   SuperTimeStepping work{FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3)};

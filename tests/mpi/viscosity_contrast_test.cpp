@@ -1,5 +1,6 @@
 // Bodies with a viscosity of their own: the energy balance of the viscous force to round-off, and whole steps with the
 // same bits on any number of ranks; without contrast those of a scene that has never heard of it.
+#include "base/rank_zero.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
@@ -92,7 +93,7 @@ TEST(ViscosityContrast, PowerOfTheForceIsThatOfTheWallsLessTheDissipation) {
     for (const double contrast : {0.01, 5.0, 100.0})
       for (const std::array<bool, 3> &bounded :
            {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}, {false, false, false}}) {
-        Box box(PETSC_COMM_WORLD, flat, bounded, contrast);
+        Box box(run_communicator(), flat, bounded, contrast);
         const double dissipation = box.flow().viscous_dissipation;
         const double walls = box.rates().wall_power;
         EXPECT_GT(dissipation, 0.1);
@@ -105,7 +106,7 @@ TEST(ViscosityContrast, MeasuresHaveTheBitsOfOneRank) {
   for (const bool flat : {false, true}) {
     double values[2][3];
     for (int alone = 0; alone < 2; ++alone) {
-      const Box box(alone ? PETSC_COMM_SELF : PETSC_COMM_WORLD, flat, {true, true, false}, 5);
+      const Box box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false}, 5);
       double largest = 0;
       for (const WallStress &wall : box.stresses())
         for (const std::vector<double> &values_of_wall : wall.components)
@@ -176,7 +177,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps) {
 class Contrast : public testing::TestWithParam<Case> {};
 
 TEST_P(Contrast, SameBitsAsOnOneRank) {
-  EXPECT_EQ(hash_after(PETSC_COMM_WORLD, GetParam(), 8), hash_after(PETSC_COMM_SELF, GetParam(), 8));
+  EXPECT_EQ(hash_after(run_communicator(), GetParam(), 8), hash_after(PETSC_COMM_SELF, GetParam(), 8));
 }
 
 constexpr PressureKind acm = PressureKind::acm, smac = PressureKind::smac;
@@ -195,9 +196,9 @@ TEST(ViscosityContrast, OfOneIsNone) {
     for (const Int3 &cells : {Int3{18, 16, 14}, Int3{23, 19, 1}}) {
       const Case none{"", method, smac, cells, 0}, same{"", method, smac, cells, 0.3},
           more{"", method, smac, cells, 0.6};
-      const std::uint64_t reference = hash_after(PETSC_COMM_WORLD, none, 3);
-      EXPECT_EQ(hash_after(PETSC_COMM_WORLD, same, 3), reference);
-      EXPECT_NE(hash_after(PETSC_COMM_WORLD, more, 3), reference);
+      const std::uint64_t reference = hash_after(run_communicator(), none, 3);
+      EXPECT_EQ(hash_after(run_communicator(), same, 3), reference);
+      EXPECT_NE(hash_after(run_communicator(), more, 3), reference);
     }
 }
 

@@ -1,5 +1,6 @@
 // Bodies from files: the same bits on any number of ranks, and however they cut the box.
 #include "app/voxels.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/fill_phase.hpp"
 #include "support/files.hpp"
 
@@ -56,16 +57,16 @@ TEST(Voxels, SameBitsOnAnyRanks) {
     write_nrrd(room / "v.nrrd");
     write_stl(room / "v.stl");
   }
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   int ranks;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   for (const char *name : {"v.nrrd", "v.stl"})
     for (int along = -1; along < 3; ++along) {
       GridSpec spec;
       spec.cells = {20, 16, 12};
       if (along >= 0) spec.processors = {1, 1, 1}, spec.processors[along] = ranks;
       Grid whole, parts;
-      ASSERT_EQ(parts.create(PETSC_COMM_WORLD, spec), 0);
+      ASSERT_EQ(parts.create(run_communicator(), spec), 0);
       spec.processors = {0, 0, 0};
       ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
       const Phase all = fill(whole, room / name), mine = fill(parts, room / name);
@@ -78,7 +79,7 @@ TEST(Voxels, SameBitsOnAnyRanks) {
           ASSERT_EQ(mine.label[0](i, row.j, row.k), a > 0 ? 5 : 0);
           solid += a > 0;
         }
-      MPI_Allreduce(MPI_IN_PLACE, &solid, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+      MPI_Allreduce(MPI_IN_PLACE, &solid, 1, MPI_INT, MPI_SUM, run_communicator());
       EXPECT_GT(solid, 300);
     }
 }
@@ -92,11 +93,11 @@ TEST(Voxels, ErrorsOfOneRankAreEverybodys) {
     file.seekp(-8, std::ios::end);
     file.write(reinterpret_cast<const char *>(&two), sizeof two);
   }
-  MPI_Barrier(PETSC_COMM_WORLD);
+  MPI_Barrier(run_communicator());
   Grid grid;
   GridSpec spec;
   spec.cells = {20, 16, 12};
-  ASSERT_EQ(grid.create(PETSC_COMM_WORLD, spec), 0);
+  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   SpeciesSpec species;
   species.name = "part";
   species.shape = Shape::voxels;

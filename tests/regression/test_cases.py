@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Every case of options/ for a few steps, coarse and with both methods: it ends well, leaves its files, all of them
-finite. Cases whose start or first moments are exact are compared. (test_same_bits.py: the same on any ranks.)"""
+finite, and gives the same results on three ranks. Cases whose start or first moments are exact are compared."""
 import json
 import math
 import os
@@ -14,9 +14,10 @@ import h5py
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from eulastic import Run, read_options  # noqa: E402
+from many_runs import Plan  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
@@ -78,11 +79,21 @@ class Cases(unittest.TestCase):
                 self.assertTrue((run.directory / f"profile_{axis}.csv").exists())
 
     def first_steps(self, method):
+        """On one rank, and with the same hash on three."""
+        plan = Plan(self.room)
+        for case in CASES:
+            for ranks in (1, 3):
+                plan.add(f"{case}_{method}{ranks}", ROOT / f"options/{case}.opts", "-grid_cells", coarse(case), "-method", method,
+                         "-time_steps_max", STEPS, "-time_step", 0, ranks=ranks)
+        outcomes = plan.execute()
         for case in CASES:
             with self.subTest(case):
-                options = ["-grid_cells", coarse(case), "-method", method, "-time_steps_max", str(STEPS),
-                           "-time_step", "0"]
-                self.check_files(self.run_case(case, *options, name=method))
+                one, other = (outcomes[f"{case}_{method}{ranks}"] for ranks in (1, 3))
+                for outcome in (one, other):
+                    self.assertEqual(outcome.code, 0, outcome.err)
+                    self.assertNotIn("error", outcome.err)
+                self.check_files(Run(one.directory))
+                self.assertEqual(one.results(), other.results())
 
     def test_there_are_twelve(self):
         self.assertGreaterEqual(len(ALL_CASES), 12)

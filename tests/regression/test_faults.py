@@ -28,7 +28,8 @@ SECONDS = 300  # far more than it takes on a busy machine, far less than for eve
 class Faults(Restart):
     def fails(self, kind, verb, rank, ranks=2, count=3):
         self.environment.update({"LD_PRELOAD": LIBRARY, "EULASTIC_FAULT": f"{kind} {verb} {rank} {count}",
-                                 "OMPI_MCA_orte_base_help_aggregate": "0"})
+                                 "OMPI_MCA_orte_base_help_aggregate": "0",
+                                 "OMPI_MCA_odls_base_sigkill_timeout": "0"})  # mpiexec kills what is left at once
         scene = list(FLAT)
         if verb in WITHOUT:
             at = scene.index(WITHOUT[verb])

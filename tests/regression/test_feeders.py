@@ -68,17 +68,19 @@ class Feeders(SceneCase):
         self.assertLess(abs(run.series.flow_rate_xmin + run.series.flow_rate_xmax).max(), 1e-5)
 
     def test_same_on_any_ranks_and_threads_and_after_a_restart(self):
-        for name, scene in (("crowd", CROWD), ("ball", [*TUBE, *BALL]), ("capsule", [*TUBE, *CAPSULE])):
-            one = self.run_program(name, *scene)
+        scenes = {"crowd": (CROWD, 4), "ball": ([*TUBE, *BALL], 3), "capsule": ([*TUBE, *CAPSULE], 2)}
+        whole = self.run_together({name: (scene, {}) for name, (scene, _) in scenes.items()})
+        others = {}
+        for name, (scene, ranks) in scenes.items():
+            others[f"{name}_ranks"] = scene, {"ranks": ranks}
+            others[f"{name}_threads"] = [*scene, "-threads", "2"], {}
+            others[f"{name}_half"] = [*scene, "-time_steps_max", whole[name].summary["steps"] * 2 // 3], {}
+        others = self.run_together(others)
+        for name, (scene, ranks) in scenes.items():
+            one, half = whole[name], self.room / f"{name}_half"
             self.assertGreater(len(one.bodies.id), (one.bodies.volume[0] > 0).sum())
-            for ranks in (2, 3, 4):
-                other = self.run_program(f"{name}{ranks}", *scene, ranks=ranks)
-                self.assertEqual(other.summary["state_hash"], one.summary["state_hash"], ranks)
-            self.assertEqual(self.run_program(f"{name}_threads", *scene, "-threads", "2").summary["state_hash"],
-                             one.summary["state_hash"])
-            steps = str(one.summary["steps"] * 2 // 3)
-            self.run_program(f"{name}_half", *scene, "-time_steps_max", steps)
-            half = self.room / f"{name}_half"
+            for way in ("ranks", "threads"):
+                self.assertEqual(others[f"{name}_{way}"].summary["state_hash"], one.summary["state_hash"], (name, way))
             done = subprocess.run([BINARY, half / "options.txt", "-restart", half, "-output_dir", half, "-time_steps_max", "0"],
                                   capture_output=True, text=True, timeout=300)
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -9,7 +9,10 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from full import FULL  # noqa: E402
 from restart_case import ROOT, FLAT, OFTEN, Restart  # noqa: E402
+
+KILLS = 20 if FULL else 5
 
 
 class Kills(Restart):
@@ -23,10 +26,10 @@ class Kills(Restart):
         self.run_case("run", *FLAT, "-time_steps_max", 4, *OFTEN, ranks=2)
 
     def test_kills(self):
-        result = subprocess.run([sys.executable, ROOT / "scripts/dev/kill_test", "20", "--seed", "5"], env=self.environment,
+        result = subprocess.run([sys.executable, ROOT / "scripts/dev/kill_test", str(KILLS), "--seed", "5"], env=self.environment,
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertRegex(result.stdout, r"\A20 kills ")
+        self.assertRegex(result.stdout, rf"\A{KILLS} kills ")
 
 
 if __name__ == "__main__":

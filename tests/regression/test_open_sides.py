@@ -28,23 +28,24 @@ def points_of_zero(x, values):
 
 class OpenSides(SceneCase):
     def test_same_on_any_ranks_and_threads_and_after_a_restart(self):
-        for scene, end in ((FLAT, ".6"), (DEEP, ".2")):
-            for solver in ("acm", "smac"):
-                options = [*scene, "-pressure_solver", solver]
-                name = f"{len(scene)}_{solver}"
-                one = self.run_program(name, *options, "-time_end", end, "-checkpoint_interval", "1",
-                                       "-checkpoint_keep", "1").summary
-                for ranks in (2, 3, 4):
-                    other = self.run_program(f"{name}_{ranks}", *options, "-time_end", end, ranks=ranks).summary
-                    self.assertEqual(other["state_hash"], one["state_hash"], (solver, ranks))
-                    self.assertEqual(other["sides"], one["sides"])
-                threads = self.run_program(f"{name}_threads", *options, "-time_end", end, "-threads", "2").summary
-                self.assertEqual(threads["state_hash"], one["state_hash"])
-                self.run_program(f"{name}_half", *options, "-time_end", end, "-time_steps_max", "20",
-                                 "-checkpoint_interval", end)
-                rest = self.run_program(f"{name}_rest", *options, "-time_end", end, "-restart",
-                                        self.room / f"{name}_half", ranks=2).summary
-                self.assertEqual(rest["state_hash"], one["state_hash"])
+        scenes = {f"{name}_{solver}": ([*scene, "-pressure_solver", solver, "-time_end", end], end)
+                  for name, scene, end in (("flat", FLAT, ".6"), ("deep", DEEP, ".2")) for solver in ("acm", "smac")}
+        runs = {}
+        for name, (options, end) in scenes.items():
+            runs[name] = options, {}
+            for ranks in (2, 3, 4):
+                runs[f"{name}_{ranks}"] = options, {"ranks": ranks}
+            runs[f"{name}_threads"] = [*options, "-threads", "2"], {}
+            runs[f"{name}_half"] = [*options, "-time_steps_max", "20", "-checkpoint_interval", end], {}
+        runs = self.run_together(runs)
+        rests = self.run_together({f"{name}_rest": ([*options, "-restart", self.room / f"{name}_half"], {"ranks": 2})
+                                   for name, (options, _) in scenes.items()})
+        for name in scenes:
+            one = runs[name].summary
+            for way in ("2", "3", "4", "threads"):
+                other = runs[f"{name}_{way}"].summary
+                self.assertEqual((other["state_hash"], other["sides"]), (one["state_hash"], one["sides"]), (name, way))
+            self.assertEqual(rests[f"{name}_rest"].summary["state_hash"], one["state_hash"])
 
     def test_what_comes_in_goes_out(self):
         for scene in (FLAT, DEEP):

@@ -1,4 +1,5 @@
 """Scripts that measure: their tables, from numbers of known results and from short runs."""
+import pathlib
 import re
 import sys
 import types
@@ -7,6 +8,8 @@ import unittest
 import numpy
 
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from full import full  # noqa: E402
 from test_scripts import SCRIPTS, WithFolder, load, start  # noqa: E402
 
 
@@ -36,6 +39,7 @@ class Performance(WithFolder):
         for case in steps.CASES:
             self.assertEqual(steps.options(case)["-time_step"], "0")
 
+    @full
     def test_membranes(self):
         made = start(SCRIPTS / "studies/performance/membranes", "--quick", "--output", self.folder).stdout
         self.assertEqual(re.findall(r"\| (solid|membranes|[\w-]+, Ca = [.\d]+, viscosity ratio [.\d]+) \|", made),
@@ -45,6 +49,7 @@ class Performance(WithFolder):
         self.assertEqual(len(off), 3)
         self.assertLess(max(off), 8)  # 2.4, 6.2, 5.5 at 4 cells per radius
 
+    @full
     def test_rigid_tubes(self):
         made = start(SCRIPTS / "studies/performance/rigid_tubes", "--quick", "--output", self.folder).stdout
         rows = re.findall(r"\| (rigid|elastic)[^|]* \| [.\d]+ \| ([-+.\d]+) % \| (\d+) \|", made)
@@ -52,11 +57,13 @@ class Performance(WithFolder):
         self.assertLess(abs(float(rows[0][1])), 3)
         self.assertTrue(all(int(row[2]) > int(rows[0][2]) for row in rows[1:]), "what is stiff takes more steps")
 
+    @full
     def test_cost_of_output(self):
         made = start(SCRIPTS / "studies/performance/cost_of_output", "--quick", "--output", self.folder).stdout
         step = float(re.search(r"\| channel_rbc \| [^|]* \| (\d+) \| ([-.\d]+) \| ([-.\d]+) \|", made)[1])
         self.assertGreater(step, 0)
 
+    @full
     def test_race(self):
         done = start(SCRIPTS / "studies/performance/race", "--quick", "--output", self.folder)
         rows = [line.split("  ") for line in done.stdout.splitlines()]
@@ -115,6 +122,7 @@ class Performance(WithFolder):
         self.assertAlmostEqual(thickness, 1.3, delta=1e-3)
         self.assertAlmostEqual(largest, 1, delta=1e-12)
 
+    @full
     def test_cost_of_bodies(self):
         done = start(SCRIPTS / "studies/performance/cost_of_bodies", "--quick", "--only", "share", "memory", "crowd")
         self.assertEqual(done.returncode, 0, done.stderr)

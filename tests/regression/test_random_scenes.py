@@ -2,26 +2,22 @@
 """Scenes by dice: box, walls, bodies, laws, methods. The same state hash, series and measures of bodies on random splits,
 with threads, with nothing skipped, without AVX-512, and restarted.
 
-Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE. EULASTIC_SCENES: how many (8), EULASTIC_SEED: of the
+Needs EULASTIC_RUN_MANY, EULASTIC_RUN_MANY_AVX2 and EULASTIC_MPIEXEC. EULASTIC_SCENES: how many (8), EULASTIC_SEED: of the
 first one (372: the sixth failed once). EULASTIC_WIDE=1: 512 cells along x, which is split in two as well.
 """
-import json
 import math
 import os
 import pathlib
 import random
-import subprocess
 import sys
 import tempfile
 import unittest
 
-import h5py
-
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from many_runs import Plan  # noqa: E402
 from processor import has_avx512  # noqa: E402
 
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 SCENES, SEED = int(os.environ.get("EULASTIC_SCENES", 8)), int(os.environ.get("EULASTIC_SEED", 372))
 WIDE = os.environ.get("EULASTIC_WIDE") == "1"
 GUARDS = "divergence", "volume_drift", "energy_growth", "mach"  # what a coarse grid does is not the question
@@ -124,58 +120,54 @@ class RandomScenes(unittest.TestCase):
         self.addCleanup(room.cleanup)
         self.room = pathlib.Path(room.name)
 
-    def run_program(self, words, directory, ranks=(1, 1, 1), program="EULASTIC"):
-        """State hash, series and measures; None if the program refuses or stops."""
-        count = math.prod(ranks)
-        if count > 1:
-            words = [*words, "-da_processors_x", str(ranks[0]), "-da_processors_y", str(ranks[1])]
-            words += ["-da_processors_z", str(ranks[2])] if ranks[2] > 1 else []
-        command = [MPIEXEC, "--oversubscribe", "-n", str(count)] if count > 1 else []
-        done = subprocess.run([*command, os.environ[program], *words, "-output_dir", self.room / directory,
-                               "-output_overwrite"], capture_output=True, text=True, timeout=300)
-        self.assertIn(done.returncode, (0, 2, 3), done.stderr)
-        if done.returncode:
-            return None
-        summary = json.loads((self.room / directory / "summary.json").read_text())
-        found = {"state_hash": summary["state_hash"], "series": (self.room / directory / "series.csv").read_text()}
-        if summary["bodies"]:
-            with h5py.File(self.room / directory / "bodies.h5") as bodies:
-                found["measures"] = {name: bodies[name][...].tobytes() for name in bodies}
-        return found
-
     def test_same_bits(self):
         ran = compared = restarted = 0
-        programs = {"nothing skipped": {"program": "EULASTIC_WHOLE"}, "without AVX-512": {"program": "EULASTIC_AVX2"}}
-        if not has_avx512():
-            del programs["without AVX-512"]
-            print("skipped: without AVX-512, which this processor does not have")
         for seed in range(SEED, SEED + SCENES):
             dice = random.Random(seed)
             words, cells = scene(dice)
             steps = dice.choice((4, 7, 11, 25))
-            whole = [*words, "-time_steps_max", str(steps)]
-            one = self.run_program(whole, "one")
-            if one is None:
+            whole, half = [*words, "-time_steps_max", steps], [*words, "-time_steps_max", max(1, steps // 2)]
+            on = lambda ranks: [word for d, n in zip("xyz", ranks) if d != "z" or n > 1 for word in (f"-da_processors_{d}", n)]
+            number = lambda ranks: {"ranks": math.prod(ranks)}
+            plan, alone = Plan(self.room), Plan(self.room, ranks=1)
+            plan.add(f"{seed}_one", *whole)
+            ways = []
+            for ranks in sorted({split(dice, cells), split(dice, cells)}):
+                ways.append("{}_ranks_{}x{}x{}".format(seed, *ranks))
+                plan.add(ways[-1], *whole, *on(ranks), **number(ranks))
+            balanced, first, second = (split(dice, cells) for _ in range(3))
+            plan.add(f"{seed}_threads", *whole, "-threads", dice.choice((2, 3)))
+            plan.add(f"{seed}_balanced", *whole, "-balance", *on(balanced), **number(balanced))
+            plan.add(f"{seed}_whole", *whole, skip_nothing=True)
+            plan.add(f"{seed}_half", *half, *on(first), **number(first))
+            plan.wait()
+            plan.add(f"{seed}_restarted", *whole, "-restart", self.room / f"{seed}_half", *dice.choice(([], ["-balance"])),
+                     *on(second), **number(second))
+            outcomes = plan.execute()
+            ways += [f"{seed}_{way}" for way in ("threads", "balanced", "whole")]
+            if has_avx512():
+                alone.add(f"{seed}_avx2", *whole)
+                outcomes |= alone.execute("EULASTIC_RUN_MANY_AVX2")
+                ways.append(f"{seed}_avx2")
+            one = outcomes[f"{seed}_one"]
+            self.assertIn(one.code, (0, 2, 3), one.err)
+            if one.code:
                 continue
             ran += 1
-            ways = {"{} x {} x {} ranks".format(*ranks): {"ranks": ranks} for ranks in {split(dice, cells), split(dice, cells)}}
-            ways |= {"threads": {"words": [*whole, "-threads", str(dice.choice((2, 3)))]},
-                     "balanced": {"words": [*whole, "-balance"], "ranks": split(dice, cells)}, **programs}
-            half = [*words, "-time_steps_max", str(max(1, steps // 2)), "-checkpoint_interval", "1e9"]
-            if self.run_program(half, "half", split(dice, cells)) is not None:
-                ways["restarted"] = {"words": [*whole, "-restart", str(self.room / "half"),
-                                               *dice.choice(([], ["-balance"]))], "ranks": split(dice, cells)}
-            for way, how in ways.items():
-                with self.subTest(f"seed {seed}, {way}: {' '.join(whole)}"):
-                    other = self.run_program(**{"words": whole, "directory": "other", **how})
-                    self.assertIsNotNone(other)
+            for way in [*ways, f"{seed}_restarted"]:
+                with self.subTest(f"{way}: {' '.join(map(str, whole))}"):
+                    other = outcomes[way]
+                    if way.endswith("restarted") and outcomes[f"{seed}_half"].code:
+                        continue
+                    self.assertEqual(other.code, 0, other.err)
                     compared += 1
-                    restarted += way == "restarted"
-                    for what in one if way != "restarted" else ("state_hash",):
-                        self.assertEqual(one[what], other[what], what)
+                    restarted += way.endswith("restarted")
+                    results = one.results()
+                    for what in results if not way.endswith("restarted") else ("state_hash",):
+                        self.assertEqual(results[what], other.results()[what], what)
         print(f"{SCENES} scenes, {ran} ran: {compared} compared, {restarted} of them restarted")
         self.assertGreater(ran, 0.6 * SCENES)
-        self.assertGreaterEqual(compared, (2 + len(programs)) * ran)
+        self.assertGreaterEqual(compared, 4 * ran)
         self.assertGreater(restarted, 0.6 * ran)
 
 

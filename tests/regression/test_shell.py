@@ -2,12 +2,13 @@
 import contextlib
 import io
 import os
+import re
 import runpy
 import shutil
 import sys
 import unittest
 
-from test_scripts import ROOT, SCRIPTS, WithFolder, start
+from test_scripts import ROOT, SCRIPTS, WithFolder, load, start
 
 
 class Shell(WithFolder):
@@ -69,7 +70,7 @@ add_test(NAME b COMMAND true)
 add_test(NAME c COMMAND {})
 add_test(NAME d COMMAND true)
 add_test(NAME e COMMAND true)
-set_tests_properties(a PROPERTIES LABELS "unit;quick")
+set_tests_properties(a PROPERTIES LABELS unit)
 set_tests_properties(b PROPERTIES LABELS "mpi;quick")
 set_tests_properties(c PROPERTIES LABELS "convergence")
 set_tests_properties(d PROPERTIES LABELS "full")
@@ -78,13 +79,14 @@ set_tests_properties(d PROPERTIES LABELS "full")
     def test_every_test_is_counted_once(self):
         status, last, out = self.count(self.TOY.format("true"))
         self.assertEqual((status, last), (0, "4 passed, 0 failed"))
-        self.assertRegex(out, r"(?m)^unit\+mpi +\d+:\d\d +5$")
-        self.assertNotIn("regression", out)  # no such test, no such part
+        self.assertRegex(out, r"(?m)^ten slowest tests")
         self.assertEqual(self.count(self.TOY.format("true"), "--quick")[:2], (0, "2 passed, 0 failed"))
         self.assertEqual(self.count(self.TOY.format("true"), "--full")[:2], (0, "5 passed, 0 failed"))
 
     def test_failures_count(self):
-        self.assertEqual(self.count(self.TOY.format("false"))[:2], (1, "3 passed, 1 failed"))
+        status, last, out = self.count(self.TOY.format("false"))
+        self.assertEqual((status, last), (1, "3 passed, 1 failed"))
+        self.assertIn("failed: c", out.splitlines())
 
     def test_no_test_is_a_failure(self):
         self.assertEqual(self.count("")[:2], (1, "0 passed, 0 failed"))
@@ -93,6 +95,37 @@ set_tests_properties(d PROPERTIES LABELS "full")
         broken = self.TOY.format("true") + "add_custom_target(broken ALL COMMAND false)\n"
         self.assertEqual(self.count(broken)[:2], (1, "0 passed, 1 failed"))
         self.assertEqual(self.count(broken, "--quick")[:2], (0, "2 passed, 0 failed"))  # builds only what it runs
+
+    LOG = """
+ 1/4 Test  #9: unit.Grid.IsRead ..........   Passed    0.51 sec
+ 2/4 Test #10: mpi.Sums.Scenes/Exact/one ...***Failed    9.00 sec
+ 3/4 Test #11: cases.Cases ..............***Exception: SegFault  30.25 sec
+ 4/4 Test #12: docs.Docs ................***Skipped   0.10 sec
+50% tests passed, 2 tests failed out of 4
+"""
+
+    def test_report(self):
+        """Which tests failed, and which took more than twice their budget, of which two seconds are the least."""
+        report = load("lib/test_report")
+        results = report.read_results(self.LOG)
+        self.assertEqual(results, [("unit.Grid.IsRead", True, .51), ("mpi.Sums.Scenes/Exact/one", False, 9),
+                                   ("cases.Cases", False, 30.25), ("docs.Docs", True, .1)])
+        self.assertEqual(report.over_budget(results, {"cases.Cases": 16}), [("mpi.Sums.Scenes/Exact/one", 9, 2)])
+        self.assertEqual(report.over_budget(results, {"cases.Cases": 15})[1:], [("cases.Cases", 30.25, 15)])
+        costs = dict(report.COST.findall(report.costs_text(results)))
+        self.assertEqual(costs, {"mpi.Sums.Scenes/Exact/one": "9.0", "cases.Cases": "30.2"})
+
+    def test_tests_of_a_change(self):
+        choose = load("lib/tests_of_change").tests_of
+        chosen = lambda path, test: bool(re.search("|".join(choose([path])), test))
+        for path, tests, others in (("src/pressure/acm.cpp", ["mpi.AcmSweeps.X", "ksp.Ksp"], ["docs.Docs"]),
+                                    ("tests/regression/test_ksp.py", ["ksp.Ksp"], ["unit.Grid.X", "cases.Cases"]),
+                                    ("scripts/studies/stability/stability_map", ["stability.Judge", "full.stability"], ["cases.Cases"]),
+                                    ("CMakeLists.txt", ["unit.Grid.X", "cases.Cases"], [])):
+            for test in tests:
+                self.assertTrue(chosen(path, test), (path, test))
+            for test in others:
+                self.assertFalse(chosen(path, test), (path, test))
 
 
 if __name__ == "__main__":

@@ -14,9 +14,10 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts/studies/stability")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "scripts/studies/stability", "tests/support")]
 sys.dont_write_bytecode = True
 from eulastic import Run  # noqa: E402
+from full import full  # noqa: E402
 from stability_judge import MADE, energy_growth, energy_made, judge  # noqa: E402
 from stability_scenes import contact, corner  # noqa: E402
 
@@ -32,6 +33,7 @@ def driven(kinetic, elastic, power):
 
 
 class Map(unittest.TestCase):
+    @full
     def test_scenes_shaken(self):
         """--shake, as docs/stability.md has it, of one group of the reduced set."""
         page = (ROOT / "docs/stability.md").read_text()

@@ -2,13 +2,11 @@
 """Discs too coarse for what happens to them: the strain that is not resolved is mended or forgotten, on any ranks, with anything
 skipped or not and after a restart alike, and the energy stays bounded (docs/method.md, section 7).
 
-Needs EULASTIC, EULASTIC_MPIEXEC, EULASTIC_AVX2 and EULASTIC_WHOLE.
+Needs EULASTIC_RUN_MANY, EULASTIC_RUN_MANY_AVX2 and EULASTIC_MPIEXEC.
 """
 import json
-import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -16,6 +14,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / room) for room in ("scripts", "scripts/studies/stability", "tests/support")]
 sys.dont_write_bytecode = True
+from many_runs import Plan  # noqa: E402
 from processor import has_avx512  # noqa: E402
 from eulastic import Run  # noqa: E402
 from stability_judge import STRETCH, fields_of_b, stretch_of  # noqa: E402
@@ -37,49 +36,55 @@ class Unresolved(unittest.TestCase):
         self.addCleanup(room.cleanup)
         self.room = pathlib.Path(room.name)
 
-    def run_scene(self, *options, ranks=1, program="EULASTIC", directory="run"):
-        command = [os.environ.get("EULASTIC_MPIEXEC", "mpiexec"), "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        done = subprocess.run([*command, os.environ[program], *map(str, options), "-output_dir", self.room / directory],
-                              capture_output=True, text=True,
-                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.room / directory / "summary.json").read_text()), done.stderr
+    def run_scene(self, *options, directory="run"):
+        return self.run_in_ways({directory: (options, {})})[directory]
+
+    def run_in_ways(self, runs, ranks=4, program="EULASTIC_RUN_MANY"):
+        """{name: (options, how Plan.add takes them)}, side by side; {name: (summary, what was said on standard error)}."""
+        plan = Plan(self.room, ranks)
+        for name, (options, how) in runs.items():
+            plan.add(name, *options, **how)
+        ended = {}
+        for name, outcome in plan.execute(program).items():
+            self.assertEqual(outcome.code, 0, f"{name}: {outcome.err}")
+            ended[name] = json.loads((outcome.directory / "summary.json").read_text()), outcome.err
+        return ended
 
     def test_same_bits(self):
+        runs, alone = {}, {}
         for method, (scene, steps) in SCENES.items():
-            options = ["-method", method, *scene, "-time_steps_max", steps, "-output_overwrite"]
-            one, said = self.run_scene(*options)
-            self.assertGreater(one["strain_forgotten"], 0)
-            self.assertRegex(said, WARNING)
-            ways = [{"ranks": 2}, {"ranks": 3}, {"ranks": 4}, {"program": "EULASTIC_WHOLE"}]
-            if has_avx512():
-                ways.append({"program": "EULASTIC_AVX2"})
-            else:
-                print("skipped: without AVX-512, which this processor does not have")
-            for more in ways:
-                with self.subTest(method, **more):
-                    other, _ = self.run_scene(*options, **more)
-                    self.assertEqual(other["state_hash"], one["state_hash"])
-                    self.assertEqual(other["strain_forgotten"], one["strain_forgotten"])
+            options = ["-method", method, *scene, "-time_steps_max", steps]
+            runs |= {method: (options, {}), f"{method}_whole": (options, {"skip_nothing": True})}
+            runs |= {f"{method}_{n}": (options, {"ranks": n}) for n in (2, 3, 4)}
+            alone[f"{method}_avx2"] = options, {}
+        ended = self.run_in_ways(runs)
+        if has_avx512():
+            ended |= self.run_in_ways(alone, 1, "EULASTIC_RUN_MANY_AVX2")
+        else:
+            print("skipped: without AVX-512, which this processor does not have")
+        for name, (other, _) in ended.items():
+            one, said = ended[name.split("_")[0]]
+            with self.subTest(name):
+                self.assertGreater(one["strain_forgotten"], 0)
+                self.assertRegex(said, WARNING)
+                self.assertEqual(other["state_hash"], one["state_hash"])
+                self.assertEqual(other["strain_forgotten"], one["strain_forgotten"])
 
     def test_membranes(self):
         """Cells with both sides less than a cell apart."""
         options = [ROOT / "options/channel_red_cells.opts", "-grid_cells", "20,20,20", "-body_force", "4e-3,0,0",
                    "-series_interval", "75", "-snapshot_interval", "0"]
-        last = ["-time_steps_max", "72"]
-        one, said = self.run_scene(*options, *last)
+        last = [*options, "-time_steps_max", "72"]
+        ended = self.run_in_ways({"one": (last, {}), "ranks": (last, {"ranks": 3}), "whole": (last, {"skip_nothing": True}),
+                                  "half": ([*options, "-time_steps_max", "70"], {})})
+        one, said = ended["one"]
         self.assertGreater(one["strain_forgotten"], 0)
         self.assertRegex(said, r"\neulastic: warning: t = [^\n]*half of a membrane's area gone[^\n]*\n\Z")
-        for more in {"ranks": 2}, {"ranks": 3}, {"program": "EULASTIC_WHOLE"}:
-            with self.subTest(**more):
-                other, _ = self.run_scene(*options, *last, "-output_overwrite", **more)
-                for key in "state_hash", "strain_forgotten":
-                    self.assertEqual(other[key], one[key])
-        half, _ = self.run_scene(*options, "-time_steps_max", "70", directory="half")
-        self.assertGreater(half["strain_forgotten"], 0)
-        again, _ = self.run_scene(*options, *last, "-restart", self.room / "half", directory="half")
-        for key in "state_hash", "strain_forgotten":
-            self.assertEqual(again[key], one[key])
+        self.assertGreater(ended["half"][0]["strain_forgotten"], 0)
+        again, _ = self.run_scene(*last, "-restart", self.room / "half", directory="rest")
+        for other in ended["ranks"][0], ended["whole"][0], again:
+            for key in "state_hash", "strain_forgotten":
+                self.assertEqual(other[key], one[key])
 
     def test_a_step_that_forgets_is_repeated_by_a_restart(self):
         # The checkpoint of a run's end is that of the state before its last step, in which strain is forgotten.

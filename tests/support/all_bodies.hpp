@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/rank_zero.hpp"
 #include "bodies/body_owners.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ inline Config with_all_places(Config config) {
   for (Places &places : config.places) {
     if (places.everywhere) continue;
     std::vector<BodyPlace> all, owned(places.known.begin(), places.known.end());
-    EXPECT_EQ(all_bodies(PETSC_COMM_WORLD, places.count, places.count, owned, &all), 0);
+    EXPECT_EQ(all_bodies(run_communicator(), places.count, places.count, owned, &all), 0);
     places = Places(all);
   }
   return config;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "base/rank_zero.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 inline int world_rank() {
   int rank;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_rank(run_communicator(), &rank);
   return rank;
 }
 
@@ -46,13 +47,13 @@ class SharedDirectory {
 public:
   SharedDirectory() {
     int id = ::getpid();
-    MPI_Bcast(&id, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    MPI_Bcast(&id, 1, MPI_INT, 0, run_communicator());
     path_ = fs::temp_directory_path() / ("eulastic_mpi_test_" + std::to_string(id));
     if (world_rank() == 0) fs::create_directories(path_);
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
   }
   ~SharedDirectory() {
-    MPI_Barrier(PETSC_COMM_WORLD);
+    MPI_Barrier(run_communicator());
     std::error_code ignored;
     if (world_rank() == 0) fs::remove_all(path_, ignored);
   }

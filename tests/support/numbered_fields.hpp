@@ -1,6 +1,7 @@
 // A grid, and fields whose values tell their global index.
 #pragma once
 
+#include "base/rank_zero.hpp"
 #include "field/sides.hpp"
 
 namespace eulastic::test {
@@ -11,7 +12,7 @@ inline double value_at(int i, int j, int k, int component = 0) {
 }
 
 struct NumberedFields {
-  explicit NumberedFields(const Int3 &cells, bool walls = true, MPI_Comm comm = PETSC_COMM_WORLD) {
+  explicit NumberedFields(const Int3 &cells, bool walls = true, MPI_Comm comm = run_communicator()) {
     GridSpec spec;
     spec.cells = cells;
     spec.length = {1.0, 2.0, 3.0};

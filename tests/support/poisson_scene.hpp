@@ -1,6 +1,7 @@
 // A Poisson problem lap q = D on a grid, with functions of the global cell, its residual, and all decompositions.
 #pragma once
 
+#include "base/rank_zero.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "pressure/pressure_solver.hpp"
@@ -96,7 +97,7 @@ inline std::vector<GridSpec> all_boundaries(const Int3 &cells) {
 // inside a block of 256 cells.
 inline std::vector<GridSpec> all_decompositions(GridSpec spec, bool sums = true) {
   int ranks = 0;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Comm_size(run_communicator(), &ranks);
   std::vector<GridSpec> specs;
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks / px; ++py) {

@@ -1,6 +1,6 @@
-"""Scenes given by their options, run in a room of the test's own.
+"""Scenes given by their options, run in a directory of the test's own.
 
-Needs EULASTIC=path of the binary and, for more ranks than one, EULASTIC_MPIEXEC.
+Needs EULASTIC=path of the binary, for run_together EULASTIC_RUN_MANY and, for more ranks than one, EULASTIC_MPIEXEC.
 """
 import os
 import pathlib
@@ -11,6 +11,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from eulastic import Run  # noqa: E402
+from many_runs import Plan  # noqa: E402
 
 BINARY = os.environ["EULASTIC"]
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
@@ -31,3 +32,14 @@ class SceneCase(unittest.TestCase):
                               env=environment, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         return Run(directory)
+
+    def run_together(self, runs):
+        """`runs`: {name: (options, {how})}, as Plan.add takes them, side by side in one start of MPI; {name: Run}. All must end
+        well."""
+        plan = Plan(self.room)
+        for name, (options, how) in runs.items():
+            plan.add(name, *options, **how)
+        outcomes = plan.execute()
+        for name, outcome in outcomes.items():
+            self.assertEqual(outcome.code, 0, f"{name}: {outcome.err}")
+        return {name: Run(outcome.directory) for name, outcome in outcomes.items()}

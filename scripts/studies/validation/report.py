@@ -114,7 +114,7 @@ runs are kept in build/validation, a killed one goes on. A row that misses its t
 ("What is known") has a bound of its own, "kept", and fails beyond that.
 
     scripts/validate              # everything: hours
-    scripts/validate --quick      # a short form of every reference, part of scripts/test
+    scripts/validate --quick      # a short form of every reference, part of scripts/test --full
     scripts/validate --only S6
     scripts/validate --only S6 --update       # and puts its rows into this page
 

@@ -1,5 +1,6 @@
 """Numbers of a run of options/capillary_*.opts: a tube along x, its cells, its platelets."""
 import numpy
+from eulastic.rounding import floor
 
 
 def tube(run):
@@ -90,7 +91,7 @@ def wall_displacements(run):
     sixteenths of the circumference, cell by cell along the vessel, (snapshots, nx, 16)."""
     radius, (y0, z0) = tube(run)
     angle = numpy.arctan2(run.centres(2)[:, None] - z0, run.centres(1)[None, :] - y0)
-    part = numpy.floor((angle + numpy.pi) * 8 / numpy.pi).astype(int) % 16
+    part = floor((angle + numpy.pi) * 8 / numpy.pi) % 16  # cells on a diagonal lie on a boundary
     area = [snapshot["solid_fraction_vessel"].astype(float) for snapshot in run.snapshots]
     width = run.spacing[1] * run.spacing[2] / (radius * numpy.pi / 8)
     return numpy.array([[(first - later)[part == n].sum(axis=0) * width for n in range(16)]
@@ -169,7 +170,7 @@ def profiles(run, snapshot):
     """Means over rings around the axis, a cell of the grid wide: (radii, red cells' share, velocity)."""
     (y0, z0), width = tube(run)[1], run.spacing[1]
     distance = numpy.hypot(run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0)
-    rings = [(distance / width).astype(int) == n for n in range(int(tube(run)[0] / width))]
+    rings = [floor(distance / width) == n for n in range(floor(tube(run)[0] / width))]
     fields = [distance, *(snapshot[name].astype(float).mean(axis=2) for name in ("solid_fraction_rbc", "velocity_x"))]
     return [numpy.array([field[ring].mean() for ring in rings]) for field in fields]
 

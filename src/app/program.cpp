@@ -1,0 +1,74 @@
+#include "app/program.hpp"
+
+#include "app/check_only.hpp"
+#include "app/overlap_warning.hpp"
+#include "app/run.hpp"
+#include "app/scene_warnings.hpp"
+#include "base/events.hpp"
+#include "base/message_keeper.hpp"
+#include "base/rank_zero.hpp"
+
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+void print_error(const std::string &message) {
+  int rank = 0;
+  MPI_Comm_rank(run_communicator(), &rank);
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
+}
+
+// Prints the answer of -help, -check_only or -print_options.
+PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
+  PetscFunctionBeginUser;
+  std::string text = parsed.message, overlap;
+  if (text.empty() && parsed.config.print_options) text = options_text(parsed);
+  if (text.empty()) {
+    text = check_report(parsed.config, ranks);
+    PetscCall(find_overlap_warning(run_communicator(), parsed.config, &overlap));
+    if (!overlap.empty()) text += "warning: " + overlap + "\n";
+    for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
+  }
+  PetscCall(PetscPrintf(run_communicator(), "%s", text.c_str()));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+int act(ParseResult &parsed) {
+  int ranks = 1, code = exit_usage;
+  MPI_Comm_size(run_communicator(), &ranks);
+  if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
+  if (parsed.error.empty() && parsed.config.check_only && parsed.config.balance && ranks > 1)
+    parsed.error =
+        "-balance: -check_only on more than one rank speaks of equal parts only, a run cuts by what its fields hold; "
+        "accepted: -balance false with it";
+  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
+  if (!parsed.error.empty()) {
+    print_error(parsed.error);
+    return exit_usage;
+  }
+  if (!parsed.message.empty() || parsed.config.check_only || parsed.config.print_options) {
+    return print_answer(parsed, ranks) ? exit_failed : parsed.alone ? exit_usage : exit_fine;
+  }
+  std::string refusal;
+  const MessageKeeper kept;
+  (void)register_events();
+  const PetscErrorCode failed = run(parsed, &code, &refusal);
+  // All ranks know of errors of files (io/fail_together.hpp), linear systems and options.
+  if (failed == PETSC_ERR_FILE_UNEXPECTED || failed == PETSC_ERR_NOT_CONVERGED || failed == PETSC_ERR_USER_INPUT) {
+    print_error(kept.text());
+    return failed == PETSC_ERR_USER_INPUT ? exit_usage : exit_failed;
+  }
+  if (failed) {
+    // A rank that fails alone must not leave the others waiting in a collective call.
+    std::fprintf(stderr, "eulastic: error: %s\n", kept.text().empty() ? "internal error" : kept.text().c_str());
+    std::fflush(stderr);
+    MPI_Abort(PETSC_COMM_WORLD, exit_failed);
+  }
+  if (!refusal.empty()) print_error(refusal);
+  return code;
+}
+
+}  // namespace eulastic
