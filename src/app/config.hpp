@@ -46,6 +46,7 @@ struct OpeningSpec {
   std::string table;                ///< file of the pressure over time
   double resistance = 0;            ///< behind the side
   Real3 windkessel{};               ///< or resistance, capacity, resistance; 0,0,0: none
+  double windkessel_start = 0;      ///< pressure of the capacity at t = 0
 
   bool from_file() const { return profile != "uniform" && profile != "developed"; }
 };

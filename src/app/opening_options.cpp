@@ -49,6 +49,8 @@ void add_pressure(Rows &rows, Config &config, const std::string &side, int d, in
             "the pressure rises by this times the flow rate out of the box");
   rows.real("pressure_" + side + "_windkessel", spec.windkessel, not_negative, "",
             "R,C,R: resistance, then capacity that the second resistance drains (volume/pressure); 0,0,0 = none");
+  rows.real("pressure_" + side + "_windkessel_start", spec.windkessel_start, any_number, "pressure",
+            "pressure of the capacity of the Windkessel at t = 0");
   only_on(rows, first, config, SideKind::pressure, side, d, high);
 }
 

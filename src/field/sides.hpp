@@ -38,6 +38,7 @@ class FedVelocity;
 /// What is behind a pressure side: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, Q what leaves.
 struct OutletLoad {
   double resistance = 0, capacity = 0, drain = 0;
+  double charge = 0;  ///< pressure of the capacity at t = 0
   bool exists() const { return resistance > 0 || capacity > 0; }
 };
 

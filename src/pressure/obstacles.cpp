@@ -48,6 +48,14 @@ EULASTIC_CLONES void add_products(const Grid &grid, const RowPart &part, ConstVi
   }
 }
 
+void add_values(const Grid &grid, const RowPart &part, ConstView a, ExactSums &sums) {
+  for (const Segment &s : part.rows(grid)) {
+    const double *p = a.row(s.j, s.k);
+    add_row_sums<1>(
+        s.size(), grid.layout().begin[0], [=](int i, auto add) EULASTIC_BODY { add(0, p[i], 1); }, sums);
+  }
+}
+
 // to = scale to + factor from, with a layer of ghosts.
 EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scale, double factor,
                              const FieldBlock &from, FieldBlock &to) {
@@ -85,7 +93,22 @@ std::size_t ObstacleSolver::bytes() const {
          first_.capacity() * sizeof(std::size_t);
 }
 
+bool ObstacleSolver::Beside::closed() const {
+  return std::all_of(open, open + 6, [](double part) { return part == 0; });
+}
+
+template <class Work>
+void ObstacleSolver::for_closed_cells(const Work &work) const {
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c)
+      if (cells_[c].closed()) work(Int3{cells_[c].i, row.j, row.k});
+    ++at;
+  }
+}
+
 void ObstacleSolver::follow(const RigidFaces &faces) {
+  closed_count_ = -1;
   cells_.clear();
   first_.clear();
   travels_ = faces.travels;
@@ -107,7 +130,7 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
     for (int i = 0; i < n[0]; ++i) {
       if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
       Beside cell{i, {}};
-      std::copy(open[i].begin(), open[i].end(), cell.open);
+      std::copy_n(open[i].begin(), 2 * grid_->dimension(), cell.open);  // 2-D has no faces along z
       cells_.push_back(cell);
     }
   }
@@ -121,15 +144,8 @@ PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
   PetscCall(work_->take("known pressure", 2, &taken));
   FieldBlock known = taken.part(0, 1), next = taken.part(1, 1);
   for (FieldBlock *block : {&known, &next}) block->fill(0, 1);
-  std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const double *open = cells_[c].open;
-      if (std::all_of(open, open + 2 * grid_->dimension(), [](double part) { return part == 0; }))
-        known[0](cells_[c].i, row.j, row.k) = next[0](cells_[c].i, row.j, row.k) = 0;
-    }
-    ++at;
-  }
+  for_closed_cells(
+      [&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = next[0](cell[0], cell[1], cell[2]) = 0; });
   PetscCall(extend_layer(known, next, pressure));
   PetscCall(extend_layer(next, known, pressure));
   PetscFunctionReturn(0);
@@ -219,6 +235,31 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, 
   PetscFunctionReturn(0);
 }
 
+// The equation says nothing of cells whose faces are all closed, where what the other solver leaves would add up over
+// the steps: they get 0. Where no side is open, the mean of the increment over the other cells becomes 0.
+PetscErrorCode ObstacleSolver::normalise(FieldBlock &increment) {
+  PetscFunctionBeginUser;
+  const View q = increment[0];
+  for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
+  if (!grid_->any_open()) {
+    if (closed_count_ < 0) {
+      closed_count_ = 0;
+      for_closed_cells([&](const Int3 &) { ++closed_count_; });
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed_count_, 1, MPI_INT64_T, MPI_SUM, grid_->comm()));
+    }
+    double sum;
+    PetscCall(sum_row_parts(
+        *grid_, 1, [&](const RowPart &part, ExactSums &sums) { add_values(*grid_, part, q, sums); }, &sum));
+    const double mean = sum / std::max(1.0, grid_->cell_count() - double(closed_count_));
+    for (const Segment &row : grid_->rows())
+      for (int i = row.i_begin; i < row.i_end; ++i) q(i, row.j, row.k) -= mean;
+    for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
+  }
+  PetscCall(exchange_->update(increment, 1));
+  fill_ghosts_of_increment(*grid_, q, 1);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c,
                                         const FieldBlock &d, double *ab, double *cd) const {
   PetscFunctionBeginUser;
@@ -283,6 +324,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
       since = 0;
     }
   }
+  PetscCall(normalise(increment));
   if (memory_) {
     memory_.turn();
     memory_.increment(0).copy_from(increment);

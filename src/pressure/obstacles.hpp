@@ -10,6 +10,8 @@
 #include "pressure/increment_memory.hpp"
 #include "pressure/pressure_solver.hpp"
 
+#include <cstdint>
+
 namespace eulastic {
 
 class ObstacleSolver final : public PressureSolver {
@@ -39,9 +41,14 @@ private:
   struct Beside {
     int i;
     double open[6];
+    bool closed() const;
   };
   PetscErrorCode extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const;
   void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
+  /// Calls work(cell) for every owned cell whose faces are all closed.
+  template <class Work>
+  void for_closed_cells(const Work &work) const;
+  PetscErrorCode normalise(FieldBlock &increment);
   PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;
@@ -53,6 +60,7 @@ private:
   std::vector<Beside> cells_;
   std::vector<std::size_t> first_;  ///< of every owned row, and the end
   bool travels_ = false;
+  std::int64_t closed_count_ = -1;  ///< cells of the box whose faces are all closed; -1: not counted yet
   IncrementMemory memory_;
   double accuracy_, target_ = 0;
   long iterations_ = 0;

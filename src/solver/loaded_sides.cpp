@@ -58,8 +58,7 @@ PetscErrorCode Solver::begin_loads(double dt) {
   std::vector<double> flow;
   PetscFunctionBeginUser;
   PetscCall(measure_loads(now_.velocity, &flow));
-  loads_->begin(spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt,
-                spec_.staggered() ? 0.5 * (now_.dt + dt) : dt, flow);
+  loads_->begin(spec_.sides, now_.time + (spec_.staggered() ? 0.5 : 1) * dt, dt, flow);
   PetscFunctionReturn(0);
 }
 

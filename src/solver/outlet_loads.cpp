@@ -7,8 +7,8 @@
 namespace eulastic {
 namespace {
 
-// The share of the flow at the end of a step in that of its middle: above 1/2, so that stiff loads are damped.
-constexpr double implicit = 0.6;
+// Weight of the end of a step in docs/method.md, section 20: above 1/2, so that stiff loads are damped.
+constexpr double damped = 0.6;
 
 }  // namespace
 
@@ -23,6 +23,7 @@ OutletLoads::OutletLoads(const BoxSides &sides) {
       load.direction = d;
       load.high = high;
       load.spec = side.load;
+      load.capacity = side.load.charge;
       loads_.push_back(std::move(load));
     }
 }
@@ -38,17 +39,25 @@ void OutletLoads::set_response(int n, FieldBlock &&pressure, const std::vector<d
   loads_[n].flow = flow;
 }
 
-void OutletLoads::begin(const BoxSides &sides, double middle, double between, const std::vector<double> &flow) {
+// C dp_c/dt = Q - p_c/R', p = p_c + R Q: both by the theta method, so that any R, C and R' are stable. For the capacity
+// theta is 1/2, of second order, where the step resolves it.
+void OutletLoads::begin(const BoxSides &sides, double middle, double dt, const std::vector<double> &flow) {
   for (std::size_t n = 0; n < loads_.size(); ++n) {
     Load &load = loads_[n];
     const OutletLoad &spec = load.spec;
-    if (spec.capacity > 0) {  // C dp/dt = Q - p/R, p at half levels
-      const double drain = 0.5 * between / (spec.capacity * spec.drain);
-      load.capacity = ((1 - drain) * load.capacity + between / spec.capacity * flow[n]) / (1 + drain);
+    double theta = 0.5;
+    load.kept = load.gain = 0;
+    if (spec.capacity > 0) {
+      const double drain = dt / (spec.capacity * spec.drain), fill = dt / spec.capacity;
+      const double stiffness = drain * drain + dt * fill * std::fabs(load.flow[n]);  // (dt rate)^2 of its modes
+      theta += (damped - 0.5) * (1 - 1 / (1 + stiffness));
+      load.kept = ((1 - (1 - theta) * drain) * load.capacity + fill * (1 - theta) * flow[n]) / (1 + theta * drain);
+      load.gain = theta * fill / (1 + theta * drain);
     }
-    const double given = sides[load.direction][load.high].given.at(middle) + load.capacity;
-    load.pressure = given + spec.resistance * flow[n];
-    load.base = given + spec.resistance * (1 - implicit) * flow[n];
+    const double given = sides[load.direction][load.high].given.at(middle);
+    load.base = given + (1 - theta) * load.capacity + theta * load.kept + spec.resistance * (1 - damped) * flow[n];
+    load.share = theta * load.gain + spec.resistance * damped;
+    load.pressure = load.base + load.share * flow[n];
   }
 }
 
@@ -58,9 +67,8 @@ std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &fl
   std::vector<std::vector<double>> a(count, std::vector<double>(count + 1));
   for (std::size_t s = 0; s < count; ++s) {
     const Load &load = loads_[s];
-    const double share = implicit * load.spec.resistance;
-    for (std::size_t t = 0; t < count; ++t) a[s][t] = (s == t ? 1 : 0) - share * dt * loads_[t].flow[s];
-    a[s][count] = load.base + share * flow[s] - load.pressure;
+    for (std::size_t t = 0; t < count; ++t) a[s][t] = (s == t ? 1 : 0) - load.share * dt * loads_[t].flow[s];
+    a[s][count] = load.base + load.share * flow[s] - load.pressure;
   }
   for (std::size_t p = 0; p < count; ++p)
     for (std::size_t s = p + 1; s < count; ++s) {
@@ -73,6 +81,11 @@ std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &fl
     for (std::size_t t = s + 1; t < count; ++t) sum -= a[s][t] * changes[t];
     changes[s] = sum / a[s][s];
     loads_[s].pressure += changes[s];
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    double end = flow[s];
+    for (std::size_t t = 0; t < count; ++t) end += dt * changes[t] * loads_[t].flow[s];
+    loads_[s].capacity = loads_[s].kept + loads_[s].gain * end;
   }
   return changes;
 }

@@ -19,10 +19,11 @@ public:
   /// What a pressure of 1 on that side alone means: p, and the flow out of each loaded side per time of it.
   void set_response(int n, FieldBlock &&pressure, const std::vector<double> &flow);
 
-  /// Begins a step of length dt to `time` + dt; the capacities go on by `between`, to its middle. `flow`: volume that
-  /// leaves through each per time, now. Sets the pressures that are expected.
-  void begin(const BoxSides &sides, double middle, double between, const std::vector<double> &flow);
-  /// `flow` as the projection under the expected pressures has left it; returns by how much these change.
+  /// Begins a step of length dt. `middle`: the time at which the pressure on the sides is that of the step; `flow`:
+  /// volume that leaves through each side per time at the start of the step. Sets the pressures that are expected.
+  void begin(const BoxSides &sides, double middle, double dt, const std::vector<double> &flow);
+  /// Ends the step. `flow` as the projection under the expected pressures has left it; returns by how much these
+  /// change.
   std::vector<double> settle(double dt, const std::vector<double> &flow);
   /// increment = sum of changes times responses, ghosts included.
   void add_up(const Grid &grid, const std::vector<double> &changes, FieldBlock &increment) const;
@@ -37,8 +38,10 @@ private:
   struct Load {
     int direction, high;
     OutletLoad spec;
-    double capacity = 0;            ///< its pressure
-    double pressure = 0, base = 0;  ///< on the side; base: without what the flow at the end of the step adds
+    double capacity = 0;  ///< pressure of the capacity at the end of the last step
+    double pressure = 0;  ///< on the side, of the last step
+    /// Of the present step: pressure = base + share x flow at its end; capacity = kept + gain x that flow.
+    double base = 0, share = 0, kept = 0, gain = 0;
     FieldBlock response;
     std::vector<double> flow;
   };

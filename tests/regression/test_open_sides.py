@@ -269,6 +269,27 @@ class OpenSides(SceneCase):
         exact = .5 * (2 + 5 * (1 - numpy.exp(-middle / 1.5)))
         self.assertLess(abs(run.series.pressure_xmax - exact)[5:].max(), 2e-4)
 
+    def test_windkessel_of_any_stiffness(self):
+        """A small capacity is the resistance behind it; a large one is a pressure that stays; both with a drain of any size."""
+        scene = ("-grid_cells 24,12,1 -grid_length 2,1,1 -boundary_ymin wall -boundary_ymax pressure -boundary_xmin inflow "
+                 "-boundary_xmax pressure -inflow_xmin_profile developed -fluid_viscosity .1 -inflow_xmin_velocity 1 -time_end .5 "
+                 "-series_interval 1e-9 -pressure_ymax_resistance 5").split()
+        loads = {"resistance": "-pressure_xmax_resistance 5", "open": "-pressure_xmax_value 0",
+                 **{f"small{n}": f"-pressure_xmax_windkessel 0,1e-{n},5" for n in (12, 6, 4)},
+                 "large": "-pressure_xmax_windkessel 0,1e6,5", "charged": "-pressure_xmax_windkessel 0,1e6,5 "
+                 "-pressure_xmax_windkessel_start 3", "given": "-pressure_xmax_value 3",
+                 "closed": "-pressure_xmax_windkessel 0,1e-12,1e12", "stiff": "-pressure_xmax_windkessel 1e6,1e-6,1e6"}
+        runs = self.run_together({name: ([*scene, *load.split()], {}) for name, load in loads.items()})
+        flow = {name: -numpy.asarray(run.series.flow_rate_xmax)[20:] for name, run in runs.items()}
+        pressure = {name: numpy.asarray(run.series.pressure_xmax)[20:] for name, run in runs.items()}
+        for name, same in (("small12", "resistance"), ("small6", "resistance"), ("small4", "resistance"), ("large", "open"),
+                           ("charged", "given")):
+            self.assertLess(abs(flow[name][-1] - flow[same][-1]), 2e-3, name)
+            self.assertLess(abs(numpy.diff(flow[name])).max(), 2 * abs(numpy.diff(flow[same])).max() + 1e-4, name)
+            self.assertLess(abs(pressure[name][-1] - pressure[same][-1]), .05, name)
+        for name in ("closed", "stiff"):
+            self.assertLess(abs(flow[name]).max(), 2e-5, name)
+
     def test_backward_facing_step(self):
         """Gartling (1990), Re 800: the lower eddy ends at 6.10, the upper one lies between 4.85 and 10.48 channel heights; a coarse
         grid. Cut through the upper eddy, where the flow turns back on the outlet, the lower one stays."""

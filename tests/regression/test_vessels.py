@@ -8,6 +8,7 @@ import pathlib
 import sys
 import unittest
 
+import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -110,6 +111,22 @@ class Vessels(SceneCase):
         print(f"torques over the exact one: {bodies.torque[-1, :, 2] / exact}")
         self.assertAlmostEqual(bodies.torque[-1, 1, 2] / exact, 1, delta=0.01)
         self.assertAlmostEqual(bodies.torque[-1, 0, 2] / -exact, 1, delta=0.01)
+
+    def test_pressure_in_rigid_walls_is_bounded(self):
+        """Nothing solves for the pressure of cells whose faces are all closed: it stays what it was, and the mean of the pressure
+        is that of the fluid."""
+        run = self.run_program("tube", *(
+            "-grid_cells 16,18,18 -grid_length 10.666666666666667,12,12 -fluid_viscosity 1.2 -body_force 1e-3,0,0 -species "
+            "vessel,cell -vessel_shape tube -vessel_axis x -vessel_diameter 10 -vessel_law rigid -cell_shape sphere -cell_radius "
+            "2.5 -cell_shear_modulus .02 -cell_viscosity 6 -time_end 500 -snapshot_interval 500").split())
+        with h5py.File(run.directory / "snapshot_000001.h5") as file:
+            pressure, solid = file["pressure"][...].astype(float), file["solid_fraction"][...]
+        k, j, i = numpy.indices(pressure.shape)
+        deep = numpy.hypot((j + .5) * 12 / 18 - 6, (k + .5) * 12 / 18 - 6) > 5 + 1.5 * 12 / 18  # inside the wall
+        self.assertEqual(abs(pressure[deep]).max(), 0)
+        self.assertLess(abs(pressure).max(), .01)
+        self.assertLess(abs(pressure[~deep].mean()), 1e-4)
+        self.assertGreater(abs(pressure[solid < .01]).max(), 1e-4)
 
 
 if __name__ == "__main__":
