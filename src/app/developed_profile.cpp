@@ -2,6 +2,7 @@
 // that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
 #include "app/openings.hpp"
 #include "base/petsc.hpp"
+#include "field/exact_sum.hpp"
 
 #include <petscksp.h>
 
@@ -84,6 +85,24 @@ PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const Rig
   PetscFunctionReturn(0);
 }
 
+// The part of a side that no rigid body covers, from the solid fractions of the cells beside it. Collective.
+PetscErrorCode measure_open_part(const Grid &grid, const std::vector<Phase> &phases, int d, bool high, double *part) {
+  PetscFunctionBeginUser;
+  ExactSums covered(1);
+  for_points(grid.cells_at(d, high, 1), [&](int i, int j, int k) {
+    double solid = 0;
+    for (const Phase &phase : phases)
+      if (phase.material.is_rigid()) solid += phase.fraction[0](i, j, k);
+    covered.add(0, std::min(1.0, solid));
+  });
+  double sum, faces = 1;
+  PetscCall(covered.reduce(grid.comm(), &sum));
+  for (int e = 0; e < 3; ++e)
+    if (e != d) faces *= grid.cells()[e];
+  *part = 1 - sum / faces;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode assemble(const Config &config, int d, const OpenCells &cells, Mat matrix, bool *held) {
   const SidePlane plane(d);
   const int n[2] = {config.grid.cells[plane.a], config.grid.cells[plane.b]};
@@ -154,8 +173,8 @@ PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideP
 
 }  // namespace
 
-PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid, BoxSides *sides,
-                              std::string *wrong) {
+PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid,
+                              const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; ++d)
     for (const bool high : {false, true}) {
@@ -175,7 +194,18 @@ PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const Rigi
                  ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
         PetscFunctionReturn(0);
       }
-      for (double &value : profile) value *= double(profile.size()) / sum;
+      // A flow rate is that of the whole side, a velocity the mean over its open part.
+      double part = 1;
+      if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(grid, phases, d, high, &part));
+      if (part != 1 && !grid.any_open()) {
+        const std::string side_name = std::string(1, "xyz"[d]) + (high ? "max" : "min");
+        *wrong = "-inflow_" + side_name +
+                 "_velocity: rigid bodies cover a part of the side, and what comes in elsewhere must "
+                 "balance it, as no side is open; accepted: -inflow_" +
+                 side_name + "_flow_rate";
+        PetscFunctionReturn(0);
+      }
+      for (double &value : profile) value *= part * double(profile.size()) / sum;
       side.profile = std::make_shared<const SideProfile>(std::move(profile));
     }
   PetscFunctionReturn(0);

@@ -22,9 +22,10 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
   profile.is_input = true;
   for (const bool flow : {false, true}) {
     std::string &target = flow ? spec.flow_rate : spec.velocity;
-    Option &row = rows.path(name + (flow ? "_flow_rate" : "_velocity"), target,
-                            flow ? "volume into the box per time, in 2-D per depth; over time from a file"
-                                 : "mean velocity into the box; over time from a file");
+    Option &row =
+        rows.path(name + (flow ? "_flow_rate" : "_velocity"), target,
+                  flow ? "volume into the box per time, in 2-D per depth; over time from a file"
+                       : "mean velocity into the box over what rigid bodies leave open; over time from a file");
     row.unit = flow ? "volume/time" : "length/time";
     row.accepted = "a number, or a path to a table of time,value";
     row.default_note = flow ? "" : "this or the flow rate is required, but with a file as profile";

@@ -94,7 +94,7 @@ PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solve
   PetscCall(solver->create(grid, {config.method, config.fluid, sides}));
   PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
-  PetscCall(shape_profiles(config, grid, solver->rigid(), &sides, reason));
+  PetscCall(shape_profiles(config, grid, solver->rigid(), solver->state().phases, &sides, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   solver->set_profiles(sides);
   PetscCall(solver->prepare());

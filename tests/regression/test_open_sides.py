@@ -196,6 +196,18 @@ class OpenSides(SceneCase):
         rest = self.run_program("rest", *half, "-restart", self.room / "half", ranks=2).summary
         self.assertEqual(rest["state_hash"], self.run_program("whole", *half).summary["state_hash"])
 
+    def test_velocity_of_an_inlet_is_that_of_its_open_part(self):
+        """In a rigid tube the flow rate is that velocity times the section of the lumen; in a box without bodies, of the side."""
+        scene = ("-grid_cells 12,24,24 -grid_length 1.2,2.4,2.4 -boundary_xmin inflow -boundary_xmax outflow -fluid_viscosity 1 "
+                 "-inflow_xmin_velocity .3 -time_end .05 -inflow_xmin_profile").split()
+        tube = "-species pipe -pipe_shape tube -pipe_axis x -pipe_law rigid -pipe_radius .81 -pipe_centre 0,1.23,1.18".split()
+        runs = self.run_together({"developed": ([*scene, "developed", *tube], {}), "uniform": ([*scene, "uniform", *tube], {}),
+                                  "ranks": ([*scene, "developed", *tube], {"ranks": 3}),
+                                  "box": ([*scene, "uniform", "-boundary_y", "wall", "-boundary_z", "wall"], {})})
+        for name, area in (("developed", numpy.pi * .81 ** 2), ("uniform", numpy.pi * .81 ** 2), ("box", 2.4 ** 2)):
+            self.assertAlmostEqual(runs[name].series.flow_rate_xmin[-1] / (.3 * area), 1, delta=1e-3, msg=name)
+        self.assertEqual(runs["ranks"].summary["state_hash"], runs["developed"].summary["state_hash"])
+
     def test_inlet_that_a_rigid_body_covers(self):
         done = subprocess.run([BINARY, *("-grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 "
                                          "-species plug -plug_shape slab -plug_axis x -plug_interval 0,.2 -plug_law rigid "
