@@ -103,6 +103,13 @@ PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const Cell
   PetscFunctionReturn(0);
 }
 
+std::string describe_same_place(const Config &config, const Overlap &pair) {
+  const SpeciesSpec &one = species_of(config, pair.body), &two = species_of(config, pair.other);
+  return "-species " + two.name + ": body " + std::to_string(pair.other) + " is at the same place as body " +
+         std::to_string(pair.body) + " (" + one.name +
+         "), periodic images included; accepted: bodies apart from each other: " + remedy(two);
+}
+
 // How many bodies ranks have named, each once.
 PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels, long *count) {
   int ranks;
@@ -120,20 +127,25 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
 PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
   PetscFunctionBeginUser;
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-  const std::int64_t mine = first->body > 0 ? (std::int64_t{first->body} << 32) + first->other : none;
+  const std::int64_t later = std::int64_t{!first->same_place} << 62;  // than those at the same place
+  const std::int64_t mine = first->body > 0 ? later + (std::int64_t{first->body} << 32) + first->other : none;
   std::int64_t pair = mine;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pair, 1, MPI_INT64_T, MPI_MIN, comm));
   double volume = mine == pair ? first->volume : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
-  if (pair < none) *first = {static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), volume};
+  if (pair == none) PetscFunctionReturn(0);
+  const bool same_place = (pair >> 62) == 0;
+  pair &= (std::int64_t{1} << 62) - 1;
+  *first = {static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), volume, same_place};
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode find_overlap_warning(MPI_Comm comm, const Config &config, std::string *warning) {
+PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *warning, std::string *refusal) {
   PetscFunctionBeginUser;
   warning->clear();
+  refusal->clear();
   if (!config.initial_state.empty()) PetscFunctionReturn(0);
   const auto is_file = [](const SpeciesSpec &spec) { return spec.shape == Shape::voxels; };
   const bool files = std::any_of(config.species.begin(), config.species.end(), is_file);
@@ -160,7 +172,10 @@ PetscErrorCode find_overlap_warning(MPI_Comm comm, const Config &config, std::st
   PetscCall(agree(comm, &first));
   long count;
   PetscCall(count_bodies(comm, first_labels(config.species, config.places).back() - 1, &overlaps, &count));
-  if (first.body > 0) *warning = describe(config, first, count);
+  if (first.same_place)
+    *refusal = describe_same_place(config, first);
+  else if (first.body > 0)
+    *warning = describe(config, first, count);
   PetscFunctionReturn(0);
 }
 

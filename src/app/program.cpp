@@ -19,14 +19,15 @@ void print_error(const std::string &message) {
   if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
 }
 
-// Prints the answer of -help, -check_only or -print_options.
-PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
+// Prints the answer of -help, -check_only or -print_options, or fills `refusal`.
+PetscErrorCode print_answer(const ParseResult &parsed, int ranks, std::string *refusal) {
   PetscFunctionBeginUser;
   std::string text = parsed.message, overlap;
   if (text.empty() && parsed.config.print_options) text = options_text(parsed);
   if (text.empty()) {
     text = check_report(parsed.config, ranks);
-    PetscCall(find_overlap_warning(run_communicator(), parsed.config, &overlap));
+    PetscCall(find_overlap(run_communicator(), parsed.config, &overlap, refusal));
+    if (!refusal->empty()) PetscFunctionReturn(0);
     if (!overlap.empty()) text += "warning: " + overlap + "\n";
     for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
   }
@@ -38,6 +39,7 @@ PetscErrorCode print_answer(const ParseResult &parsed, int ranks) {
 
 int act(ParseResult &parsed) {
   int ranks = 1, code = exit_usage;
+  std::string refusal;
   MPI_Comm_size(run_communicator(), &ranks);
   if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
   if (parsed.error.empty() && parsed.config.check_only && parsed.config.balance && ranks > 1)
@@ -50,9 +52,10 @@ int act(ParseResult &parsed) {
     return exit_usage;
   }
   if (!parsed.message.empty() || parsed.config.check_only || parsed.config.print_options) {
-    return print_answer(parsed, ranks) ? exit_failed : parsed.alone ? exit_usage : exit_fine;
+    if (print_answer(parsed, ranks, &refusal)) return exit_failed;
+    if (!refusal.empty()) print_error(refusal);
+    return parsed.alone || !refusal.empty() ? exit_usage : exit_fine;
   }
-  std::string refusal;
   const MessageKeeper kept;
   (void)register_events();
   const PetscErrorCode failed = run(parsed, &code, &refusal);

@@ -66,11 +66,10 @@ std::string thread_warning(int threads) {
 }
 
 // Of the scene at the start.
-PetscErrorCode print_warnings(const Config &config, const Run &run) {
+PetscErrorCode print_warnings(const Config &config, const std::string &overlap, const Run &run) {
   PetscFunctionBeginUser;
   const MPI_Comm comm = run.solver.grid().comm();
-  std::string overlap, unresolved;
-  PetscCall(find_overlap_warning(comm, config, &overlap));
+  std::string unresolved;
   print_warning(comm, overlap);
   PetscCall(run.outputs.unresolved_bodies(&unresolved));
   print_warning(comm, unresolved);
@@ -234,9 +233,10 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   const Grid &grid = *made;
   const std::string &path = config.output.directory, &source = config.checkpoint.restart;
   using Earlier = RunDirectory::Earlier;
-  std::string restarted_from, balanced;
+  std::string restarted_from, balanced, overlap;
   double thrown_away = 0;
   PetscCall(build_scene(config, grid, &run->solver, refusal));
+  if (refusal->empty() && source.empty()) PetscCall(find_overlap(grid.comm(), config, &overlap, refusal));
   if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
   if (refusal->empty() && run->in_place) PetscCall(run->directory.open(grid.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
@@ -261,7 +261,7 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   (void)run->outputs.take_row();
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
-  if (source.empty()) PetscCall(print_warnings(config, *run));
+  if (source.empty()) PetscCall(print_warnings(config, overlap, *run));
   if (source.empty()) PetscFunctionReturn(0);
   PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                         run->solver.state().time, static_cast<long long>(run->solver.state().step)));

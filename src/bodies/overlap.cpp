@@ -78,6 +78,20 @@ public:
   // Bodies that may share cells, each pair both ways, ascending.
   const std::vector<std::pair<int, int>> &candidates() const { return candidates_; }
 
+  // Whether two bodies, periodic images included, have their centre and their extent in common to a hundredth of a
+  // cell.
+  bool at_same_place(int one, int two) const {
+    if (!has_ends(spec(one)) || !has_ends(spec(two))) return false;
+    for (int d = 0; d < dimension_; ++d) {
+      const double close = 0.01 * grid_.length[d] / grid_.cells[d];
+      double apart = place(one).centre[d] - place(two).centre[d];
+      if (grid_.boundary[d] == Boundary::periodic) apart = std::remainder(apart, grid_.length[d]);
+      if (std::fabs(apart) > close) return false;
+      if (std::fabs(shapes_[whose(one)].outer_radius() - shapes_[whose(two)].outer_radius()) > close) return false;
+    }
+    return true;
+  }
+
   // What two bodies share, or the first part of it that is found.
   double shared(int one, int two, bool all) const {
     const PlacedBody a(surfaces_[whose(one)], grid_, place(one)), b(surfaces_[whose(two)], grid_, place(two));
@@ -179,17 +193,22 @@ std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const st
                                const GridSpec &grid, Overlap *first) {
   *first = {};
   std::pair<int, int> found;
+  bool same_place = false;
   std::vector<int> overlaps;
   const Search search(species, places, grid);
   for (const auto &[b, candidate] : search.candidates()) {
-    if (!overlaps.empty() && overlaps.back() == search.label(b)) continue;
     const std::pair<int, int> pair = std::minmax(b, candidate);
-    if (search.shared(pair.first, pair.second, false) == 0) continue;
-    if (overlaps.empty() || pair < found) found = pair;
-    overlaps.push_back(search.label(b));
+    const bool same = search.at_same_place(b, candidate),
+               known = !overlaps.empty() && overlaps.back() == search.label(b);
+    if (known && (!same || same_place)) continue;
+    if (!same && search.shared(pair.first, pair.second, false) == 0) continue;
+    if (overlaps.empty() || (same && !same_place) || (same == same_place && pair < found)) found = pair;
+    same_place = same_place || same;
+    if (!known) overlaps.push_back(search.label(b));
   }
   if (overlaps.empty()) return overlaps;
-  *first = {search.label(found.first), search.label(found.second), search.shared(found.first, found.second, true)};
+  *first = {search.label(found.first), search.label(found.second), search.shared(found.first, found.second, true),
+            same_place};
   return overlaps;
 }
 

@@ -14,6 +14,8 @@ namespace eulastic {
 struct Overlap {
   int body = 0, other = 0;  ///< body < other; 0 = none
   double volume = 0;        ///< that they share, at least: the sum of what is above 1 in a cell; area in 2-D
+  bool same_place =
+      false;  ///< one of them, or an image of it, is where the other one is, so that one has no cells left
 };
 
 /// The first label of every species, and one more.
@@ -23,10 +25,10 @@ std::vector<int> first_labels(const std::vector<SpeciesSpec> &species, const std
 bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places);
 
 /// Labels, ascending, of the known bodies that overlap another one: in some cell their solid fractions add up to more
-/// than 1.01, which bodies that touch do not. `first`: the first pair of them. No pairs of: two attached bodies,
-/// which is how walls are joined; bodies of one species with -NAME_contact merge, which are one; a body at random and
-/// one before it; bodies from files (add_shared). Where ranks know what comes near their boxes (bring_near), together
-/// they find all.
+/// than 1.01, which bodies that touch do not. `first`: the first pair at the same place, or else of them all. No pairs
+/// of: two attached bodies, which is how walls are joined; bodies of one species with -NAME_contact merge, which are
+/// one; a body at random and one before it; bodies from files (add_shared). Where ranks know what comes near their
+/// boxes (bring_near), together they find all.
 std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
                                const GridSpec &grid, Overlap *first);
 

@@ -123,6 +123,21 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(result.returncode, 1)
             self.assertTrue((self.room / f"run{ranks}/summary.json").exists())
 
+    def test_bodies_at_the_same_place_are_refused(self):
+        """One of them would have no cells left; 0 and 8 are the same place in a periodic box. A smaller body within one is not."""
+        scene = ("-grid_cells 16,16,16 -grid_length 8,8,8 -time_end 1e-3 -time_step 1e-3 -species a,b -a_shape sphere -a_radius 1 "
+                 "-a_shear_modulus 1 -a_placement list -a_positions pair.csv -b_shape sphere -b_shear_modulus 1").split()
+        for bodies, radius, pair in (("2,2,2\n0,6,6\n3,3,2\n8,6,6\n", ".9", "-species a: body 4 is at the same place as body 2 (a)"),
+                                     ("6,6,6\n4,4,4\n", "1", "-species b: body 3 is at the same place as body 2 (a)"),
+                                     ("6,6,6\n4,4,4\n", ".5", "")):
+            (self.room / "pair.csv").write_text(bodies)
+            for ranks in 0, 3:
+                for more in (["-check_only"], []):
+                    done = self.run_program(*scene, "-b_radius", radius, *more, "-output_overwrite", ranks=ranks)
+                    self.assertEqual(done.returncode, 2 if pair else 0, done.stderr)
+                    self.assertIn(pair, done.stderr)
+                    self.assertEqual(done.stderr.count("eulastic: error:"), int(pair != ""))
+
     def test_bodies_placed_over_each_other_are_a_warning(self):
         (self.room / "pair.csv").write_text("2,2,2\n6,6,6\n5,6,6\n")
         scene = ("-grid_cells 16,16,16 -grid_length 8,8,8 -time_end 1e-3 -time_step 1e-3 -species a,b -a_shape sphere "

@@ -9,7 +9,7 @@ LEVELS = [{"base"}, {"grid"}, {"kernels"}, {"field"}, {"physics", "pressure", "b
           {"solver"}, {"app"}]
 LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
 ROOMS = ["src", "tests", "options", "scripts", "python", "packaging", "docs", "tools", "cmake", ".ci", ".github"]
-LINES_MAX = 350
+LINES_MAX = 600
 
 
 def files(*rooms):
