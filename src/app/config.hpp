@@ -44,6 +44,8 @@ struct OpeningSpec {
   double feeder = 0;                ///< length of the stretch that feeds the side; 0: none
   double value = 0;                 ///< the pressure
   std::string table;                ///< file of the pressure over time
+  double period = 0;                ///< after which the table of velocity, flow rate or pressure repeats; 0: never
+  bool hold = false;                ///< the first and the last value of the table hold before and after it
   double resistance = 0;            ///< behind the side
   Real3 windkessel{};               ///< or resistance, capacity, resistance; 0,0,0: none
   double windkessel_start = 0;      ///< pressure of the capacity at t = 0

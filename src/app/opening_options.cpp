@@ -11,6 +11,15 @@ void only_on(Rows &rows, std::size_t first, Config &config, SideKind kind, const
   }
 }
 
+// What happens where a table of the side ends.
+void add_table_ends(Rows &rows, OpeningSpec &spec, const std::string &name) {
+  const std::size_t first = rows.rows.size();
+  rows.real(name + "_period", spec.period, not_negative, "time",
+            "the table repeats after this time (docs/howto/numbers.md); 0 = never");
+  rows.boolean(name + "_hold", spec.hold, "a table that does not cover the run holds its first and its last value");
+  rows.allow_change(first);
+}
+
 void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int high) {
   OpeningSpec &spec = config.openings[d][high];
   const std::string name = "inflow_" + side;
@@ -36,6 +45,7 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
   rows.real(name + "_phase", spec.phase, any_number, "rad", "phase");
   rows.real(name + "_feeder", spec.feeder, not_negative, "length",
             "bodies and flow that pass the end of this stretch beside the side come in through it as well; 0 = none");
+  add_table_ends(rows, spec, name);
   only_on(rows, first, config, SideKind::inflow, side, d, high);
 }
 
@@ -46,6 +56,7 @@ void add_pressure(Rows &rows, Config &config, const std::string &side, int d, in
   Option &table = rows.path("pressure_" + side + "_table", spec.table, "the pressure over time, in place of the value");
   table.accepted = "a path to a table of time,value";
   table.is_input = true;
+  add_table_ends(rows, spec, "pressure_" + side);
   rows.real("pressure_" + side + "_resistance", spec.resistance, not_negative, "pressure time/volume",
             "the pressure rises by this times the flow rate out of the box");
   rows.real("pressure_" + side + "_windkessel", spec.windkessel, not_negative, "",

@@ -242,7 +242,7 @@ std::string place_species(std::size_t which, const SolidBodies &solids, const Ke
       return wrong;
     places = Places(all);
   } else if (const std::string wrong = place_bodies(spec, config->grid, &places, kept); !wrong.empty()) {
-    return "-species " + spec.name + (spec.placement == Placement::list ? " (-" + spec.name + "_positions): " : ": ") +
+    return (spec.placement == Placement::list ? "-" + spec.name + "_positions: " : "-species " + spec.name + ": ") +
            wrong;
   }
   config->colours.push_back(config->separates(spec) ? expected_colours(spec, config->grid, places) : 1);

@@ -16,7 +16,7 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
                    voxels.spacing, "as the file says, else the volume fills the box; 1,1,1 for an STL");
   unless_not_given(rows.real("voxels_origin", voxels.origin, any_number, "length",
                              "where the first voxel begins; where the point 0,0,0 of an STL is"),
-                   voxels.origin, "as the file says, else 0,0,0");
+                   voxels.origin, "as the file says if the spacing is its own, else 0,0,0");
   rows.boolean("voxels_invert", voxels.invert, "what is not solid in the file is the body: the wall around a lumen");
 }
 

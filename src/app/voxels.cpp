@@ -20,6 +20,7 @@ namespace {
 class VoxelBody {
 public:
   std::string open(const SpeciesSpec &spec, const GridSpec &grid) {
+    path_ = spec.voxels.path;
     const std::string wrong = on_rank_0([&] { return open_locally(spec, grid); });
     share(&triangles_);
     share(&box_);
@@ -27,7 +28,10 @@ public:
   }
 
   std::string fill(const CellWindow &window, View fraction) {
-    if (!triangles_.empty()) return fill_surface(window, triangles_, fraction);
+    if (!triangles_.empty()) {
+      const std::string wrong = fill_surface(window, triangles_, fraction);
+      return wrong.empty() ? wrong : path_ + ": " + wrong;
+    }
     const auto read = [this](const Int3 &begin, const Int3 &end, double *values) {
       const std::string wrong = on_rank_0([&] { return volume_->read(begin, end, values); });
       std::size_t bytes = sizeof *values;
@@ -66,7 +70,8 @@ private:
     return why_outside(file, grid, low, high);
   }
 
-  // What options say comes first, then the file, then: the volume fills the box. A plane fills it in z.
+  // What options say comes first, then the file, then: the volume fills the box. The file's origin goes with its own
+  // spacing alone. A plane fills the box in z.
   std::string place_volume(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
     box_.count = volume_->count();
     const bool flat = grid.cells[2] == 1;
@@ -75,8 +80,10 @@ private:
     Real3 high{};
     for (int d = 0; d < 3; ++d) {
       double spacing = voxels.spacing[d], corner = voxels.origin[d];
-      if (std::isnan(spacing)) spacing = volume_->spacing()[d];
-      if (std::isnan(corner)) corner = volume_->corner()[d];
+      if (std::isnan(spacing)) {
+        spacing = volume_->spacing()[d];
+        if (std::isnan(corner)) corner = volume_->corner()[d];  // in units of the file, as its spacing
+      }
       const bool fills = flat && d == 2;
       box_.spacing[d] = fills || std::isnan(spacing) ? grid.length[d] / box_.count[d] : spacing;
       box_.corner[d] = fills || std::isnan(corner) ? 0 : corner;
@@ -96,6 +103,7 @@ private:
     return {};
   }
 
+  std::string path_;
   std::unique_ptr<VolumeFile> volume_;  // of rank 0
   VoxelBox box_;
   std::vector<Triangle> triangles_;  // none: a volume

@@ -32,16 +32,18 @@ bool is_file(const std::string &path) {
   });
 }
 
+bool read_file_here(const std::string &path, std::string *bytes) {
+  std::FILE *file = std::fopen(path.c_str(), "re");
+  if (!file) return false;
+  char piece[1 << 14];
+  bytes->clear();
+  while (const std::size_t length = std::fread(piece, 1, sizeof piece, file)) bytes->append(piece, length);
+  const bool whole = std::ferror(file) == 0;
+  return std::fclose(file) == 0 && whole;
+}
+
 bool read_file(const std::string &path, std::string *bytes) {
-  const bool fine = on_rank_0([&] {
-    std::FILE *file = std::fopen(path.c_str(), "re");
-    if (!file) return false;
-    char piece[1 << 14];
-    bytes->clear();
-    while (const std::size_t length = std::fread(piece, 1, sizeof piece, file)) bytes->append(piece, length);
-    const bool whole = std::ferror(file) == 0;
-    return std::fclose(file) == 0 && whole;
-  });
+  const bool fine = on_rank_0([&] { return read_file_here(path, bytes); });
   share(bytes);
   return fine;
 }

@@ -1,5 +1,6 @@
 #include "bodies/placement.hpp"
 
+#include "base/number_rows.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/random.hpp"
 #include "bodies/shapes.hpp"
@@ -7,9 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 
 namespace eulastic {
 namespace {
@@ -20,43 +18,19 @@ std::string text(double value) {
   return buffer;
 }
 
-// Comma-separated finite numbers; false if anything else is on the line.
-bool parse(const std::string &line, std::vector<double> *values) {
-  values->clear();
-  for (const char *p = line.c_str();; ++p) {
-    char *end = nullptr;
-    const double value = std::strtod(p, &end);
-    if (end == p || !std::isfinite(value)) return false;
-    values->push_back(value);
-    p = end + std::strspn(end, " \t");
-    if (*p == '\0') return true;
-    if (*p != ',') return false;
-  }
-}
-
 std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPlace> *places) {
+  static const RowFormat format{
+      "rows of x,y,z or x,y,z,angle_x,angle_y,angle_z", {"x", "y", "z", "angle_x", "angle_y", "angle_z"}, {3, 6}, true};
+  std::string bytes;
+  if (!read_file_here(spec.positions_file, &bytes)) return "cannot read " + spec.positions_file;
   Random random(spec.seed, spec.name);
-  std::ifstream file(spec.positions_file);
-  if (!file) return "cannot read " + spec.positions_file;
-  std::string line;
-  std::vector<double> values;
-  for (int number = 1; std::getline(file, line); ++number) {
-    line.erase(std::remove(line.begin(), line.end(), '\r'), line.end());
-    if (line.find_first_not_of(" \t") == std::string::npos) continue;
-    std::string packed = line;
-    packed.erase(std::remove_if(packed.begin(), packed.end(), [](char c) { return c == ' ' || c == '\t'; }),
-                 packed.end());
-    if (places->empty() && (packed == "x,y,z" || packed == "x,y,z,angle_x,angle_y,angle_z")) continue;
-    if (!parse(line, &values) || (values.size() != 3 && values.size() != 6))
-      return spec.positions_file + " line " + std::to_string(number) + ": expected x,y,z or " +
-             "x,y,z,angle_x,angle_y,angle_z, found \"" + line + "\"";
-    BodyPlace place{{values[0], values[1], values[2]}, spec.orientation};
+  return read_rows(spec.positions_file, bytes, format, [&](const std::vector<double> &row) {
+    BodyPlace place{{row[0], row[1], row[2]}, spec.orientation};
     if (spec.random_orientation) place.orientation = random.orientation(dimension);
-    if (values.size() == 6) place.orientation = {values[3], values[4], values[5]};
+    if (row.size() == 6) place.orientation = {row[3], row[4], row[5]};
     places->push_back(place);
-  }
-  if (file.bad()) return "cannot read " + spec.positions_file;
-  return places->empty() ? spec.positions_file + " holds no positions" : std::string{};
+    return std::string();
+  });
 }
 
 // Why the lumen of a tube is not in the box.

@@ -41,8 +41,8 @@ struct KeptBodies {
 
 /// Finds all bodies of a species, one after the other, and keeps some in `places`. Returns an empty string, or
 /// one sentence on what is wrong: an impossible shape, a bad line of the file, a body outside the box, longer than it,
-/// or reaching into a wall (slabs, cylinders and tubes may), a lumen that leaves the box. List: CSV with x,y,z or
-/// x,y,z,angle_x,angle_y,angle_z per line, such a header line and empty lines allowed; angles on a line replace the
+/// or reaching into a wall (slabs, cylinders and tubes may), a lumen that leaves the box. List: rows of x,y,z or
+/// x,y,z,angle_x,angle_y,angle_z (base/number_rows.hpp), the number of rows first or not; angles of a row replace the
 /// species' orientation. Lattice: centres at (i + 1/2) L/n, and jitter. A slab lies where its interval says; shapes
 /// from files place nothing. Collective over all ranks of the program where there is a list, which rank 0 reads.
 std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, Places *places, const KeptBodies &kept = {});

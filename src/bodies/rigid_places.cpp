@@ -51,7 +51,7 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   Int3 first{};
   for (int d = 0; d < dimension; ++d) {
     if (ends[d] == 0 || -ends[3 + d] == N[d] - 1)
-      *wrong = "-" + spec.name + "_voxels: it reaches the sides of the box along " + "xyz"[d] +
+      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the sides of the box along " + "xyz"[d] +
                ", and what moves there needs fluid around it; accepted: a cell of it, or no motion";
     first[d] = ends[d] - LevelMap::margin;
     box.size[d] = -ends[3 + d] - ends[d] + 1 + 2 * LevelMap::margin;
@@ -77,10 +77,10 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   if (std::fabs(seen - cells) > most_lost * cells) {
     char text[160];
     std::snprintf(text, sizeof text,
-                  "_voxels: what moves must be three cells thick to be seen: it would have %.4g cells instead of %.4g; "
+                  " moves and must be three cells thick to be seen: it would have %.4g cells instead of %.4g; "
                   "accepted: a finer grid, or no motion",
                   seen, cells);
-    *wrong = "-" + spec.name + text;
+    *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + text;
   }
   PetscFunctionReturn(0);
 }

@@ -5,23 +5,32 @@
 
 namespace eulastic {
 
+std::array<std::array<double, 2>, 2> TimeCourse::rows_around(double *time) const {
+  const double begin = table.front()[0];
+  if (period > 0) {
+    const double gone = std::fmod(*time - begin, period);
+    *time = begin + (gone < 0 ? gone + period : gone);
+  }
+  const auto after = std::upper_bound(table.begin(), table.end(), *time,
+                                      [](double t, const std::array<double, 2> &row) { return t < row[0]; });
+  if (after == table.begin()) return {*after, *after};
+  if (after != table.end()) return {after[-1], *after};
+  if (period > 0) return {table.back(), {begin + period, table.front()[1]}};
+  return {table.back(), table.back()};
+}
+
 double TimeCourse::at(double time) const {
   if (table.empty()) return frequency == 0 && phase == 0 ? value : value * std::cos(frequency * time + phase);
-  const auto after = std::upper_bound(table.begin(), table.end(), time,
-                                      [](double t, const std::array<double, 2> &row) { return t < row[0]; });
-  if (after == table.begin()) return table.front()[1];
-  if (after == table.end()) return table.back()[1];
-  const auto &[t0, low] = after[-1];
-  const auto &[t1, high] = *after;
-  return low + (high - low) * ((time - t0) / (t1 - t0));
+  const auto [before, after] = rows_around(&time);
+  const double length = after[0] - before[0];
+  return length > 0 ? before[1] + (after[1] - before[1]) * ((time - before[0]) / length) : before[1];
 }
 
 double TimeCourse::rate(double time) const {
   if (table.empty()) return frequency == 0 ? 0 : -value * frequency * std::sin(frequency * time + phase);
-  const auto after = std::upper_bound(table.begin(), table.end(), time,
-                                      [](double t, const std::array<double, 2> &row) { return t < row[0]; });
-  if (after == table.begin() || after == table.end()) return 0;
-  return ((*after)[1] - after[-1][1]) / ((*after)[0] - after[-1][0]);
+  const auto [before, after] = rows_around(&time);
+  const double length = after[0] - before[0];
+  return length > 0 ? (after[1] - before[1]) / length : 0;
 }
 
 std::array<double, 2> TimeCourse::range() const {

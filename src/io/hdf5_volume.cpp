@@ -1,34 +1,27 @@
 // HDF5 datasets of voxels, read box by box.
-#include "io/hdf5_handle.hpp"
+#include "io/hdf5_input.hpp"
 #include "io/volume_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 namespace {
 
-constexpr std::size_t chunk_cache = std::size_t{128} << 20;  // a layer of chunks is unpacked once
-constexpr double best_compression = 2000;                    // beyond deflate's 1032: such a header lies
+constexpr double best_compression = 2000;  // beyond deflate's 1032: such a header lies
 
 class Hdf5Volume : public VolumeFile {
 public:
   std::string open(const std::string &file, const std::string &dataset) {
     file_ = file;
-    (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
-    const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
-    (void)H5Pset_cache(access.get(), 0, 10007, chunk_cache, 1.0);
-    handle_ = Hdf5FileHandle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()));
-    if (!handle_) return file + " is damaged or truncated: HDF5 cannot open it";
-    std::string name = dataset;
-    if (std::string wrong = choose(&name); !wrong.empty()) return wrong;
-    dataset_ = Hdf5Dataset(H5Dopen2(handle_.get(), name.c_str(), H5P_DEFAULT));
-    if (!dataset_) return file + ": there is no dataset " + name + "; accepted: " + list();
-    if (std::string wrong = read_type(name); !wrong.empty()) return wrong;
-    if (std::string wrong = read_shape(name); !wrong.empty()) return wrong;
+    if (std::string wrong = open_input(file, dataset, "solid_fraction", &input_); !wrong.empty()) return wrong;
+    if (std::string wrong = read_type(input_.name); !wrong.empty()) return wrong;
+    if (std::string wrong = read_shape(input_.name); !wrong.empty()) return wrong;
     std::vector<double> values;
     if (std::string wrong = read_attribute("spacing", &values); !wrong.empty()) return wrong;
     if (std::string wrong = set_spacing(values); !wrong.empty()) return wrong;
     if (std::string wrong = read_attribute("origin", &values); !wrong.empty()) return wrong;
+    if (!values.empty() && std::isnan(spacing_[0])) return file + " has an origin without a spacing";
     std::copy(values.begin(), values.end(), corner_.begin());
     return {};
   }
@@ -38,12 +31,12 @@ protected:
     const hsize_t first[3] = {hsize_t(begin[2]), hsize_t(begin[1]), hsize_t(begin[0])};
     const hsize_t count[3] = {hsize_t(end[2] - begin[2]), hsize_t(end[1] - begin[1]), hsize_t(end[0] - begin[0])};
     const int skip = 3 - rank_;  // a plane has no z
-    const Hdf5Space space(H5Dget_space(dataset_.get())), memory(H5Screate_simple(rank_, count + skip, nullptr));
+    const Hdf5Space space(H5Dget_space(input_.dataset.get())), memory(H5Screate_simple(rank_, count + skip, nullptr));
     const std::size_t n = count[0] * count[1] * count[2];
     if (mask_) bytes_.resize(n * size_);
     const bool read =
         H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first + skip, nullptr, count + skip, nullptr) >= 0 &&
-        H5Dread(dataset_.get(), mask_ ? type_.get() : H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
+        H5Dread(input_.dataset.get(), mask_ ? type_.get() : H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
                 mask_ ? static_cast<void *>(bytes_.data()) : values) >= 0;
     if (!read) return "its values cannot be read, it is truncated or damaged";
     for (std::size_t v = 0; mask_ && v < n; ++v) {
@@ -55,33 +48,8 @@ protected:
   }
 
 private:
-  /// Names at the root of the file.
-  std::string list() const {
-    std::string names;
-    H5G_info_t info{};
-    (void)H5Gget_info(handle_.get(), &info);
-    for (hsize_t n = 0; n < std::min<hsize_t>(info.nlinks, 20); ++n) {
-      char name[256] = "";
-      (void)H5Lget_name_by_idx(handle_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, sizeof name, H5P_DEFAULT);
-      names += (names.empty() ? "" : ", ") + std::string(name);
-    }
-    return names.empty() ? "a file with datasets" : names;
-  }
-
-  // Without a name: solid_fraction, as our own files have it, or the only one.
-  std::string choose(std::string *name) const {
-    if (!name->empty()) return {};
-    *name = "solid_fraction";
-    if (H5Lexists(handle_.get(), name->c_str(), H5P_DEFAULT) > 0) return {};
-    const std::string names = list();
-    if (names.find(',') != std::string::npos)
-      return file_ + " has several datasets; accepted: " + file_ + ":DATASET, one of " + names;
-    *name = names;
-    return {};
-  }
-
   std::string read_type(const std::string &name) {
-    type_ = Hdf5Type(H5Dget_type(dataset_.get()));
+    type_ = Hdf5Type(H5Dget_type(input_.dataset.get()));
     size_ = H5Tget_size(type_.get());
     const H5T_class_t kind = H5Tget_class(type_.get());
     mask_ = kind == H5T_INTEGER || kind == H5T_ENUM || kind == H5T_BITFIELD;  // h5py writes booleans as an enum
@@ -91,19 +59,16 @@ private:
   }
 
   std::string read_shape(const std::string &name) {
-    const std::vector<hsize_t> shape = hdf5_shape(dataset_.get());
+    const std::vector<hsize_t> shape = hdf5_shape(input_.dataset.get());
     rank_ = static_cast<int>(shape.size());
     if (rank_ != 2 && rank_ != 3)
       return file_ + ": dataset " + name + " has " + std::to_string(rank_) +
              " dimensions; accepted: 3 as (nz, ny, nx), or 2 as (ny, nx)";
-    const Hdf5Property creation(H5Dget_create_plist(dataset_.get()));
+    const Hdf5Property creation(H5Dget_create_plist(input_.dataset.get()));
     const bool chunked = H5Pget_layout(creation.get()) == H5D_CHUNKED;
-    // An external dataset would be in another file, a virtual one in many.
-    if (H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL)
-      return file_ + ": dataset " + name + " lies in other files; accepted: datasets in one file";
     if (chunked && H5Pget_nfilters(creation.get()) > 0 && !filters_are_there(creation.get()))
       return file_ + ": dataset " + name + " is packed with a filter that this HDF5 has not; accepted: gzip, or none";
-    const double stored = double(H5Dget_storage_size(dataset_.get()));
+    const double stored = double(H5Dget_storage_size(input_.dataset.get()));
     if (stored == 0) return file_ + ": dataset " + name + " has no values";
     hsize_t chunk[3] = {1, 1, 1};
     if (chunked) (void)H5Pget_chunk(creation.get(), rank_, chunk);
@@ -127,8 +92,8 @@ private:
   // One number for each direction, x first; none if it is not there.
   std::string read_attribute(const std::string &name, std::vector<double> *values) const {
     values->clear();
-    if (H5Aexists(dataset_.get(), name.c_str()) <= 0) return {};
-    const Hdf5Attribute attribute(H5Aopen(dataset_.get(), name.c_str(), H5P_DEFAULT));
+    if (H5Aexists(input_.dataset.get(), name.c_str()) <= 0) return {};
+    const Hdf5Attribute attribute(H5Aopen(input_.dataset.get(), name.c_str(), H5P_DEFAULT));
     const Hdf5Space space(H5Aget_space(attribute.get()));
     const Hdf5Type type(H5Aget_type(attribute.get()));
     const H5T_class_t kind = H5Tget_class(type.get());
@@ -140,8 +105,7 @@ private:
     return fine ? "" : file_ + ": attribute " + name + " must be " + std::to_string(rank_) + " finite numbers, x first";
   }
 
-  Hdf5FileHandle handle_;
-  Hdf5Dataset dataset_;
+  Hdf5Input input_;
   Hdf5Type type_;
   int rank_ = 3;
   std::size_t size_ = 0;

@@ -1,9 +1,11 @@
 #include "io/nrrd_header.hpp"
 
+#include "base/number_rows.hpp"
+
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -27,8 +29,7 @@ bool to_numbers(const std::string &text, std::vector<double> *numbers) {
   numbers->clear();
   for (const std::string &word : words_of(text)) {
     double number = 0;
-    const auto [stop, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (status != std::errc{} || stop != word.data() + word.size()) return false;
+    if (!read_number(word, &number)) return false;
     numbers->push_back(number);
   }
   return true;
@@ -61,19 +62,20 @@ std::string lower(std::string text) {
   return text;
 }
 
+constexpr double tilt_of_round_off = 1e-6;  // of a direction: a voxel in the longest row that is accepted
+
 class HeaderReader {
 public:
   HeaderReader(std::map<std::string, std::string> fields, NrrdHeader *header)
       : fields_(std::move(fields)), header_(header) {}
 
   std::string read() {
-    for (const char *name : {"data file", "datafile"})
-      if (has(name)) return "its data are in another file; accepted: attached data";
     for (const char *name : {"line skip", "lineskip", "byte skip", "byteskip"})
       if (has(name) && fields_[name] != "0") return std::string("field ") + name + " is not supported; accepted: 0";
     for (const char *name : {"axis mins", "axismins", "axis maxs", "axismaxs"})
       if (has(name)) return std::string("field ") + name + " is not supported; accepted: spacings and space origin";
-    for (const auto step : {&HeaderReader::read_sizes, &HeaderReader::read_type, &HeaderReader::read_place})
+    for (const auto step :
+         {&HeaderReader::read_sizes, &HeaderReader::read_kinds, &HeaderReader::read_type, &HeaderReader::read_place})
       if (std::string wrong = (this->*step)(); !wrong.empty()) return wrong;
     return {};
   }
@@ -93,6 +95,22 @@ private:
       return "sizes \"" + fields_["sizes"] + "\"; accepted: " + std::to_string(rank_) + " integers >= 1";
     for (const double n : sizes) header_->sizes.push_back(static_cast<unsigned long long>(n));
     return {};
+  }
+
+  // Axes that are no directions in space would become one.
+  std::string read_kinds() {
+    const auto given = fields_.find("kinds");
+    if (given == fields_.end()) return {};
+    const Words kinds = words_of(given->second);
+    const auto spatial = [](const std::string &kind) {
+      const std::string name = lower(kind);
+      return name == "domain" || name == "space" || name == "none" || name == "???";
+    };
+    const auto other = std::find_if_not(kinds.begin(), kinds.end(), spatial);
+    if (kinds.size() == rank_ && other == kinds.end()) return {};
+    return "kinds \"" + given->second + "\"" +
+           (other == kinds.end() ? "" : ": axis " + std::to_string(other - kinds.begin() + 1) + " is not in space") +
+           "; accepted: domain or space for each of the " + std::to_string(rank_) + " axes";
   }
 
   std::string read_type() {
@@ -125,7 +143,8 @@ private:
                " vectors of " + std::to_string(rank_) + " numbers";
       for (std::size_t n = 0; n < numbers.size(); ++n) {
         const bool diagonal = n % (rank_ + 1) == 0;
-        if (diagonal ? !(numbers[n] > 0) : numbers[n] != 0)
+        const double along = numbers[n / rank_ * (rank_ + 1)];
+        if (diagonal ? !(numbers[n] > 0) : !(std::fabs(numbers[n]) <= tilt_of_round_off * along))
           return "space directions \"" + fields_["space directions"] +
                  "\" are not along x, y, z; accepted: (dx,0,0) (0,dy,0) (0,0,dz), all > 0";
         if (diagonal) header_->spacing.push_back(numbers[n]);
@@ -151,6 +170,24 @@ private:
   std::size_t rank_ = 0;
 };
 
+bool is_detached(const std::map<std::string, std::string> &fields) {
+  return fields.count("data file") > 0 || fields.count("datafile") > 0;
+}
+
+// The values are behind the header, or in a file that a detached header names, beside it.
+std::string find_data(const std::string &file, const std::map<std::string, std::string> &fields, NrrdHeader *header) {
+  namespace fs = std::filesystem;
+  header->data_file = file;
+  if (!is_detached(fields)) return {};
+  const auto named = fields.find("data file");
+  const std::string name = named != fields.end() ? named->second : fields.at("datafile");
+  header->data_file = (fs::path(file).parent_path() / name).string();
+  header->data = 0;
+  std::error_code ignored;
+  if (fs::is_regular_file(header->data_file, ignored)) return {};
+  return "its data file " + header->data_file + " is not a file; accepted: the name of one file, beside the header";
+}
+
 }  // namespace
 
 std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
@@ -160,9 +197,14 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
   std::string text(longest, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(longest));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos) break;
+  const bool all = text.size() < longest;
+  header->data = -1;
+  for (std::size_t begin = text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0; begin < text.size();) {
+    std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) {
+      if (!all || !is_detached(fields)) break;
+      end = text.size();
+    }
     std::string line = text.substr(begin, end - begin);
     begin = end + 1;
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -170,8 +212,7 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
       if (std::iscntrl(static_cast<unsigned char>(c)) && c != '\t') c = '?';  // it may be quoted, in one line
     if (line.empty()) {
       header->data = static_cast<std::int64_t>(begin);
-      const std::string wrong = HeaderReader(std::move(fields), header).read();
-      return wrong.empty() ? wrong : file + ": " + wrong;
+      break;
     }
     const std::size_t colon = line.find(": ");
     const bool key = line.find(":=") < colon;
@@ -183,7 +224,11 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
     if (!fields.emplace(lower(line.substr(0, colon)), value).second)
       return file + ": field " + line.substr(0, colon) + " is given twice";
   }
-  return file + ": the NRRD header has no end, it is truncated or damaged";
+  if (header->data < 0 && !(all && is_detached(fields)))
+    return file + ": the NRRD header has no end, it is truncated or damaged";
+  std::string wrong = find_data(file, fields, header);
+  if (wrong.empty()) wrong = HeaderReader(std::move(fields), header).read();
+  return wrong.empty() ? wrong : file + ": " + wrong;
 }
 
 }  // namespace eulastic

@@ -1,4 +1,5 @@
 // NRRD volumes, read from the front.
+#include "base/number_rows.hpp"
 #include "io/nrrd_header.hpp"
 #include "io/volume_file.hpp"
 
@@ -6,7 +7,6 @@
 #include <unistd.h>
 #include <zlib.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -27,7 +27,7 @@ public:
     file_ = file;
     if (std::string wrong = read_nrrd_header(file, &header_); !wrong.empty()) return wrong;
     std::error_code error;
-    const double bytes = double(std::filesystem::file_size(file, error)) - double(header_.data);
+    const double bytes = double(std::filesystem::file_size(header_.data_file, error)) - double(header_.data);
     const bool ascii = header_.encoding == Encoding::ascii;
     // A value takes a digit and a space (the last one may lack it); deflate packs at most 1032 : 1.
     const double most = header_.encoding == Encoding::gzip ? 1032 * bytes : ascii ? bytes + 1 : bytes;
@@ -35,10 +35,10 @@ public:
     if (std::string wrong = set_spacing(header_.spacing); !wrong.empty()) return wrong;
     std::copy(header_.corner.begin(), header_.corner.end(), corner_.begin());
     // zlib reads what is not packed as it is.
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const int descriptor = ::open(header_.data_file.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0 || ::lseek(descriptor, header_.data, SEEK_SET) < 0 || !(stream_ = gzdopen(descriptor, "rb"))) {
       if (descriptor >= 0) (void)::close(descriptor);
-      return file + " cannot be read";
+      return header_.data_file + " cannot be read";
     }
     (void)gzbuffer(stream_, 1 << 18);
     if ((gzdirect(stream_) == 0) != (header_.encoding == Encoding::gzip))
@@ -100,9 +100,7 @@ private:
       if (word.empty()) return truncated;
       if (next_ < first) continue;
       double value = 0;
-      const auto [stop, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (status != std::errc{} || stop != word.data() + word.size() ||
-          (!header_.is_float && value != std::floor(value)))
+      if (!read_number(word, &value) || (!header_.is_float && value != std::floor(value)))
         return "\"" + word + "\" is " + (header_.is_float ? "no number" : "no integer");
       values[next_ - first] = header_.is_float ? value : value != 0;
     }

@@ -1,14 +1,12 @@
 #include "io/profile_file.hpp"
 
-#include "io/hdf5_handle.hpp"
+#include "io/hdf5_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
 namespace {
-
-constexpr char dataset_name[] = "velocity";
 
 template <class Numbers>
 std::string listed(const Numbers &numbers) {
@@ -19,19 +17,15 @@ std::string listed(const Numbers &numbers) {
 
 }  // namespace
 
-bool is_hdf5(const std::string &bytes) { return bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") == 0; }
-
-std::string read_profile_file(const std::string &path, int slow, int fast, int component, double sign,
-                              std::vector<double> *values) {
-  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the user sees our line
-  const Hdf5FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (!file) return path + " is damaged or truncated: HDF5 cannot open it";
-  const Hdf5Dataset dataset(H5Dopen2(file.get(), dataset_name, H5P_DEFAULT));
-  if (!dataset) return path + " has no dataset velocity";
-  const Hdf5Type type(H5Dget_type(dataset.get()));
+std::string read_profile_file(const std::string &path, const std::string &dataset, int slow, int fast, int component,
+                              double sign, std::vector<double> *values) {
+  Hdf5Input input;
+  if (std::string wrong = open_input(path, dataset, "velocity", &input); !wrong.empty()) return wrong;
+  const std::string said = path + ": dataset " + input.name;
+  const Hdf5Type type(H5Dget_type(input.dataset.get()));
   if (const H5T_class_t kind = H5Tget_class(type.get()); kind != H5T_FLOAT && kind != H5T_INTEGER)
-    return path + ": dataset velocity has no numbers";
-  const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+    return said + " has no numbers";
+  const std::vector<hsize_t> shape = hdf5_shape(input.dataset.get());
   std::vector<std::vector<hsize_t>> accepted{{hsize_t(slow), hsize_t(fast)}, {hsize_t(slow), hsize_t(fast), 3}};
   if (slow == 1) {
     accepted.push_back({hsize_t(fast)});
@@ -39,15 +33,15 @@ std::string read_profile_file(const std::string &path, int slow, int fast, int c
   }
   const auto found = std::find(accepted.begin(), accepted.end(), shape);
   if (found == accepted.end())
-    return path + ": dataset velocity has the shape " + listed(shape) + "; accepted: " + listed(accepted[0]) + " or " +
+    return said + " has the shape " + listed(shape) + "; accepted: " + listed(accepted[0]) + " or " +
            listed(accepted[1]) + ", the cells of the side, slowest first";
   const std::size_t cells = std::size_t(slow) * std::size_t(fast);
   const bool vector = (found - accepted.begin()) % 2 == 1;
   std::vector<double> all(vector ? 3 * cells : cells);
-  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
-    return path + ": dataset velocity cannot be read, it is truncated or damaged";
+  if (H5Dread(input.dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
+    return said + " cannot be read, it is truncated or damaged";
   if (!std::all_of(all.begin(), all.end(), [](double value) { return std::isfinite(value); }))
-    return path + ": dataset velocity has values that are not finite";
+    return said + " has values that are not finite";
   values->resize(cells);
   for (std::size_t c = 0; c < cells; ++c) (*values)[c] = vector ? sign * all[3 * c + std::size_t(component)] : all[c];
   return {};

@@ -5,7 +5,9 @@
 
 namespace eulastic {
 
-/// Reads all of it; normals are ignored, the order of the corners counts. Returns what is wrong, or nothing.
+/// Whether the content of a file is that of an STL file.
+bool is_stl(const std::string &file);
+/// Reads all solids of a file; normals are ignored, the order of the corners counts. Returns what is wrong, or nothing.
 std::string read_stl(const std::string &file, std::vector<Triangle> *triangles);
 
 }  // namespace eulastic

@@ -1,5 +1,8 @@
 #include "io/volume_file.hpp"
 
+#include "io/hdf5_input.hpp"
+#include "io/stl_file.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -14,38 +17,31 @@ namespace fs = std::filesystem;
 
 constexpr unsigned long long most_voxels = 1 << 20;  // in one direction
 
-bool is_file(const std::string &path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
+constexpr char byte_order_mark[] = "\xEF\xBB\xBF";
 
 }  // namespace
 
 const double VolumeFile::not_given = std::numeric_limits<double>::quiet_NaN();
 
 std::string find_volume(const std::string &path, VolumeFormat *format, std::string *file, std::string *dataset) {
-  *file = path;
-  dataset->clear();
-  const std::size_t colon = path.rfind(':');
-  if (!is_file(path) && colon != std::string::npos) {
-    *file = path.substr(0, colon);
-    *dataset = path.substr(colon + 1);
-  }
-  if (!is_file(*file)) return *file + " is not a file";
-  char magic[8] = "";
+  split_dataset(path, file, dataset);
+  std::error_code ignored;
+  if (!fs::is_regular_file(*file, ignored)) return *file + " is not a file";
+  char magic[10] = "";
   std::ifstream stream(*file, std::ios::binary);
   stream.read(magic, sizeof magic);
   if (!stream && stream.gcount() == 0) return *file + " is empty or cannot be read";
+  const char *text = std::memcmp(magic, byte_order_mark, 3) == 0 ? magic + 3 : magic;
   std::string suffix = fs::path(*file).extension().string();
   for (char &c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (std::memcmp(magic, "\x89HDF\r\n\x1a\n", 8) == 0)
+  if (is_hdf5(*file))
     *format = VolumeFormat::hdf5;
-  else if (std::memcmp(magic, "NRRD000", 7) == 0)
+  else if (std::memcmp(text, "NRRD000", 7) == 0)
     *format = VolumeFormat::nrrd;
-  else if (suffix == ".stl")
+  else if (is_stl(*file) || suffix == ".stl")  // the reader says what is wrong with a damaged one
     *format = VolumeFormat::stl;
   else
-    return *file + " is no HDF5, NRRD or .stl file, or its beginning is damaged";
+    return *file + " is no HDF5, NRRD or STL file, or its beginning is damaged";
   if (!dataset->empty() && *format != VolumeFormat::hdf5)
     return *file + " has no datasets; accepted: FILE:DATASET for HDF5 only";
   return {};

@@ -1,4 +1,4 @@
-// Volumes of voxels in files: HDF5 datasets and NRRD (attached data; raw, gzip or ascii). Local to a rank.
+// Volumes of voxels in files: HDF5 datasets and NRRD (raw, gzip or ascii). Local to a rank.
 //
 // Integers (and booleans) are masks, non-zero is solid; floats are solid fractions, 0 ... 1. Headers that promise more
 // than the file can hold are refused, and values are read piece by piece.
@@ -12,8 +12,8 @@ namespace eulastic {
 
 enum class VolumeFormat { hdf5, nrrd, stl };
 
-/// By the first bytes of the file; STL, which has none of its own, by the name. `path` may be FILE:DATASET if there is
-/// no file of that whole name. Returns what is wrong, or nothing.
+/// Finds the format of a file by its content alone. `path` may be FILE:DATASET if there is no file of that whole name.
+/// Returns what is wrong, or nothing.
 std::string find_volume(const std::string &path, VolumeFormat *format, std::string *file, std::string *dataset);
 
 class VolumeFile {

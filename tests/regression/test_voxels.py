@@ -101,6 +101,35 @@ class Voxels(WithRoom):
         self.assertEqual(self.phi(self.hdf5(solid)).min(), 1)  # fills the box
         half = self.phi(self.hdf5(solid), "-part_voxels_spacing", ".3,.5,.4")
         self.assertAlmostEqual(half.sum(), 480, delta=1e-9)
+        # The file's origin is in units of the file: it goes with the file's spacing alone.
+        corner = numpy.zeros(SHAPE)
+        corner[:2, :2, :2] = 1
+        numpy.testing.assert_array_equal(self.phi(self.hdf5(solid, **at), "-part_voxels_spacing", ".1,.1,.1"), corner)
+        numpy.testing.assert_array_equal(self.phi(self.hdf5(solid, **at), "-part_voxels_spacing", ".1,.1,.1",
+                                                  "-part_voxels_origin", ".1,.3,.2"), wanted)
+
+    def test_hdf5_of_others(self):
+        """A user block, as MATLAB's; the only dataset in whatever group, also behind a soft link."""
+        mask = RANDOM.random(SHAPE) < .3
+        for block in (512, 4096):
+            with h5py.File(self.room / "block.mat", "w", userblock_size=block) as file:
+                file["wall"] = mask
+                file["#refs#/a"] = 1
+            data = bytearray((self.room / "block.mat").read_bytes())
+            data[:19] = b"MATLAB 7.3 MAT-file"
+            numpy.testing.assert_array_equal(self.phi(self.write("block.mat", bytes(data))), mask)
+        with h5py.File(self.room / "group.h5", "w") as file:
+            file["ITKImage/0/VoxelData"] = mask
+            file["wall"] = h5py.SoftLink("/ITKImage/0/VoxelData")
+        for name in ("group.h5", "group.h5:wall", "group.h5:ITKImage/0/VoxelData"):
+            numpy.testing.assert_array_equal(self.phi(name), mask)
+        self.refused(*RUN, *BODY, "group.h5:ITKImage", says=["no dataset ITKImage; accepted: ITKImage/0/VoxelData"])
+        with h5py.File(self.room / "two.h5", "w") as file:
+            file["solid_fraction/x"], file["b/c"] = mask, mask
+        self.refused(*RUN, *BODY, "two.h5", says=["several datasets", "one of b/c, solid_fraction/x"])
+        with h5py.File(self.room / "none.h5", "w") as file:
+            file.create_group("solid_fraction")
+        self.refused(*RUN, *BODY, "none.h5", says=["none.h5 has no datasets"])
 
     def test_nrrd(self):
         mask, fraction = RANDOM.random(SHAPE) < .3, RANDOM.random(SHAPE)
@@ -118,6 +147,26 @@ class Voxels(WithRoom):
         wanted[4, 3, 2] = 1
         numpy.testing.assert_array_equal(self.phi(self.write("v.nrrd", one)), wanted)
 
+    def test_nrrd_of_others(self):
+        """Round-off in the directions, kinds, a byte-order mark, data in a file of their own."""
+        solid = numpy.ones((2, 2, 2), "u1")
+        wanted = numpy.zeros(SHAPE)
+        wanted[2:4, 3:5, 1:3] = 1
+        at = dict(space="left-posterior-superior", space_origin="(.15,.35,.25)", kinds="domain domain space",
+                  space_directions="(.1,0,0) (0,.1,-1.2246467991473532e-17) (0,6.123e-18,.1)")
+        whole = nrrd(solid, **at)
+        for content in (whole, b"\xef\xbb\xbf" + whole):
+            numpy.testing.assert_array_equal(self.phi(self.write("v.dat", content)), wanted)
+        (self.room / "data").mkdir()
+        for encoding, end in (("raw", b"\n"), ("gzip", b""), ("ascii", b"\n\n")):
+            head, data = nrrd(solid, encoding, data_file="values.bin", **at).split(b"\n\n", 1)
+            self.write("data/values.bin", data)
+            numpy.testing.assert_array_equal(self.phi(self.write("data/v.nhdr", head + end)), wanted)
+        self.write("data/values.bin", b"short")
+        self.refused(*RUN, *BODY, "data/v.nhdr", says=["data/v.nhdr", "do not fit into what the file holds"])
+        (self.room / "data/values.bin").unlink()
+        self.refused(*RUN, *BODY, "data/v.nhdr", says=["data/v.nhdr: its data file data/values.bin is not a file"])
+
     def test_stl(self):
         wanted = numpy.zeros(SHAPE)
         wanted[2:5, 3:6, 1:4] = 1
@@ -127,6 +176,17 @@ class Voxels(WithRoom):
         for content in (binary(box_stl(low, high)), ascii_stl(box_stl(low, high))):
             name = self.write("v.STL", content)
             numpy.testing.assert_allclose(self.phi(name, grid=grid), wanted, atol=1e-12)
+        # As others write them, and whatever the name is.
+        plain, text = binary(box_stl(low, high)), ascii_stl(box_stl(low, high))
+        parts = box_stl(low, [.25, .75, .625]), box_stl([.375, *low[1:]], high)
+        for content in (text.upper(), b"\xef\xbb\xbf" + text, b"\r\n  " + text, text.replace(b"\n", b"\r"), text + b"\x1a\0\0",
+                        text.replace(b"solid", b"Solid"), plain + 16 * b"x", plain + 1000 * b"\0"):
+            numpy.testing.assert_allclose(self.phi(self.write("v.dat", content), grid=grid), wanted, atol=1e-12)
+        wanted_parts = wanted.copy()
+        wanted_parts[:, :, 2] = 0
+        for write in (binary, ascii_stl):
+            name = self.write("v.dat", write(parts[0]) + write(parts[1]))
+            numpy.testing.assert_allclose(self.phi(name, grid=grid), wanted_parts, atol=1e-12)
         scaled = self.phi(self.write("v.stl", binary(box_stl([0, 0, 0], [3.5, 3, 3]))), "-part_voxels_origin",
                           ".125,.375,.25", "-part_voxels_spacing", ".125,.125,.125", grid=grid)
         numpy.testing.assert_allclose(scaled, wanted, atol=1e-12)
@@ -225,7 +285,8 @@ class Voxels(WithRoom):
                 (numpy.zeros(SHAPE), ["nothing solid"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
                 (good, ["spacing"], {"spacing": [.1, 0, .1]}), (good, ["spacing"], {"spacing": "three"}),
                 (good, ["origin"], {"origin": [0, 0, numpy.inf]}),
-                (good, ["outside the box"], {"origin": [5., 0, 0]})]:
+                (good, ["outside the box"], {"origin": [5., 0, 0], "spacing": [.1, .1, .1]}),
+                (good, ["origin without a spacing"], {"origin": [0., 0, 0]})]:
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.hdf5(values, **at), says=["-part_voxels: v.h5", *says])
         self.refused(*RUN, *BODY, "v.h5:other", says=["no dataset other", "mask"])
@@ -241,7 +302,7 @@ class Voxels(WithRoom):
             file["a"], file["b"] = good, good
         self.refused(*RUN, *BODY, "two.h5", "-check_only", says=["several datasets", "two.h5:DATASET", "a, b"])
         whole = (self.room / self.hdf5(good)).read_bytes()
-        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "no HDF5, NRRD or .stl")):
+        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "no HDF5, NRRD or STL")):
             self.refused(*RUN, *BODY, self.write("v.h5", part), says=["v.h5", says])
 
     def test_nrrd_refusals(self):
@@ -251,10 +312,13 @@ class Voxels(WithRoom):
                 (dict(endian=None), "little or big"), (dict(dimension=4), "2 or 3"), (dict(sizes="12 10"), "3 integers"),
                 (dict(sizes="12 10 9"), "do not fit"), (dict(sizes="12 10 -8"), "3 integers"),
                 (dict(sizes="4294967297 1 1"), "4294967297 voxels in x"),
-                (dict(sizes="1000000 1000000 1000000"), "do not fit"), (dict(data_file="v.raw"), "attached"),
+                (dict(sizes="1000000 1000000 1000000"), "do not fit"), (dict(data_file="v.raw"), "one file, beside the header"),
                 (dict(byte_skip="-1"), "byte skip"), (dict(axis_mins="0 0 0"), "axis mins"),
                 (dict(spacings="1 1"), "3 numbers"), (dict(spacings="1 -1 1"), "> 0"),
                 (dict(space_directions="(0,1,0) (1,0,0) (0,0,1)"), "along x, y, z"),
+                (dict(space_directions="(1,0,0) (0,1,1e-5) (0,0,1)"), "along x, y, z"),
+                (dict(kinds="RGB-color domain domain"), "axis 1 is not in space; accepted: domain or space"),
+                (dict(kinds="domain domain vector"), "axis 3 is not in space"), (dict(kinds="domain domain"), "3 axes"),
                 (dict(space_directions="(1,0,0) (0,1,0)"), "3 vectors"), (dict(space_origin="(0,0,0)"), "spacings")]:
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.write("v.nrrd", nrrd(good, **fields)), says=["v.nrrd", says])
@@ -273,9 +337,11 @@ class Voxels(WithRoom):
                               (binary([], 0), "no triangles"), (ascii_stl(box)[:-20], "truncated"),
                               (ascii_stl(box).replace(b"outer", b"inner", 1), "triangle 1"), (binary(far), "outside"),
                               (binary(box + box), "crosses itself"), (b"nothing", "too short"),
+                              (binary(box) + 100 * b"x", "what follows its 12 triangles is no other solid"),
+                              (ascii_stl(box) + b"facet", "triangle 13"),
                               (ascii_stl(box).replace(b"0.1", b"nan", 1), "triangle 1")):
             with self.subTest(says):
-                self.refused(*RUN, *BODY, self.write("v.stl", content), says=["-part_voxels: ", says])
+                self.refused(*RUN, *BODY, self.write("v.stl", content), says=["-part_voxels: v.stl", says])
 
 
 if __name__ == "__main__":

@@ -33,13 +33,58 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
        {in + "outflow -inflow_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
        {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
         {"-inflow_xmin_frequency: has no meaning beside a table"}},
+       {in + "outflow -inflow_xmin_velocity" + file("short_table", "0,1\n.5,1\n"),
+        {"short_table goes from time 0 to 0.5, the run from 0 to 2", "-inflow_xmin_period", "-inflow_xmin_hold true"}},
+       {in + "outflow -inflow_xmin_velocity" + file("late", ".1,1\n1,1\n"), {"late goes from time 0.1 to 1"}},
+       {in + "outflow -inflow_xmin_period 2 -inflow_xmin_hold true -inflow_xmin_velocity " + files / "table",
+        {"-inflow_xmin_hold: given beside -inflow_xmin_period"}},
+       {in + "outflow -inflow_xmin_period .75 -inflow_xmin_velocity " + files / "table",
+        {"-inflow_xmin_period: 0.75 is shorter than the table", "accepted: 1 or longer"}},
+       {in + "outflow -inflow_xmin_period 1 -inflow_xmin_velocity " + files / "table",
+        {"-inflow_xmin_period: the table ends with 2 and begins again with 1"}},
+       {way + "-inflow_xmin_period 1", {"-inflow_xmin_period: has no meaning without a table"}},
+       {way + "-inflow_xmin_hold true", {"-inflow_xmin_hold: has no meaning without a table"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table " + files / "short_table",
+        {"-pressure_xmax_table: ", "short_table goes from", "-pressure_xmax_period"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
         {"-pressure_xmax_windkessel: capacity"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
         {"-pressure_xmax_resistance: given beside"}}});
   EXPECT_EQ(parse_line(scene + " " + way).error, "");
+  for (const char *end : {"-inflow_xmin_hold true", "-inflow_xmin_period .5", "-inflow_xmin_period .7"})
+    EXPECT_EQ(parse_line(scene + " " + in + "outflow -inflow_xmin_velocity " + files / "short_table " + end).error, "");
   EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
+}
+
+// At every time of the run, not only at rows of a table or at eighths of a period.
+TEST(SceneRefusals, InflowSidesThatDoNotCancel) {
+  const test::TemporaryDirectory files;
+  const auto file = [&](const char *name, const std::string &text) {
+    std::ofstream(files / name) << text;
+    return " " + files / name + " ";
+  };
+  const std::string in = "-boundary_xmin inflow -boundary_xmax inflow ", one = "-inflow_xmin_velocity ",
+                    two = "-inflow_xmax_velocity ";
+  const std::string beat = file("beat", "0,0\n.1,1\n.2,0\n"), back = file("back", "0,0\n.1,-1\n.2,0\n"),
+                    twice = file("twice", "0 0\n.1 -1\n.2 0\n.3 -1\n.4 0"),
+                    other = file("other", "0 0\n.1 -1\n.2 0\n.3 -1.5\n.4 0");
+  expect_refusals(
+      {{in + one + "1 -inflow_xmin_frequency 1 " + two + "-1 -inflow_xmax_frequency 9",
+        {"up to 64 volume/time comes in at the angular frequency 1", "no way out", "at every time"}},
+       {in + one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_hold true", {"at time 0.3"}},
+       {in + one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_period .25", {"no way out"}},
+       {in + one + beat + "-inflow_xmin_period .2 " + two + other + "-inflow_xmax_period .4", {"-32", "at time 0.3"}},
+       {in + one + beat + "-inflow_xmin_hold true " + two + "0 -inflow_xmax_frequency 1",
+        {"64 volume/time", "time 0.1"}},
+       {in + one + beat + "-inflow_xmin_period .2 " + two + "-1 -inflow_xmax_frequency 31.41592653589793",
+        {"no way out"}}});
+  for (const std::string &fine : {one + "1 -inflow_xmin_frequency 7 -inflow_xmin_phase .3 " + two +
+                                      "-1 -inflow_xmax_frequency 7 -inflow_xmax_phase .3",
+                                  one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_period .2",
+                                  one + beat + "-inflow_xmin_period .2 " + two + twice + "-inflow_xmax_period .4",
+                                  one + beat + "-inflow_xmin_hold true " + two + back + "-inflow_xmax_hold true"})
+    EXPECT_EQ(parse_line(scene + " " + in + fine).error, "") << fine;
 }
 
 // What would turn into another shape, or cannot go where it is told.

@@ -281,10 +281,16 @@ TEST(Placement, ReadsListsAndNamesBadLines) {
   EXPECT_EQ(places.known[0].orientation, (Real3{0, 0, 5}));
   EXPECT_EQ(places.known[1].orientation, (Real3{10, 20, 30}));
   for (const char *bad : {"x,y,z\n1,2,3\n1,2\n", "1,1,1\n1,2,3\n1,2,3x\n", "1,1,1\n\n1,,3", "1,1,1\n1,1,2\n1,2,nan",
-                          "1,1,1\n1,1,2\nx,y,z\n", "1,1,1\n1,1,2\n1,2,3,\n"})
+                          "1,1,1\n1,1,2\nx,y,z\n", "# c\nx y z\n1;1 1;1", "1,1,1\n1,1,2\n1,2,3,\n"})
     EXPECT_NE(with(bad).find("line 3"), std::string::npos) << bad;
+  // As others write them: their number first, blanks, angles in degrees about x, y and z.
+  EXPECT_EQ(with("2\n1 2 3 0 0 0\n2 2 1 10 20 30\n"), "");
+  ASSERT_EQ(place_bodies(spec, grid, &places), "");
+  ASSERT_EQ(places.known.size(), 2u);
+  EXPECT_EQ(places.known[1].centre, (Real3{2, 2, 1}));
+  EXPECT_EQ(places.known[1].orientation, (Real3{10, 20, 30}));
   EXPECT_NE(with("1,2,3\n1,0.2,3\n").find("body 2"), std::string::npos);
-  EXPECT_NE(with("x,y,z\n").find("no positions"), std::string::npos);
+  EXPECT_NE(with("x,y,z\n").find("holds no numbers"), std::string::npos);
   std::remove(path.c_str());
   EXPECT_NE(why_not(spec, grid).find("cannot read"), std::string::npos);
 }
