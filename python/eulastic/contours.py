@@ -5,15 +5,10 @@ import json
 import numpy
 
 from . import derived
+from .reading import VESSELS
 from .surfaces import body_pieces, enclosing, sample
 
-VESSELS = "tube", "constricted_tube", "voxels"
 KINDS = "vtp", "stl"
-
-
-def species_of(run):
-    """{name: shape} in the order of -species."""
-    return {name: run.options.get(name + "_shape") for name in run.options.get("species", "").split(",")}
 
 
 class Contours:
@@ -24,7 +19,7 @@ class Contours:
 
     def in_species(self, snapshot, field, name):
         """solid_fraction or body of one species."""
-        return snapshot[field + ("_" + name if len(species_of(self.run)) > 1 else "")]
+        return snapshot[field + ("_" + name if len(self.run.species) > 1 else "")]
 
     def bodies(self, snapshot, name, whole=False, planes=()):
         """(label, surface) of the bodies of a species that is no vessel: a VTK filter that encloses the body's volume. One
@@ -107,7 +102,7 @@ class Contours:
         """vtkPolyData of triangles: all bodies and vessels. Of cells `body`, the label (0 of vessels), and `species`, 1, 2,
         ... in the order of `species_names`, the strings of the whole; of points `field`."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
-        vtk, names = self.vtk, species_of(self.run)
+        vtk, names = self.vtk, self.run.species
         together, values = vtk.vtkAppendPolyData(), derived.field(snapshot, field) if field else None
         together.AddInputData(vtk.vtkPolyData())  # without any body there is this one
         for number, (name, shape) in enumerate(names.items(), 1):

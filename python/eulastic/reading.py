@@ -1,34 +1,15 @@
-"""The output directory of a run, and files of options (docs/outputs.md, docs/options.md)."""
+"""The output directory of a run (docs/outputs.md)."""
 import json
 import pathlib
 import types
+import warnings
 
 import h5py
 import numpy
 
+from .option_files import read_options
 
-def parse_options(words):
-    """Options as {name without dash: value}; `words` alternate between names and values, "" for a bare name."""
-    options, name = {}, None
-    for word in words:
-        if word.startswith("-") and word[1:2].isalpha():
-            name = word[1:]
-            options[name] = ""
-        elif name is not None:
-            options[name] = word
-            name = None
-    return options
-
-
-def read_options(path):
-    """An options file: lines `-name value`, # starts a comment; -options_file brings in another, which it wins over."""
-    path = pathlib.Path(path)
-    lines = (line.split("#")[0].split(maxsplit=1) for line in path.read_text().splitlines())
-    options = parse_options(word.strip() for line in lines for word in line)
-    if "options_file" in options:
-        options = {**read_options(path.parent / options.pop("options_file")), **options}
-    return options
-
+VESSELS = "tube", "constricted_tube", "voxels"
 
 class Snapshot:
     """One snapshot file. Fields are read when asked for: arrays (nz, ny, nx), or (nz, ny, nx, 3) of a vector."""
@@ -69,13 +50,35 @@ class Snapshot:
         return numpy.linalg.norm(self["wall_shear_stress"].astype(float), axis=-1)
 
     def plane(self, d=2, place=None):
-        """Index of the plane of cells normal to d (0, 1, 2) at `place`; by default the one that cuts the most solid, the first
-        of those that differ by round-off only, and without any solid the middle one."""
+        """Index of the plane of cells normal to d (0, 1, 2) at `place`, ValueError outside of the box. By default the plane that
+        cuts the most solid of bodies that move; where there are none, the most of the lumen of the vessels; without any solid
+        the middle one. Of planes that differ by round-off only, the middle one, of two the first."""
         if place is not None:
-            return int(numpy.clip(place / self.run.spacing[d], 0, self.run.cells[d] - 1))
+            if not 0 <= place <= self.run.length[d]:
+                raise ValueError(f"{'xyz'[d]} = {place:g} is outside of the box; accepted: 0 to {self.run.length[d]:g}")
+            return min(int(place / self.run.spacing[d]), self.run.cells[d] - 1)
         others = tuple({0, 1, 2} - {2 - d})
-        solid = self["solid_fraction"].sum(axis=others, dtype=float) if "solid_fraction" in self else numpy.zeros(1)
-        return int((solid >= (1 - 1e-6) * solid.max()).argmax()) if solid.any() else self.run.cells[d] // 2
+        bodies = self.fraction_of_bodies().sum(axis=others, dtype=float)
+        if not bodies.any() and "solid_fraction" in self:
+            solid = self["solid_fraction"]
+            bodies = (1 - solid).sum(axis=others, dtype=float) if solid.any() else bodies
+        if not bodies.any():
+            return self.run.cells[d] // 2
+        most = numpy.flatnonzero(bodies >= (1 - 1e-6) * bodies.max())
+        return int(most[(len(most) - 1) // 2])
+
+    def fraction_of(self, species):
+        """The solid fraction of one species, (nz, ny, nx)."""
+        return self["solid_fraction" + ("_" + species if len(self.run.species) > 1 else "")]
+
+    def fraction_of_bodies(self):
+        """The solid fraction of all species that move with the flow, (nz, ny, nx): not of vessels, slabs and other walls."""
+        moving = [name for name in self.run.species if not self.run.is_fixed(name)]
+        if "solid_fraction" not in self or not moving and self.run.species:
+            return numpy.zeros(self.run.cells[::-1], "f4")
+        if len(moving) == len(self.run.species):
+            return self["solid_fraction"]
+        return sum(self.fraction_of(name) for name in moving)
 
 
 def is_finished(directory):
@@ -107,11 +110,24 @@ class Run:
         self.profile = {d: read_series(self.directory / f"profile_{d}.csv") for d in "xyz"
                         if (self.directory / f"profile_{d}.csv").exists()}
         self.bodies = self._if_there("bodies.h5", read_bodies, None)
-        self.snapshots = sorted((Snapshot(p, self) for p in self.directory.glob("snapshot_*.h5")), key=lambda s: s.time)
+        snapshots = (_unless_damaged(lambda p: Snapshot(p, self), p) for p in self.directory.glob("snapshot_*.h5"))
+        self.snapshots = sorted((s for s in snapshots if s is not None), key=lambda s: s.time)
 
     def _if_there(self, name, read, otherwise):
         path = self.directory / name
         return read(path) if path.exists() else otherwise
+
+    @property
+    def species(self):
+        """{name: shape} in the order of -species."""
+        names = self.options.get("species", "")
+        return {name: self.options.get(name + "_shape") for name in names.split(",")} if names else {}
+
+    def is_fixed(self, species):
+        """Whether the species is a vessel, a slab, rigid or attached: no body that the flow carries along."""
+        shape, of = self.species[species], lambda name, default: self.options.get(f"{species}_{name}", default)
+        attached = of("attached", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
+        return attached == "true" or of("law", "neo_hookean") == "rigid"
 
     @property
     def cells(self):
@@ -156,12 +172,46 @@ class Run:
         return "\n".join(lines)
 
 
+def _unless_damaged(read, path):
+    """None, with a warning, of an HDF5 file that is cut or damaged: the program would refuse it."""
+    try:
+        return read(path)
+    except (OSError, KeyError) as error:
+        warnings.warn(f"{path} is damaged or truncated and left out: {error}", stacklevel=3)
+        return None
+
+
 def read_series(path):
-    return numpy.atleast_1d(numpy.genfromtxt(path, delimiter=",", names=True, deletechars="")).view(numpy.recarray)
+    """The complete lines of a table, as the program takes them: one that is cut short is left out. None without a header."""
+    lines = path.read_text().split("\n")[:-1]
+    if not lines:
+        return None
+    names = lines[0].split(",")
+    rows = numpy.loadtxt(lines[1:], delimiter=",", ndmin=2) if len(lines) > 1 else numpy.empty((0, len(names)))
+    return numpy.rec.fromarrays(rows.T, names=names)
 
 
 def read_bodies(path):
-    with h5py.File(path) as file:
-        arrays = {name: item[...] for name, item in file.items()}
+    """Arrays of bodies.h5, cut to the rows that all of them have. None, with a warning, of a damaged file."""
+    def read(path):
+        with h5py.File(path) as file:
+            return {name: item[...] for name, item in file.items()}
+
+    arrays = _unless_damaged(read, path)
+    if arrays is None:
+        return None
+    rows = min((len(values) for name, values in arrays.items() if name not in ("id", "species")), default=0)
+    arrays = {name: values if name in ("id", "species") else values[:rows] for name, values in arrays.items()}
     arrays["species"] = numpy.array([s.decode() if isinstance(s, bytes) else s for s in arrays["species"]])
     return types.SimpleNamespace(**arrays)
+
+
+def over_time(rows):
+    """Rows of profiles or probes as arrays over time: time (nt); every other column (nt, n), but places, which do not change,
+    (n). A last time whose rows are not all there is left out."""
+    names = [name for name in rows.dtype.names if name != "time"]
+    count = int((rows.time == rows.time[0]).sum()) if len(rows) else 0
+    whole = rows[:len(rows) // count * count] if count else rows
+    arrays = {name: whole[name].reshape(-1, max(count, 1)) for name in names}
+    arrays = {name: values[0] if name in ("x", "y", "z", "probe") and len(values) else values for name, values in arrays.items()}
+    return types.SimpleNamespace(time=whole.time[::count] if count else whole.time, **arrays)

@@ -1,7 +1,10 @@
 """Runs of the program, one or many, by scripts/run: one that is finished is not repeated, one that was interrupted goes
 on."""
+import collections.abc
 import concurrent.futures
+import decimal
 import itertools
+import numbers
 import os
 import pathlib
 import signal
@@ -26,12 +29,36 @@ class RunError(RuntimeError):
 
 
 def option_value(value):
-    """As the program reads it: True is true, a sequence has commas, numbers keep all their digits."""
-    if isinstance(value, (bool, numpy.bool_)):
+    """The text that the program reads: True is true, numbers keep all their digits, sequences and arrays have commas, sequences
+    of sequences (points) colons between them; texts and paths stay as they are. TypeError for anything else."""
+    if isinstance(value, (numpy.generic, numpy.ndarray)):
+        value = value.tolist()
+    if isinstance(value, (str, os.PathLike, bytes)):
+        return os.fsdecode(value)
+    if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (list, tuple, numpy.ndarray)):
-        return ",".join(option_value(one) for one in value)
-    return str(value.item() if isinstance(value, numpy.generic) else value).removesuffix(".0")
+    if isinstance(value, (int, decimal.Decimal)):
+        return str(value)
+    if isinstance(value, numbers.Real):
+        return repr(float(value)).removesuffix(".0")
+    if not isinstance(value, collections.abc.Iterable) or isinstance(value, (collections.abc.Set, collections.abc.Mapping)):
+        raise TypeError(f"{value!r} of type {type(value).__name__} is no value of an option; accepted: numbers, texts, paths, True, "
+                        "False, None, and sequences of them")
+    items = list(value)
+    nested = any(isinstance(one, collections.abc.Iterable) and not isinstance(one, (str, bytes)) for one in items)
+    return (":" if nested else ",").join(option_value(one) for one in items)
+
+
+def option_words(options):
+    """{name: text}; options that are None are not given. TypeError names the option."""
+    words = {}
+    for name, value in options.items():
+        try:
+            if value is not None:
+                words[name] = option_value(value)
+        except TypeError as error:
+            raise TypeError(f"{name}: {error}") from None
+    return words
 
 
 def stop(process):
@@ -41,8 +68,8 @@ def stop(process):
 
 
 def launch(case, directory, ranks, options, say, started=lambda process: None):
-    """Runs to the end and returns the Run; `say` gets the lines on the way."""
-    words = [word for name, value in options.items() for word in (f"-{name}", option_value(value))]
+    """Runs to the end and returns the Run; options are texts, `say` gets the lines on the way."""
+    words = [word for name, text in options.items() for word in (f"-{name}", text)]
     command = ["bash", SCRIPT, "--ranks", str(ranks), case, directory, *words]
     # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -70,14 +97,15 @@ def run(case, output_dir=None, ranks=2, progress=True, **options):
 
     output_dir  where the results go, by default output/CASE
     progress    prints the program's lines: percent, time left; a function is called with each
-    options     those of the program without dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0)
+    options     those of the program without dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0),
+                probe_points=[(0, 1, 2), (3, 4, 5)]; None: not given
 
     RunError says what was wrong, in the program's words. A run that is there, finished and of the same options is only
     read; one that was interrupted goes on.
     """
     directory = output_dir or pathlib.Path("output") / pathlib.Path(case).stem
     say = progress if callable(progress) else print if progress else lambda _: None
-    return launch(case, directory, ranks, options, say)
+    return launch(case, directory, ranks, option_words(options), say)
 
 
 def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options):
@@ -91,14 +119,15 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options
     """
     folder = pathlib.Path(output_dir or pathlib.Path("output") / f"{pathlib.Path(case).stem}_sweep")
     points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
-    names = ["+".join(f"{name}={option_value(value)}" for name, value in point.items()).replace("/", "_") for point in points]
+    words, common = [option_words(point) for point in points], option_words(options)
+    names = ["+".join(f"{name}={texts.get(name)}" for name in grid).replace("/", "_") for texts in words]
     if len(set(names)) < len(names) or not points:
         raise ValueError("sweep: grid: every option needs one value or more, none of them twice")
     lock, ended, processes = threading.Lock(), [], []
 
-    def one(point, name):
+    def one(texts, name):
         try:
-            result = launch(case, folder / name, ranks, {**options, **point}, lambda _: None, processes.append)
+            result = launch(case, folder / name, ranks, {**common, **texts}, lambda _: None, processes.append)
         except RunError as error:
             result = error
         with lock:
@@ -108,7 +137,7 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options
         return result
 
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        futures = [pool.submit(one, *job) for job in zip(points, names)]
+        futures = [pool.submit(one, *job) for job in zip(words, names)]
         try:
             results = [future.result() for future in futures]
         except BaseException:
@@ -116,12 +145,19 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options
             for process in processes:
                 stop(process)
             raise
+    points = [{name: plain(value, texts.get(name)) for name, value in point.items()} for point, texts in zip(points, words)]
     rows = [(point, result) for point, result in zip(points, results) if isinstance(result, Run)]
     table = table_of(list(grid), rows) if rows else None
     failed = [f"{name}: {result}" for name, result in zip(names, results) if isinstance(result, RunError)]
     if failed:
         raise RunError("\n".join(failed), directory=folder, table=table)
     return table
+
+
+def plain(value, text):
+    """The value itself where a column of a table can hold it, else its text."""
+    value = value.item() if isinstance(value, numpy.generic) else value
+    return value if isinstance(value, SCALARS) else text
 
 
 def outcome(result):
@@ -133,8 +169,6 @@ def outcome(result):
 def table_of(swept, rows):
     """Columns of one type each: numbers (null is nan), words, and objects for the runs."""
     columns = {name: [point[name] for point, _ in rows] for name in swept}
-    columns = {name: values if all(isinstance(v, SCALARS) for v in values) else [option_value(v) for v in values]
-               for name, values in columns.items()}
     for name in rows[0][1].summary:
         values = [result.summary.get(name) for _, result in rows]
         if name not in columns and all(isinstance(value, SCALARS) for value in values):

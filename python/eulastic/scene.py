@@ -7,8 +7,9 @@ import sys
 import numpy
 
 from . import derived
-from .contours import VESSELS, Contours, species_of
+from .contours import Contours
 from .framing import Framed
+from .reading import VESSELS
 from .rounding import round_up
 from .surfaces import at_points, spread
 
@@ -47,7 +48,7 @@ def colour(body, hue=None):
 
 def species(run):
     """{name: hue} of each: None if it is the only one, "vessel" of vessels."""
-    shape = species_of(run)
+    shape = run.species
     hues = iter(HUES * len(shape))
     return {name: "vessel" if kind in VESSELS else None if len(shape) == 1 else RED if kind == "biconcave" else next(hues)
             for name, kind in shape.items()}

@@ -1,5 +1,7 @@
 """The Python package: runs, what a failure says, sweeps that repeat nothing, coordinates, the example of docs/python.md,
 and the package as pip installs it. Needs EULASTIC."""
+import decimal
+import fractions
 import os
 import pathlib
 import re
@@ -51,8 +53,24 @@ class OneRun(WithRoom):
 
     def test_options_as_the_program_reads_them(self):
         for value, text in ((True, "true"), (numpy.bool_(False), "false"), ((1, 2.5, 3.0), "1,2.5,3"), (0.1 + 0.2, repr(0.1 + 0.2)),
-                            (numpy.array([1.0, 2.0]), "1,2"), (numpy.int64(3), "3"), ("wall", "wall"), (1e-7, "1e-07")):
+                            (numpy.array([1.0, 2.0]), "1,2"), (numpy.int64(3), "3"), ("wall", "wall"), (1e-7, "1e-07"),
+                            ("state_1.0", "state_1.0"), (pathlib.Path("a b/c"), "a b/c"), (range(3), "0,1,2"), (1e22, "1e+22"),
+                            (numpy.array(2.5), "2.5"), (fractions.Fraction(1, 4), "0.25"), (decimal.Decimal("1e-3"), "0.001"),
+                            ([(0, 1, 2), numpy.array([3, 4.5, 5])], "0,1,2:3,4.5,5"), (["a", "b"], "a,b"), ((True, False), "true,false"),
+                            ((x / 2 for x in (1, 2)), "0.5,1"), (numpy.ones((2, 3)), "1,1,1:1,1,1")):
             self.assertEqual(running.option_value(value), text)
+        for wrong in ({"a": 1}, {1, 2}, 1j, object()):
+            with self.assertRaisesRegex(TypeError, "radius: .* is no value of an option; accepted: numbers, texts"):
+                running.option_words({"disc_radius": wrong})
+        self.assertEqual(running.option_words({"a": None, "b": 2.0}), {"b": "2"})
+
+    def test_values_of_all_types_reach_the_program(self):
+        run = eulastic.run(CASE, self.room / "a b", progress=False, probe_points=numpy.array([[1, 2, 0], [3.5, 4, 0]]), threads=None,
+                           snapshot_fields=("velocity", "pressure"), **SHORT)
+        self.assertEqual((run.options["probe_points"], run.options["snapshot_fields"]), ("1,2,0:3.5,4,0", "velocity,pressure"))
+        probes = eulastic.over_time(run.probes)
+        numpy.testing.assert_array_equal(probes.x, [1, 3.5])
+        self.assertEqual(probes.velocity_x.shape, (len(run.series), 2))
 
     def test_what_is_wrong_is_said_by_the_program(self):
         with self.assertRaises(eulastic.RunError) as caught:

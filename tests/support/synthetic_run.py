@@ -49,7 +49,7 @@ def write_run(directory, cells=(32, 24, 16), times=(0.0, 50.0, 100.0), speed=SPE
         "# eulastic\n"
         f"-grid_cells {','.join(map(str, cells))}\n-grid_length {','.join(map(str, LENGTH))}\n"
         "-boundary_x periodic\n-boundary_y wall\n-boundary_z periodic   # comment\n"
-        "-body_force 1e-3,0,-1e-5\n-check_only false\n")
+        "-body_force 1e-3,0,-1e-5\n-check_only false\n-species rbc\n-rbc_shape sphere\n")
     for n, time in enumerate(times):
         write_snapshot(directory / f"snapshot_{n:06}.h5", time, cells, pressure_offset)
     with open(directory / "series.csv", "w") as file:

@@ -4,6 +4,7 @@ import pathlib
 from typing import Callable, Optional
 
 import numpy
+from eulastic import over_time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 
@@ -89,11 +90,11 @@ def at_times(table, column_name, times):
 
 def profile_times(profile):
     """A profile file as times (nt), coordinates (n), u and v (nt, n)."""
-    times = numpy.unique(profile.time)
-    s = profile[[d for d in "xyz" if d in profile.dtype.names][0]].reshape(len(times), -1)[0]
-    if len(s) == 0:
+    if len(profile) == 0:
         raise ValueError("no profile")
-    return times, s, profile.velocity_x.reshape(len(times), -1), profile.velocity_y.reshape(len(times), -1)
+    arrays = over_time(profile)
+    place = next(getattr(arrays, d) for d in "xyz" if hasattr(arrays, d))
+    return arrays.time, place, arrays.velocity_x, arrays.velocity_y
 
 
 def rms(x):

@@ -1,0 +1,214 @@
+"""Numbers that are computed from a run: averages over time with standard errors, pressure drop, apparent viscosity, averages
+of the wall shear stress, and the cell-free layer. `since` and `until` bound the time of what is averaged."""
+import collections
+import types
+
+import numpy
+
+from .surfaces import sample
+
+Average = collections.namedtuple("Average", "mean standard_error correlation_time independent")
+
+
+def weights(time):
+    """Weights of the trapezoidal rule, whose sum is 1; equal ones if there is one time only."""
+    if len(time) < 2 or time[-1] == time[0]:
+        return numpy.full(len(time), 1 / max(1, len(time)))
+    steps = numpy.diff(time)
+    return (numpy.append(steps, 0) + numpy.insert(steps, 0, 0)) / 2 / (time[-1] - time[0])
+
+
+def correlated_rows(deviations):
+    """The integrated autocorrelation time in rows, at least 1: 1 + 2 sum of r_k, the initial positive sequence of Geyer,
+    "Practical Markov Chain Monte Carlo", Statistical Science 7 (1992). Not a number if it is longer than a tenth of the rows."""
+    n = len(deviations)
+    variance = deviations @ deviations / n
+    if variance == 0:
+        return 1.0 if n >= 10 else numpy.nan
+    total = -1.0
+    for lag in range(0, n - 1, 2):
+        pair = sum(deviations[:n - k] @ deviations[k:] for k in (lag, lag + 1)) / (n * variance)
+        if pair <= 0:
+            break
+        total += 2 * pair
+    return max(1.0, total) if max(1.0, total) <= n / 10 else numpy.nan
+
+
+def time_average(time, values, since=-numpy.inf, until=numpy.inf):
+    """Average(mean, standard_error, correlation_time, independent) of values (nt) at times (nt), which are evenly spaced, as
+    rows of series.csv are. The mean is an integral by the trapezoidal rule. The standard error takes into account that near
+    rows are alike: there are `independent` samples. It is not a number where the rows are too few to tell (less than 4, or
+    correlated over half of them), as in a flow that still develops."""
+    time, values = numpy.asarray(time, float), numpy.asarray(values, float)
+    used = (time >= since) & (time <= until)
+    time, values = time[used], values[used]
+    if len(time) == 0:
+        raise ValueError(f"time_average: no row between {since:g} and {until:g}")
+    mean, n = float(weights(time) @ values), len(time)
+    rows = correlated_rows(values - values.mean())
+    error = numpy.sqrt(values.var() * rows / (n - rows)) if rows < n else numpy.nan
+    return Average(mean, float(error), float(rows * (time[-1] - time[0]) / max(1, n - 1)), float(n / rows))
+
+
+def vector(run, name):
+    return numpy.array([float(x) for x in run.options.get(name, "0,0,0").split(",")])
+
+
+def dimension(run):
+    return 2 if run.cells[2] == 1 else 3
+
+
+def drops(run):
+    """(3, nt): along x, y and z at the rows of series.csv."""
+    series, number = run.series, lambda name, default: float(run.options.get(name, default))
+    swing = numpy.cos(number("body_force_frequency", 0) * series.time + number("body_force_phase", 0))
+    found = number("fluid_density", 1) * numpy.outer(vector(run, "body_force") * run.length, swing)
+    for d, axis in enumerate("xyz"):
+        for end, sign in (("min", 1), ("max", -1)):
+            if f"pressure_{axis}{end}" in series.dtype.names:
+                found[d] += sign * series[f"pressure_{axis}{end}"]
+    return found
+
+
+def direction_of_flow(run):
+    """The direction with the largest pressure drop. ValueError if nothing drives the flow."""
+    largest = abs(drops(run)).max(axis=1)
+    if not largest.max() > 0:
+        raise ValueError(f"{run.directory}: neither a body force nor the pressure of sides drives this flow")
+    return int(largest.argmax())
+
+
+def pressure_drop(run, d=None):
+    """(nt) at the rows of series.csv: the drop along direction d (0, 1, 2; by default the one with the largest drop), of the
+    body force (density x force x length of the box) and between inflow, pressure and outflow sides."""
+    return drops(run)[direction_of_flow(run) if d is None else d]
+
+
+def gap(run, d):
+    """Between the walls normal to d, with what a plane of symmetry mirrors; 0 if there are none."""
+    kinds = sorted(run.side(d, side) for side in (0, 1))
+    return {("wall", "wall"): 1, ("symmetry", "wall"): 2}.get(tuple(kinds), 0) * run.length[d]
+
+
+def tubes(run):
+    return [name for name, shape in run.species.items() if shape in ("tube", "constricted_tube")]
+
+
+def apparent_viscosity(run, species=None):
+    """(nt) at the rows of series.csv: the viscosity with which a Newtonian fluid would have the flow rate of this run, driven
+    by its pressure drop. In a tube, `species` or the only one, it is the column NAME_apparent_viscosity (Poiseuille's law); in
+    a plane channel between two walls of the box, pressure drop / length x gap^2 / (12 x mean velocity). It means what it says
+    in steady flow, or averaged over periods. 0 where nothing flows. ValueError in any other flow."""
+    vessels = [species] if species else tubes(run)
+    if len(vessels) == 1 and f"{vessels[0]}_apparent_viscosity" in run.series.dtype.names:
+        return run.series[f"{vessels[0]}_apparent_viscosity"]
+    walls = [d for d in range(dimension(run)) if gap(run, d) > 0]
+    if vessels or len(walls) != 1 or direction_of_flow(run) in walls:
+        raise ValueError(f"{run.directory}: apparent viscosity: neither a tube (of several, name one) nor a plane channel")
+    along = direction_of_flow(run)
+    mean = run.series["bulk_velocity_" + "xyz"[along]]
+    gradient = pressure_drop(run, along) / run.length[along]
+    return numpy.divide(gradient * gap(run, walls[0]) ** 2, 12 * mean, out=numpy.zeros(len(mean)), where=mean != 0)
+
+
+def between(run, since, until):
+    found = [snapshot for snapshot in run.snapshots if since <= snapshot.time <= until]
+    if not found:
+        raise ValueError(f"{run.directory}: no snapshot between {since:g} and {until:g}")
+    return found
+
+
+def wall_shear(run, where="", since=-numpy.inf, until=numpy.inf):
+    """Averages over the snapshots of the shear stress on vessels and obstacles, (nz, ny, nx), or with where="ymin", ... on that
+    wall of the box, one layer. The namespace has `mean`, the mean vector (..., 3); `tawss`, the mean of its size (time-averaged
+    wall shear stress); and `osi`, the oscillatory shear index (1 - |mean| / tawss) / 2: 0 where the stress keeps its direction,
+    1/2 where its mean vanishes, not a number where there is no stress."""
+    snapshots = between(run, since, until)
+    shares = weights(numpy.array([snapshot.time for snapshot in snapshots]))
+    mean, size = 0.0, 0.0
+    for share, snapshot in zip(shares, snapshots):
+        stress = snapshot["wall_shear_stress" + ("_" + where if where else "")].astype(float)
+        mean = mean + share * stress
+        size = size + share * numpy.linalg.norm(stress, axis=-1)
+    ratio = numpy.divide(numpy.linalg.norm(mean, axis=-1), size, out=numpy.full(size.shape, numpy.nan), where=size > 0)
+    return types.SimpleNamespace(mean=mean, tawss=size, osi=(1 - numpy.minimum(ratio, 1)) / 2)
+
+
+def first_crossing(fraction, distance):
+    """Where each row of (n, m), values at growing distances (m), first reaches 1/2, linear in between; not a number if never."""
+    inside = fraction >= 0.5
+    at, rows = inside.argmax(axis=1), numpy.arange(len(fraction))
+    before = numpy.maximum(at - 1, 0)
+    low, high = fraction[rows, before], fraction[rows, at]
+    part = numpy.divide(0.5 - low, high - low, out=numpy.ones(len(rows)), where=high > low)
+    crossing = distance[before] + numpy.clip(part, 0, 1) * (distance[at] - distance[before])
+    return numpy.where(inside.any(axis=1), crossing, numpy.nan)
+
+
+def rays_of_tube(run, name):
+    """Points (n, m, 3) from the lumen's surface to its axis, about a cell apart around and along, a quarter of one inward; and
+    their distances (m) from the surface."""
+    axis, radius = "xyz".index(run.options.get(f"{name}_axis", "y")), float(run.options[f"{name}_radius"])
+    centre, h = vector(run, f"{name}_centre"), min(run.spacing[:dimension(run)])
+    turns = int(numpy.ceil(2 * numpy.pi * radius / h)) if dimension(run) == 3 else 2
+    angle = (numpy.arange(turns) + (0.5 if turns > 2 else 0)) * 2 * numpy.pi / turns
+    distance = numpy.linspace(0, radius, int(numpy.ceil(4 * radius / h)) + 1)
+    first, second = ((1, 2), (2, 0), (0, 1))[axis]
+    if dimension(run) == 2:
+        first, second = (1 - axis, 2)
+    points = numpy.empty((run.cells[axis], turns, len(distance), 3))
+    points[..., axis] = run.centres(axis)[:, None, None]
+    points[..., first] = centre[first] + numpy.cos(angle)[:, None] * (radius - distance)
+    points[..., second] = centre[second] + numpy.sin(angle)[:, None] * (radius - distance)
+    if dimension(run) == 2:
+        points[..., 2] = run.centres(2)[0]
+    return points.reshape(-1, len(distance), 3), distance
+
+
+def layers(run, fraction):
+    """{wall: distances of the nearest bodies (n)} in one snapshot."""
+    found, periodic = {}, [not run.is_bounded(d) for d in (2, 1, 0)]
+    for name in tubes(run):
+        points, distance = rays_of_tube(run, name)
+        values = sample(fraction, points.reshape(-1, 3) / run.spacing - 0.5, periodic).reshape(points.shape[:2])
+        found[name] = first_crossing(values, distance)
+    if found:
+        return found
+    for d in range(dimension(run)):
+        lines = numpy.moveaxis(fraction, 2 - d, -1).reshape(-1, run.cells[d])
+        for side, end in enumerate(("min", "max")):
+            if run.side(d, side) == "wall":
+                found["xyz"[d] + end] = first_crossing(lines[:, ::-1] if side else lines, run.centres(d))
+    return found
+
+
+def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
+    """The layer beside the walls that is free of bodies, of all species that move or of one. On a line from every cell of the
+    wall inward, in a tube to its axis, it ends where the solid fraction reaches 1/2; lines that meet no body do not count.
+
+    The namespace has `time` (nt) of the snapshots; `thickness` (nt), the mean over all walls, and `walls`, {wall: (nt)} for
+    each (ymin, ..., or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time
+    (roughness); `covered`, the share of the lines that meet a body. ValueError where there is no wall or no snapshot."""
+    snapshots, walls, every = between(run, since, until), {}, []
+    for snapshot in snapshots:
+        fraction = (snapshot.fraction_of(species) if species else snapshot.fraction_of_bodies()).astype(float)
+        found = layers(run, fraction)
+        if not found:
+            raise ValueError(f"{run.directory}: cell-free layer: there is neither a tube nor a wall of the box")
+        every.append(numpy.concatenate(list(found.values())))
+        for wall, distances in found.items():
+            walls.setdefault(wall, []).append(mean_of(distances))
+    time, lines = numpy.array([snapshot.time for snapshot in snapshots]), numpy.array(every)
+    thickness, share = numpy.array([mean_of(row) for row in every]), weights(time)
+    met = numpy.isfinite(thickness)
+    mean = share[met] @ thickness[met] / share[met].sum() if share[met].sum() > 0 else numpy.nan
+    seen = lines[numpy.isfinite(lines)]
+    return types.SimpleNamespace(time=time, thickness=thickness, walls={name: numpy.array(rows) for name, rows in walls.items()},
+                                 mean=float(mean), deviation=float(seen.std()) if seen.size else numpy.nan,
+                                 covered=float(numpy.isfinite(lines).mean()))
+
+
+def mean_of(distances):
+    """Of the numbers among them; not a number if there are none."""
+    met = distances[numpy.isfinite(distances)]
+    return float(met.mean()) if met.size else numpy.nan

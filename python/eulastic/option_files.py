@@ -1,0 +1,71 @@
+"""Files of options, read by the rules of the program (src/app/option_source.cpp)."""
+import pathlib
+
+DEPTH_MAX = 8  # of files that bring in others
+BLANKS = " \t\n\v\f\r"
+
+
+def is_name(word):
+    """-1, -.5, -inf and -nan are values."""
+    start = word[1:].split(",")[0].lower()
+    return word[:1] == "-" and len(word) > 1 and not (word[1].isdigit() or word[1] == ".") and \
+        start not in ("inf", "infinity", "nan")
+
+
+def split_words(line):
+    """Words between blanks; quotes keep blanks and # in a word, # begins a comment. ValueError if a quote stays open."""
+    words, inside, quoted = [], False, False
+    for c in line:
+        if not quoted and c in BLANKS:
+            inside = False
+            continue
+        if not inside:
+            if c == "#":
+                break
+            words.append("")
+        inside = True
+        if c == '"':
+            quoted = not quoted
+        else:
+            words[-1] += c
+    if quoted:
+        raise ValueError("a quote is not closed")
+    return words
+
+
+def pairs(words):
+    """[(name without dash, value)] of words that alternate; the value of a bare name is "". ValueError for a stray word."""
+    found, name = [], None
+    for word in words:
+        if is_name(word):
+            name = word[1:]
+            found.append((name, ""))
+        elif name is not None:
+            found[-1] = name, word
+            name = None
+        else:
+            raise ValueError(f'stray word "{word}"')
+    return found
+
+
+def parse_options(words):
+    """Options as {name without dash: value}."""
+    return dict(pairs(words))
+
+
+def read_options(path, depth=0):
+    """{name without dash: value} of a file of options: lines `-name value`, # starts a comment, quotes keep blanks.
+    -options_file brings in another file, from the directory of this one; options of this file override those of the other.
+    ValueError names the file and the line of what the program would refuse."""
+    path, own, brought_in = pathlib.Path(path), {}, {}
+    if depth > DEPTH_MAX:
+        raise ValueError(f"-options_file: {path} brings in itself")
+    for number, line in enumerate(path.read_text().split("\n"), 1):
+        try:
+            found = pairs(split_words(line))
+        except ValueError as error:
+            raise ValueError(f"{error} ({path}:{number})") from None
+        if found and found[-1][0] == "options_file":
+            brought_in.update(read_options(path.parent / found.pop()[1], depth + 1))
+        own.update(found)
+    return {**brought_in, **own}
