@@ -90,12 +90,15 @@ class Framed:
         width, height = self.window.GetSize()
         self.add_text(renderer, units.at(snapshot.time), (width // 50, height * 95 // 100), self.letters(46))
         if self.stress > 0:
-            self.add_bar(renderer, self.table(0, self.stress, GREENS), units.label("wall shear\nstress", "pressure").replace(" (", "\n("), 0.03, 0.25)
+            largest = self.stress * units.factor("pressure")
+            self.add_bar(renderer, self.table(0, largest, GREENS), units.label("wall shear\nstress", "pressure").replace(" (", "\n("), 0.03, 0.25)
         both = look.behind and look.field
         for name, ends, low in ((look.behind, self.speed, 0.52 if both else 0.25), (look.field, self.body_range, 0.06 if both else 0.25)):
             if name:
-                title = units.label(name.replace("_", " ") + " ", derived.quantity(name)).replace(" (", "\n(", 1)
-                self.add_bar(renderer, self.table(*ends), title.strip(), 0.885, low, 0.38 if both else 0.5)
+                quantity = derived.quantity(name)
+                title = units.label(name.replace("_", " ") + " ", quantity).replace(" (", "\n(", 1)
+                table = self.table(*(end * units.factor(quantity) for end in ends))
+                self.add_bar(renderer, table, title.strip(), 0.885, low, 0.38 if both else 0.5)
         self.add_scale(renderer, snapshot)
 
     def add_scale(self, renderer, snapshot):
@@ -142,7 +145,7 @@ class Framed:
         bar.SetLookupTable(table)
         bar.SetTitle(title)
         bar.SetNumberOfLabels(5)
-        bar.SetLabelFormat("%-.3g")
+        bar.SetLabelFormat("%-.4g")
         bar.SetPosition(place, low)
         bar.SetWidth(0.08)
         bar.SetHeight(height)

@@ -1,5 +1,7 @@
-"""What scripts that draw a run share: labels with units, and one line where there is no run."""
+"""What scripts that draw a run share: their options, labels with units, and one line where there is no run."""
+import argparse
 import pathlib
+import re
 import sys
 
 from .reading import Run
@@ -26,19 +28,41 @@ def of_column(name):
 
 
 class Units:
-    """Names of units for labels; the solver itself takes any consistent set."""
+    """Names of units for labels, and factors from the units of the run to them; the solver itself takes any consistent set.
+    Of µm, µs and pg the labels are µm/ms, Pa, mPa s, fJ and nW."""
 
     def __init__(self, text):
-        self.length, self.time = text.split(",") if text else ("", "")
+        words = text.split(",") if text else ["", "", ""]
+        if len(words) not in (2, 3) or text and not all(words):
+            raise ValueError(text)
+        self.length, self.time, self.mass = (*words, "")[:3]
         self.set_dimension(3)
 
     def set_dimension(self, d):
         """3, or 2, where integrals are per depth."""
-        length, time, power = self.length, self.time, dict(zip(range(2, 6), "²³⁴⁵"))
+        length, time, mass, power = self.length, self.time, self.mass, dict(zip(range(2, 6), "²³⁴⁵"))
+        self.names, self.factors = {}, {}
+        if not length:
+            return
         self.names = {"length": length, "time": time, "velocity": f"{length}/{time}", "rate": f"1/{time}",
-                      "pressure": f"ρ {length}²/{time}²", "viscosity": f"ρ {length}²/{time}", "volume": length + power[d],
-                      "energy": f"ρ {length}{power[d + 2]}/{time}²", "power": f"ρ {length}{power[d + 2]}/{time}³",
-                      "flow rate": f"{length}{power[d]}/{time}"} if length else {}
+                      "volume": length + power[d], "flow rate": f"{length}{power[d]}/{time}"}
+        if [name.replace("u", "µ") for name in (length, time, mass)] == ["µm", "µs", "pg"]:
+            depth = "" if d == 3 else f"/{length}"
+            self.names.update({"velocity": f"{length}/{time.replace('µ', 'm').replace('u', 'm')}", "pressure": "Pa",
+                               "viscosity": "mPa s", "energy": "fJ" + depth, "power": "nW" + depth})
+            self.factors = {"velocity": 1e3, "pressure": 1e3}
+        elif mass:
+            force = f"{mass} {length}" if d == 3 else mass
+            self.names.update({"pressure": f"{mass}/({length} {time}²)", "viscosity": f"{mass}/({length} {time})",
+                               "energy": f"{force}{'²' if d == 3 else f' {length}'}/{time}²",
+                               "power": f"{force}{'²' if d == 3 else f' {length}'}/{time}³"})
+        else:
+            self.names.update({"pressure": f"ρ {length}²/{time}²", "viscosity": f"ρ {length}²/{time}",
+                               "energy": f"ρ {length}{power[d + 2]}/{time}²", "power": f"ρ {length}{power[d + 2]}/{time}³"})
+
+    def factor(self, quantity):
+        """What values of the run are multiplied by for labels of this quantity."""
+        return self.factors.get(quantity, 1)
 
     def label(self, words, quantity):
         return f"{words} ({self.names[quantity]})" if quantity in self.names else words
@@ -52,5 +76,13 @@ class Units:
 
     @staticmethod
     def add_option(parser):
-        parser.add_argument("--units", type=Units, default="µm,µs", metavar="LENGTH,TIME",
-                            help='for labels (default "µm,µs"; "" for none)')
+        parser.add_argument("--units", type=Units, default="µm,µs,pg", metavar="LENGTH,TIME[,MASS]",
+                            help='of the run, for labels (default "µm,µs,pg": velocities are shown in µm/ms, stresses in Pa; "" for none)')
+
+
+class Parser(argparse.ArgumentParser):
+    """Takes -30,20 for a value, not for an option."""
+
+    def __init__(self, *words, **keywords):
+        super().__init__(*words, **keywords)
+        self._negative_number_matcher = re.compile(r"^-\.?\d[-+.,\deE]*$")

@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 import synthetic_run  # noqa: E402
-from eulastic import Run  # noqa: E402
+from eulastic import Run, surfaces  # noqa: E402
 from eulastic.contours import Contours  # noqa: E402
 
 # Of the volume, that triangles with corners on a sphere of four cells, and their smoothing, may take: (h/R)^2/2.
@@ -34,6 +34,18 @@ def arrays(surface, *names):
     points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     return points[corners], *(vtk_to_numpy(surface.GetCellData().GetArray(name)) for name in names)
+
+
+class Levels(unittest.TestCase):
+    def test_the_surface_of_a_body_encloses_its_volume(self):
+        """A box of many cells: 1/2, its corners aside; of one full cell: the surface of its tent of the same volume."""
+        box = numpy.pad(numpy.ones((12, 12, 12)), 2)
+        self.assertAlmostEqual(surfaces.enclosing(box), 0.5, delta=0.07)
+        level = surfaces.enclosing(numpy.pad(numpy.ones((1, 1, 1)), 2))
+        x = (numpy.arange(200) + 0.5) / 100 - 1
+        tent = 1 - abs(x)
+        volume = ((tent[:, None, None] * tent[:, None] * tent) > level).sum() / 100**3
+        self.assertAlmostEqual(volume, 1, delta=0.3)  # 27 samples per cell, eight alike
 
 
 class Surfaces(unittest.TestCase):
