@@ -1,12 +1,16 @@
 #include "app/help_text.hpp"
 
+#include "app/not_supported.hpp"
 #include "app/option_table.hpp"
+#include "app/option_values.hpp"
 #include "app/petsc_options.hpp"
 
 #include <petscsys.h>
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <regex>
 
 namespace eulastic {
 namespace {
@@ -57,11 +61,56 @@ std::string troff(const std::string &text) {
   return shown;
 }
 
-std::string petsc_names() {
+// Those with `word`, of families also those that it may belong to: ksp_type to -pressure_ksp_*.
+std::string petsc_names(const std::string &word = {}) {
   std::string text;
-  for (const std::string &name : petsc_option_names())
-    text += (text.empty() ? "-" : ", -") + name + (name.back() == '_' ? "*" : "");
+  for (const std::string &name : petsc_option_names()) {
+    const bool family = name.back() == '_';
+    const auto begins = [&](const std::string &option) { return option.compare(0, name.size(), name) == 0; };
+    const bool has = name.find(lower_case(word)) != std::string::npos;
+    if (has || (family && (begins(word) || begins("pressure_" + word))))
+      text += (text.empty() ? "-" : ", -") + name + (family ? "*" : "");
+  }
   return text;
+}
+
+std::string description(const Option &option) {
+  const std::string value = default_text(option);
+  return "  -" + option.name + (value.empty() ? "" : " (" + value + ")") + "\n      " + remarks(option) +
+         (option.unit.empty() ? "" : " [" + option.unit + "]") + "\n      " + option.accepted + "\n";
+}
+
+// The side that the name of an option says: xmin, ..., zmax; or nothing.
+std::string side_of(const std::string &name) {
+  static const std::regex side("_([xyz](min|max))(_|$)");
+  std::smatch found;
+  return std::regex_search(name, found, side) ? found[1].str() : "";
+}
+
+// SIDE in place of xmin, ..., zmax.
+std::string with_any_side(const std::string &text) {
+  static const std::regex side("_[xyz](min|max)(?![a-z])"), wall("-boundary_[xyz] wall");
+  return std::regex_replace(std::regex_replace(text, side, "_SIDE"), wall, "-boundary_SIDE wall");
+}
+
+// Options that differ by their side only, or a single one.
+struct OptionsOfSides {
+  const Option *first;
+  std::vector<std::string> sides;
+};
+
+// Those whose description has `word`. Without a word all of them, each by itself.
+std::vector<OptionsOfSides> options_with(const std::string &word, const std::vector<Option> &table) {
+  std::vector<OptionsOfSides> found;
+  std::map<std::string, std::size_t> places;
+  for (const Option &option : table) {
+    if (lower_case(description(option)).find(lower_case(word)) == std::string::npos) continue;
+    const std::string side = side_of(option.name), name = word.empty() ? option.name : with_any_side(option.name);
+    const auto [place, fresh] = places.emplace(name, found.size());
+    if (fresh) found.push_back({&option, {}});
+    if (!side.empty()) found[place->second].sides.push_back(side);
+  }
+  return found;
 }
 
 }  // namespace
@@ -87,17 +136,17 @@ std::string help_text(const std::string &word) {
     text = version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
            "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n" + introduction;
   Config config = example();
+  const std::vector<Option> table = option_table(config);
   std::string group;
-  for (const Option &option : option_table(config)) {
-    if (lower_case(option.name + " " + option.doc).find(lower_case(word)) == std::string::npos) continue;
-    if (option.group != group) text += "\n" + (group = option.group) + "\n";
-    std::string head = "  -" + option.name;
-    const std::string value = default_text(option);
-    if (!value.empty()) head += " (" + value + ")";
-    text += head + "\n      " + remarks(option) + (option.unit.empty() ? "" : " [" + option.unit + "]") + "\n";
-    text += "      " + option.accepted + "\n";
+  for (const OptionsOfSides &found : options_with(word, table)) {
+    if (found.first->group != group) text += "\n" + (group = found.first->group) + "\n";
+    const std::string entry = description(*found.first);
+    text += found.sides.size() < 2 ? entry : with_any_side(entry) + "      SIDE: " + join(found.sides, ", ") + "\n";
   }
-  return text + (word.empty() ? "\nPETSc's own options pass through: " + petsc_names() + "\n" : "");
+  if (const std::string names = petsc_names(word); !names.empty())
+    text += "\nPETSc's own options pass through: " + names + "\n";
+  if (const std::string why = word.empty() ? "" : not_supported(word); !why.empty()) text += "\n" + why + "\n";
+  return text;
 }
 
 std::string help_markdown() {

@@ -5,7 +5,9 @@
 
 namespace eulastic {
 
-/// All options, or those whose name or text has `word`, in any case; nothing if there are none.
+/// All options, or those whose name, text, default or accepted values have `word`, in any case, those of the sides of
+/// the box once for all; PETSc's options with it; and why it is not supported, if it is not. Nothing if there is none
+/// of these.
 std::string help_text(const std::string &word = {});
 /// A few lines: how to start it, and where to read on.
 std::string usage_text();

@@ -1,8 +1,6 @@
 #include "app/not_supported.hpp"
 
-#include <algorithm>
 #include <cctype>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -17,7 +15,7 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"buoyancy", "gravity", "sedimentation"},
        "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
        "species alone"},
-      {{"inlet", "outlet", "neumann", "dirichlet", "farfield"},
+      {{"neumann", "dirichlet", "farfield"},
        "a side of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both sides of a "
        "direction, -boundary_xmin and -boundary_xmax for each"},
       {{"prescribed", "torque"},
@@ -30,10 +28,12 @@ const std::vector<std::pair<Words, std::string>> &missing() {
       {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
        "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
       {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",
-        "ogden", "hookean", "stvk"},
+        "ogden", "hookean", "stvk", "yeoh", "fung"},
        "bodies are isotropic and elastic, neo_hookean or mooney_rivlin, beside a viscosity"},
-      {{"newtonian", "carreau", "rheology", "turbulence", "turbulent", "les", "rans", "smagorinsky"},
-       "the fluid is Newtonian and every eddy is resolved"},
+      {{"newtonian", "carreau", "casson", "power law", "powerlaw", "bingham", "herschel", "quemada", "shear thinning",
+        "rheology", "turbulence", "turbulent", "les", "rans", "smagorinsky"},
+       "the fluid is Newtonian (-fluid_viscosity), a species may have another viscosity (-NAME_viscosity), and every "
+       "eddy is resolved"},
       {{"temperature", "heat", "thermal", "concentration", "diffusion", "scalar", "solute", "salt", "charge"},
        "velocity, pressure and bodies are all that is computed"},
       {{"adhesion", "friction", "repulsion", "lubrication", "aggregation"},
@@ -45,17 +45,36 @@ const std::vector<std::pair<Words, std::string>> &missing() {
   return table;
 }
 
+// What there is under another name.
+const std::vector<std::pair<Words, std::string>> &called_otherwise() {
+  static const std::vector<std::pair<Words, std::string>> table{
+      {{"inlet", "inlets"}, "is called inflow here: -boundary_xmin inflow with -inflow_xmin_velocity"},
+      {{"outlet", "outlets"},
+       "is called outflow here, or pressure where the pressure is given: -boundary_xmax outflow, -boundary_xmax "
+       "pressure with -pressure_xmax_value"},
+      {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"},
+  };
+  return table;
+}
+
+// The first of its words that `text`, lower-case words with a blank around each, has; or nothing.
+std::string find_word(const std::string &text, const Words &words) {
+  for (const std::string &word : words)
+    if (text.find(" " + word + " ") != std::string::npos) return word;
+  return {};
+}
+
 }  // namespace
 
 std::string not_supported(const std::string &name) {
-  std::string plain = name;
-  std::transform(plain.begin(), plain.end(), plain.begin(),
-                 [](unsigned char c) { return std::isalnum(c) ? std::tolower(c) : ' '; });
-  std::istringstream stream(plain);
-  for (std::string word; stream >> word;)
-    for (const auto &[words, why] : missing())
-      if (std::find(words.begin(), words.end(), word) != words.end())
-        return "\"" + word + "\" is not supported: " + why + "; see README.md, \"What it does not do\"";
+  std::string text = " ";
+  for (const unsigned char c : name) text += std::isalnum(c) ? static_cast<char>(std::tolower(c)) : ' ';
+  text += ' ';
+  for (const auto &[words, where] : called_otherwise())
+    if (const std::string word = find_word(text, words); !word.empty()) return '"' + word + "\" " + where;
+  for (const auto &[words, why] : missing())
+    if (const std::string word = find_word(text, words); !word.empty())
+      return '"' + word + "\" is not supported: " + why + "; see README.md, \"What it does not do\"";
   return {};
 }
 

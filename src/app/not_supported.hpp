@@ -5,8 +5,9 @@
 
 namespace eulastic {
 
-/// One clause if `name`, of an option or a word as its value, asks for what there is not: why, and what there is
-/// instead; else nothing. README.md, "What it does not do", says the same.
+/// One clause if `name`, of an option or a word as its value, asks for something that does not exist: why, and what to
+/// use instead; or for something that has another name: that name. Else nothing. README.md, "What it does not do", says
+/// the same.
 std::string not_supported(const std::string &name);
 
 }  // namespace eulastic

@@ -24,7 +24,7 @@ void add_grid(Rows &rows, Config &config) {
     rows.choice(name, config.boundary.both[d], boundary_names, std::string("both sides in ") + "xyz"[d]);
     for (int high = 0; high < 2; ++high)
       rows.choice(name + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
-                  std::string("the ") + (high ? "high" : "low") + " side; same as -" + name + " says, or another");
+                  "this side alone; same: as the option for both sides says");
   }
   const std::size_t processors = rows.rows.size();
   for (int d = 0; d < 3; ++d)
@@ -249,7 +249,7 @@ void add_running(Rows &rows, Config &config) {
   rows.add("options_file", "", "options of another file; those of this file win").accepted =
       "only in an options file; a path, from the directory of this file";
   rows.add("help", "",
-           "print all options and stop; -help WORD those with this word in name or text; -help markdown prints "
+           "print all options and stop; -help WORD those with this word in name, text or values; -help markdown prints "
            "docs/options.md, -help man a page for man; -h a few lines")
       .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";

@@ -184,7 +184,7 @@ void answer(const std::vector<std::string> &arguments, ParseResult *result) {
       std::string word = a + 1 < arguments.size() ? arguments[a + 1] : "";
       if (word[0] == '-') word.erase(0, word.find_first_not_of('-'));
       result->message = word == "markdown" ? help_markdown() : word == "man" ? man_page() : help_text(word);
-      if (result->message.empty()) result->error = "-help: no option has \"" + word + "\" in its name or text";
+      if (result->message.empty()) result->error = "-help: no option has \"" + word + "\" in its name, text or values";
     }
     if (!result->message.empty() || !result->error.empty()) return;
   }

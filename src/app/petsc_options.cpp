@@ -56,8 +56,13 @@ bool is_pressure_ksp_option(const std::string &name) {
   return name.rfind("pressure_", 0) == 0 && is_petsc_option(name);
 }
 
-// PETSc looks at it after the run only, when it is too late.
+// PETSc looks at some of these after the run only, when it is too late.
 std::string check_petsc_value(const std::string &name, const std::string &value) {
+  const bool type = name.size() > 5 && name.compare(name.size() - 5, 5, "_type") == 0;
+  for (const char *device : {"cuda", "hip", "kokkos", "viennacl", "sycl", "cusparse"})
+    if (type && value.find(device) != std::string::npos)
+      return "-" + name + ": \"" + value +
+             "\" runs on graphics processors; accepted: types that run on processors, such as standard or aij";
   if (name != "log_view" || value.empty() || value[0] == ':' || value.rfind("ascii", 0) == 0) return {};
   return "-log_view: \"" + value +
          "\" is no viewer; accepted: nothing, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";

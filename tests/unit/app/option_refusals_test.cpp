@@ -32,8 +32,16 @@ TEST(OptionRefusals, WhatThereIsNot) {
   expect_refusals(
       {{"-cell_density 2", {"unknown option -cell_density: \"density\" is not supported: bodies have", read}},
        {"-gravity 0,-9.81,0", {"\"gravity\" is not supported", "-body_force", read}},
-       {"-inlet_velocity 1,0,0", {"\"inlet\" is not supported", "periodic", read}},
-       {"-outlet_pressure 1", {"\"outlet\" is not supported", "-boundary_xmin", read}},
+       {"-inlet_velocity 1,0,0",
+        {"unknown option -inlet_velocity: \"inlet\" is called inflow here: -boundary_xmin inflow"}},
+       {"-outlet_pressure 1", {"\"outlet\" is called outflow here", "-boundary_xmax pressure"}},
+       {"-boundary_xmin inlet", {"-boundary_xmin", "\"inlet\" is called inflow here", "one of same, wall"}},
+       {"-cell_law casson", {"-cell_law", "\"casson\" is not supported: the fluid is Newtonian", "one of neo_hookean"}},
+       {"-cell_law power_law", {"-cell_law", "\"power law\" is not supported: the fluid is Newtonian", read}},
+       {"-cell_law skalak",
+        {"-cell_law", "\"skalak\" is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"}},
+       {"-vec_type cuda", {"-vec_type: \"cuda\" runs on graphics processors; accepted: types that run on processors"}},
+       {"-dm_mat_type aijcusparse", {"-dm_mat_type", "graphics processors"}},
        {"-cell_torque 1,0,0", {"\"torque\" is not supported", "-NAME_law rigid", read}},
        {"-cell_shell_thickness 1", {"\"shell\" is not supported", "-NAME_law membrane", read}},
        {"-surfactant 1", {"\"surfactant\" is not supported", "-NAME_surface_tension", read}},
@@ -129,8 +137,7 @@ TEST(OptionRefusals, Ranges) {
                    {"-grid_length 1,1001,1", {"-grid_length", "1001 times", "at most 1000"}},
                    {"-time_step 1e-16", {"-time_step", "1e-16", "1.1102230246251565e-16"}}},
                   "-time_end 1");
-  if (sizeof(PetscInt) == 4)
-    expect_refusals({{"-grid_cells 65536,65536,8", {"-grid_cells", "64-bit"}}}, "-time_end 1");
+  if (sizeof(PetscInt) == 4) expect_refusals({{"-grid_cells 65536,65536,8", {"-grid_cells", "64-bit"}}}, "-time_end 1");
   expect_refusals({{"-time_end 0", {"-time_end", "out of range"}}, {"-threads 1", {"-time_end", "must be given"}}}, "");
 }
 

@@ -273,6 +273,27 @@ TEST(Options, HelpOfAWord) {
   EXPECT_EQ(help.find("  -grid_cells"), std::string::npos) << help;
   EXPECT_NE(parse_line("-help mirror").error.find("no option has \"mirror\""), std::string::npos);
   EXPECT_NE(parse_line("-help -time_end").message.find("  -time_end (required)"), std::string::npos);
+  EXPECT_NE(parse_line("-help mooney").message.find("  -NAME_law (neo_hookean)"), std::string::npos) << "a value";
+  EXPECT_EQ(parse_line("-help log_view").message, "\nPETSc's own options pass through: -log_view, -log_view_memory\n");
+  EXPECT_NE(parse_line("-help pc_type").message.find("pass through: -pressure_pc_*\n"), std::string::npos);
+  const std::string density = parse_line("-help density").message;
+  EXPECT_NE(density.find("  -fluid_density (1)"), std::string::npos);
+  EXPECT_NE(density.find("\n\"density\" is not supported: bodies have"), std::string::npos);
+  EXPECT_EQ(parse_line("-help cuda").message.find("\n\"cuda\" is not supported"), 0u);
+}
+
+TEST(Options, HelpListsWhatIsOfAllSidesOnce) {
+  const std::string all = parse_line("-help windkessel").message;
+  EXPECT_EQ(all.find("windkessel (0"), all.rfind("windkessel (0")) << all;
+  EXPECT_NE(all.find("  -pressure_SIDE_windkessel (0,0,0)"), std::string::npos) << all;
+  EXPECT_NE(all.find("only with -boundary_SIDE pressure"), std::string::npos) << all;
+  EXPECT_NE(all.find("      SIDE: xmin, xmax, ymin, ymax, zmin, zmax\n"), std::string::npos) << all;
+  const std::string one = parse_line("-help inflow_ymax_velocity").message;
+  EXPECT_NE(one.find("  -inflow_ymax_velocity"), std::string::npos) << one;
+  EXPECT_NE(one.find("only with -boundary_ymax inflow"), std::string::npos) << one;
+  const std::string some = parse_line("-help wall_x").message;
+  EXPECT_NE(some.find("  -wall_SIDE_velocity"), std::string::npos) << some;
+  EXPECT_NE(some.find("      SIDE: xmin, xmax\n"), std::string::npos) << some;
 }
 
 TEST(Options, HelpAndVersionWinOverErrors) {
