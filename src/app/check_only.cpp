@@ -1,8 +1,7 @@
 #include "app/check_only.hpp"
 
+#include "app/flow_scale.hpp"
 #include "app/memory.hpp"
-#include "bodies/shapes.hpp"
-#include "field/open_sides.hpp"
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "pressure/multigrid.hpp"
@@ -33,13 +32,6 @@ public:
     else
       line("dt limit, " + name, "none");
   }
-};
-
-struct FlowScale {
-  Real3 speed{};          // largest expected |u|, |v|, |w|
-  double length = 0;      // between the nearest walls, or the shortest side of the box
-  double shear_rate = 0;  // largest expected
-  double largest_speed() const { return std::max({speed[0], speed[1], speed[2]}); }
 };
 
 class Check {
@@ -94,19 +86,9 @@ public:
                 around - 1, travelling / own - 1, 8e-6 * dimension_ * (travelling - own));
   }
 
-  /// Of a species from an initial state none.
-  std::pair<double, double> count_and_volume(std::size_t s) const {
-    const SpeciesSpec &spec = config_.species[s];
-    if (spec.shape == Shape::state) return {0, 0};
-    if (spec.shape == Shape::voxels) return {1, config_.solid_volumes[s]};
-    return {double(config_.places[s].count), volume_in_box(spec, config_.grid)};
-  }
-
   void bodies(Report &report) const {
     double box = 1, walls = 0, cells = 0;
-    bool random = false;  // then bodies from files are what the others are put around
     for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
-    for (const SpeciesSpec &spec : config_.species) random = random || spec.placement == Placement::random;
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const SpeciesSpec &spec = config_.species[s];
       if (spec.shape == Shape::state) {
@@ -114,26 +96,41 @@ public:
         continue;
       }
       const bool file = spec.shape == Shape::voxels;
-      const auto [count, volume] = count_and_volume(s);
-      ((file && random) || spec.material().attached || spec.law == Law::rigid ? walls : cells) += count * volume;
+      const auto [count, volume] = count_bodies(config_, s);
+      (is_wall_species(config_, s) ? walls : cells) += count * volume;
       report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
                   dimension_ == 2 ? "area" : "volume", volume, count * volume / box, file ? ", from " : "",
                   file ? spec.voxels.path.c_str() : "");
     }
-    report.line("hematocrit", "%.6g%s", cells / (box - walls),
-                walls > 0 ? " (of the box less slabs, tubes, vessels)" : "");
+    if (cells > 0)
+      report.line("hematocrit", "%.6g%s", cells / (box - walls),
+                  walls > 0 ? " (of the box less slabs, tubes, vessels)" : "");
   }
 
   void flow(Report &report) const {
-    const FlowScale scale = flow_scale();
+    const FlowScale scale = flow_scale(config_);
     const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
+    const auto estimate = [&](const std::string &name, std::optional<double> value, const std::string &how) {
+      char text[32] = "unknown";
+      if (value) std::snprintf(text, sizeof text, "%.6g", *value);
+      report.line(name, "%s%s", text, how.c_str());
+    };
+    const auto capillary = [&](const SpeciesSpec &spec, double per_rate, const char *what) {
+      std::optional<double> number;
+      if (scale.shear_rate) number = *scale.shear_rate * per_rate;
+      estimate("capillary number of " + spec.name, number, std::string(" (viscosity x shear rate ") + what + ")");
+    };
     if (speed == 0) {
       report.line("flow", "none (no force, pressure, moving wall, inlet or initial velocity)%s",
                   stretched() ? ", but for what stretched bodies or -initial_state drive" : "");
     } else {
-      report.line("velocity scale (estimate)", "%.6g", speed);
-      report.line("shear rate (estimate)", "%.6g", scale.shear_rate);
-      report.line("Reynolds number", "%.6g (length %g)", speed * scale.length / nu, scale.length);
+      std::optional<double> reynolds;
+      if (!scale.speed_is_bound && nu > 0) reynolds = speed * scale.length / nu;
+      report.line("velocity scale (estimate)", "%s%.6g", scale.speed_is_bound ? "less than " : "", speed);
+      estimate("shear rate (estimate)", scale.shear_rate, "");
+      char length[48];
+      std::snprintf(length, sizeof length, " (length %.6g)", scale.length);
+      estimate("Reynolds number", reynolds, nu > 0 ? length : " (no viscosity)");
     }
     for (const SpeciesSpec &spec : config_.species) {
       const double modulus = spec.material().shear_modulus;
@@ -142,9 +139,7 @@ public:
       if (spec.viscosity)
         report.line("viscosity of " + spec.name, "%.6g, %.6g times the fluid's", *spec.viscosity,
                     *spec.viscosity / config_.fluid.viscosity);
-      if (modulus > 0 && speed > 0)
-        report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate / shear modulus)",
-                    config_.fluid.viscosity * scale.shear_rate / modulus);
+      if (modulus > 0 && speed > 0) capillary(spec, config_.fluid.viscosity / modulus, "/ shear modulus");
       const Membrane &membrane = spec.membrane;
       if (spec.is_membrane())
         report.line("membrane of " + spec.name, "moduli of shear %.6g and of area %.6g, of bending %.6g",
@@ -153,18 +148,15 @@ public:
       const Real3 &axes = spec.semi_axes;
       const double radius = spec.shape == Shape::ellipsoid ? std::cbrt(axes[0] * axes[1] * axes[2]) : spec.radius;
       if (spec.surface_tension > 0 && radius > 0 && speed > 0)
-        report.line("capillary number of " + spec.name, "%.6g (viscosity x shear rate x radius / surface tension)",
-                    config_.fluid.viscosity * scale.shear_rate * radius / spec.surface_tension);
+        capillary(spec, config_.fluid.viscosity * radius / spec.surface_tension, "x radius / surface tension");
       if (spec.is_membrane() && radius > 0 && speed > 0)
-        report.line("capillary number of " + spec.name,
-                    "%.6g (viscosity x shear rate x radius / surface shear modulus)",
-                    config_.fluid.viscosity * scale.shear_rate * radius / membrane.shear_modulus);
+        capillary(spec, config_.fluid.viscosity * radius / membrane.shear_modulus, "x radius / surface shear modulus");
     }
   }
 
   void time_step(Report &report, int ranks) const {
     FlowExtremes extremes;
-    extremes.speed = flow_scale().speed;
+    extremes.speed = flow_scale(config_).speed;
     ViscosityContrast contrast(config_.fluid);
     for (const SpeciesSpec &spec : config_.species) {
       const Real3 &l = spec.initial_stretch;
@@ -233,101 +225,6 @@ private:
     for (const SpeciesSpec &spec : config_.species)
       for (int d = 0; d < dimension_; ++d) any = any || spec.initial_stretch[d] != 1 || spec.stretch_force.force > 0;
     return any;
-  }
-  bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
-  /// Between walls, those that planes of symmetry mirror included; 0 where there is none.
-  double gap(int d) const {
-    const int walls = d < dimension_ ? config_.boundary.is_wall(d, 0) + config_.boundary.is_wall(d, 1) : 0;
-    return walls == 0 ? 0 : (walls == 1 ? 2 : 1) * config_.grid.length[d];
-  }
-
-  FlowScale flow_scale() const {
-    FlowScale scale;
-    const Real3 &length = config_.grid.length;
-    double gap = std::numeric_limits<double>::infinity();
-    for (int d = 0; d < dimension_; ++d)
-      if (this->gap(d) > 0) gap = std::min(gap, this->gap(d));
-    for (const SpeciesSpec &spec : config_.species)
-      if (is_tube(spec.shape)) gap = std::min(gap, 2 * spec.radius);
-    scale.length = std::isfinite(gap) ? gap : *std::min_element(length.begin(), length.begin() + dimension_);
-    driven_by_walls(scale);
-    driven_by_force(scale);
-    driven_by_inflow(scale);
-    driven_by_bodies(scale);
-    const InitialFlow &initial = config_.initial;
-    const bool moves = initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
-                       initial.kind != InitialVelocity::couette;
-    for (int d = 0; d < dimension_; ++d)
-      scale.speed[d] =
-          std::max(scale.speed[d], std::fabs(initial.mean[d]) + (moves ? std::fabs(initial.amplitude) : 0));
-    if (moves) scale.shear_rate = std::max(scale.shear_rate, 2 * M_PI * std::fabs(initial.amplitude) / scale.length);
-    return scale;
-  }
-  void driven_by_walls(FlowScale &scale) const {
-    for (int d = 0; d < dimension_; ++d) {
-      if (!is_wall(d)) continue;
-      const WallMotion &low = config_.sides[d][0].motion, &high = config_.sides[d][1].motion;
-      for (int c = 0; c < dimension_; ++c) {
-        scale.speed[c] = std::max({scale.speed[c], std::fabs(low.velocity[c]), std::fabs(high.velocity[c])});
-        scale.shear_rate =
-            std::max(scale.shear_rate, std::fabs(high.velocity[c] - low.velocity[c]) / config_.grid.length[d]);
-      }
-    }
-  }
-  /// A channel of height H reaches f H^2/(8 nu) with the shear rate f H/(2 nu) at its walls, a tube f R^2/(4 nu) and
-  /// f R/(2 nu) along its axis; what is free accelerates to the end.
-  void driven_by_force(FlowScale &scale) const {
-    const BodyForce &force = config_.fluid.body_force;
-    const double nu = config_.fluid.kinematic_viscosity();
-    const Real3 pressures = pressure_drive(config_.sides, config_.grid.length, config_.fluid.density);
-    for (int c = 0; c < dimension_; ++c) {
-      const bool closed = is_wall(c) && !(config_.grid.open[c][0] && config_.grid.open[c][1]);
-      double f = std::fabs(force.force[c]) + pressures[c];
-      for (const SpeciesSpec &spec : config_.species) f += std::fabs(spec.body_force.force[c]);
-      double speed = f * (force.frequency > 0 ? std::min(config_.time.end, 2 / force.frequency) : config_.time.end);
-      if (closed) speed = 0;  // pressure takes it
-      const SpeciesSpec *tube = nullptr;
-      for (const SpeciesSpec &spec : config_.species)
-        if (is_tube(spec.shape) && dimension_ == 3 && spec.axis == c && nu > 0) tube = &spec;
-      if (tube) {
-        speed = std::min(speed, f * tube->radius * tube->radius / (4 * nu));
-        scale.shear_rate = std::max(scale.shear_rate, f * tube->radius / (2 * nu));
-      }
-      for (int d = 0; d < dimension_; ++d) {
-        const double height = gap(d);
-        if (tube || height == 0 || d == c || closed || nu == 0) continue;
-        speed = std::min(speed, f * height * height / (8 * nu));
-        scale.shear_rate = std::max(scale.shear_rate, f * height / (2 * nu));
-      }
-      scale.speed[c] = std::max(scale.speed[c], speed);
-    }
-  }
-  /// What comes in fills what rigid and attached bodies leave of a side; developed it is at most twice as fast in the
-  /// middle, with the shear rate 8 U/D at the wall.
-  void driven_by_inflow(FlowScale &scale) const {
-    double box = 1, free = 1;
-    for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
-    for (std::size_t s = 0; s < config_.species.size(); ++s)
-      if (const auto [count, volume] = count_and_volume(s);
-          config_.species[s].material().attached || config_.species[s].law == Law::rigid)
-        free -= count * volume / box;
-    for (int d = 0; d < dimension_ && free > 0; ++d) {
-      const double speed = 2 * inflow_speed(config_.sides)[d] / free;
-      scale.speed[d] = std::max(scale.speed[d], speed);
-      scale.shear_rate = std::max(scale.shear_rate, 4 * speed / scale.length);
-    }
-  }
-
-  void driven_by_bodies(FlowScale &scale) const {
-    for (const SpeciesSpec &spec : config_.species) {
-      const Real3 &v = spec.motion.velocity, &w = spec.motion.angular_velocity, &l = config_.grid.length;
-      double reach = spec.shape == Shape::voxels ? std::max(l[0], l[1]) / 2 : spec.radius;
-      for (int d = 0; d < dimension_; ++d) reach = std::max(reach, spec.semi_axes[d]);
-      for (int d = 0; d < dimension_; ++d)
-        scale.speed[d] = std::max(scale.speed[d], std::fabs(v[d]) + reach * std::hypot(w[(d + 1) % 3], w[(d + 2) % 3]));
-      scale.shear_rate =
-          std::max({scale.shear_rate, std::hypot(w[0], w[1], w[2]), std::hypot(v[0], v[1], v[2]) / scale.length});
-    }
   }
 
   const Config &config_;

@@ -4,7 +4,10 @@
 Needs EULASTIC.
 """
 import math
+import os
 import pathlib
+import re
+import subprocess
 import sys
 import unittest
 
@@ -14,6 +17,8 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
 from scene_case import SceneCase  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 RADIUS, CELLS = 0.385, 26  # 20 cells across
 TUBE = (f"-grid_cells 8,{CELLS},{CELLS} -grid_length {8 / CELLS},1,1 -boundary_y wall -boundary_z wall -species vessel "
@@ -50,6 +55,16 @@ class Vessels(SceneCase):
                                "constricted_tube -vessel_axis x -vessel_radius .42 -vessel_throat_radius .25 "
                                "-vessel_throat_length 8 -vessel_centre 4,.5,0".split(), *STEADY, *RIGID).series
         self.assertAlmostEqual(series.vessel_apparent_viscosity[-1], 1, delta=0.03)
+
+    def test_check_only_takes_the_width_of_the_lumen(self):
+        """A vessel from a file is no cell, and as wide as a tube of the same volume: 2 (V/(pi L))^(1/2) of the box less its solid."""
+        done = subprocess.run([os.environ["EULASTIC"], ROOT / "options/branched_vessel.opts", "-check_only"], capture_output=True, text=True)
+        said = dict(line.split(": ", 1) for line in done.stdout.splitlines() if ": " in line)
+        self.assertNotIn("hematocrit", said)
+        solid = float(re.search("volume ([0-9.]+)", said["species vessel"])[1])
+        width = 2 * math.sqrt((48 * 32 * 16 - solid) / 48 / math.pi)
+        self.assertAlmostEqual(float(re.search("length ([0-9.]+)", said["Reynolds number"])[1]), width, delta=1e-3)
+        self.assertAlmostEqual(float(said["shear rate (estimate)"]), 1e-3 * width / 4, delta=1e-5)
 
     def test_no_column_where_it_is_not_defined(self):
         names = self.run_with(*"-grid_cells 16,16,1 -species a,b -a_shape tube -a_axis z -a_radius .4 -a_law rigid -b_shape sphere "

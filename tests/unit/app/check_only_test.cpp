@@ -87,6 +87,60 @@ TEST(CheckOnly, FlowThroughOpenSides) {
     EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
 }
 
+// Obstacles hold back the flow, bodies shear it: by how much does not follow from the options.
+TEST(CheckOnly, WhatItCannotKnowIsUnknown) {
+  const auto says = [](const std::string &options) {
+    const ParseResult result = parse_line("-time_end 2 -body_force .5,0,0 " + options);
+    EXPECT_EQ(result.error, "");
+    return check_report(result.config, 1);
+  };
+  const std::string ball = " -species a -a_shape sphere -a_radius .25 ", box = "-grid_cells 16,16,16 ";
+  const std::string obstacle = says(box + ball + "-a_law rigid");
+  for (const char *line : {"\nvelocity scale (estimate): less than 1\n", "\nshear rate (estimate): unknown\n",
+                           "\nReynolds number: unknown (length 1)\n"})
+    EXPECT_NE(obstacle.find(line), std::string::npos) << line << obstacle;
+  const std::string cell = says(box + ball + "-a_shear_modulus 1");
+  for (const char *line :
+       {"\nvelocity scale (estimate): 1\n", "\nshear rate (estimate): unknown\n", "\nReynolds number: 1 (length 1)\n",
+        "\ncapillary number of a: unknown (viscosity x shear rate / shear modulus)\n"})
+    EXPECT_NE(cell.find(line), std::string::npos) << line << cell;
+  EXPECT_NE(says(box).find("\nshear rate (estimate): 0\n"), std::string::npos) << "nothing touches this fluid";
+  EXPECT_NE(says(box + "-fluid_viscosity 0").find("\nReynolds number: unknown (no viscosity)\n"), std::string::npos);
+}
+
+TEST(CheckOnly, LengthsAreTheLumens) {
+  const auto says = [](const std::string &options) {
+    const ParseResult result = parse_line("-time_end 100 -species v -v_shape tube -v_law rigid " + options);
+    EXPECT_EQ(result.error, "");
+    return check_report(result.config, 1);
+  };
+  // Two plates: U = f H^2/(8 nu) = .5, shear rate f H/(2 nu) = 1.
+  const std::string plates = says("-grid_cells 16,16,1 -grid_length 4,4,1 -v_axis x -v_radius 1 -body_force 1,0,0");
+  for (const char *line : {"\nvelocity scale (estimate): 0.5\n", "\nshear rate (estimate): 1\n", " (length 2)\n"})
+    EXPECT_NE(plates.find(line), std::string::npos) << line << plates;
+  const std::string circle = says(
+      "-grid_cells 16,16,1 -grid_length 4,4,1 -v_axis z -v_radius 1.5 -initial_velocity "
+      "uniform -initial_velocity_mean 1,0,0");
+  EXPECT_NE(circle.find(" (length 3)\n"), std::string::npos) << circle;
+}
+
+TEST(CheckOnly, HematocritIsOfCells) {
+  const auto says = [](const std::string &options) {
+    const ParseResult result = parse_line("-time_end 1 -grid_cells 16,16,1 " + options);
+    EXPECT_EQ(result.error, "");
+    return check_report(result.config, 1);
+  };
+  const std::string ball = "-species a -a_shape sphere -a_radius .25 ";
+  for (const std::string &none :
+       {std::string(), ball + "-a_law rigid",
+        std::string("-species a -a_shape slab -a_axis y -a_interval 0,1 -a_shear_modulus 1")}) {
+    const std::string report = says(none);
+    EXPECT_EQ(report.find("hematocrit"), std::string::npos) << report;
+    EXPECT_EQ(report.find("nan"), std::string::npos) << report;
+  }
+  EXPECT_NE(says(ball + "-a_shear_modulus 1").find("\nhematocrit: 0.19635\n"), std::string::npos);
+}
+
 TEST(CheckOnly, NoFlowIsSaid) {
   const std::string rest = "-time_end 2 -grid_cells 16,16,1",
                     body = " -species a -a_shape sphere -a_radius .2 -a_shear_modulus 1";
