@@ -27,7 +27,7 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
   Option &profile = rows.path(name + "_profile", spec.profile,
                               "shape of the velocity into the box: uniform; developed, that of a steady flow along the "
                               "side; or one number per cell, of a text or an HDF5 file (docs/howto/vessel.md)");
-  profile.accepted = "uniform, developed, or a path";
+  profile.accepted = "uniform, developed, or a path, of HDF5 also FILE:DATASET";
   profile.is_input = true;
   for (const bool flow : {false, true}) {
     std::string &target = flow ? spec.flow_rate : spec.velocity;

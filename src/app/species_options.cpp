@@ -193,7 +193,9 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
     const bool placed = spec.shape != Shape::slab && spec.shape < Shape::voxels;
     return spec.placement == Placement::one && (placed || (spec.shape == Shape::voxels && spec.law == Law::rigid));
   };
-  Option &positions = rows.path("positions", spec.positions_file, "CSV file with the bodies");
+  Option &positions =
+      rows.path("positions", spec.positions_file,
+                "file with the bodies: rows of x,y,z, or of x,y,z and angles in degrees (docs/howto/numbers.md)");
   positions.required = positions.is_input = true;
   for_placement(1, {Placement::list});
   add_count(rows, spec);

@@ -77,6 +77,9 @@ private:
     const bool flat = grid.cells[2] == 1;
     if (flat && box_.count[2] != 1)
       return file + ": " + std::to_string(box_.count[2]) + " voxels in z; accepted in 2-D (one cell in z): 1";
+    const bool no_spacing = std::isnan(voxels.spacing[0]) && std::isnan(volume_->spacing()[0]);
+    if (no_spacing && std::isnan(voxels.origin[0]) && !std::isnan(volume_->corner()[0]))
+      return file + ": it has an origin without a spacing; accepted: both of them in the file, or as options";
     Real3 high{};
     for (int d = 0; d < 3; ++d) {
       double spacing = voxels.spacing[d], corner = voxels.origin[d];

@@ -3,7 +3,6 @@
 #include "io/volume_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -21,7 +20,6 @@ public:
     if (std::string wrong = read_attribute("spacing", &values); !wrong.empty()) return wrong;
     if (std::string wrong = set_spacing(values); !wrong.empty()) return wrong;
     if (std::string wrong = read_attribute("origin", &values); !wrong.empty()) return wrong;
-    if (!values.empty() && std::isnan(spacing_[0])) return file + " has an origin without a spacing";
     std::copy(values.begin(), values.end(), corner_.begin());
     return {};
   }

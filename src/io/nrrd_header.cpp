@@ -159,9 +159,8 @@ private:
     if (!to_numbers(fields_["space origin"], &numbers) || numbers.size() != rank_ ||
         !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
       return "space origin \"" + fields_["space origin"] + "\"; accepted: (x,y,z), finite";
-    if (header_->spacing.empty()) return "has a space origin without spacings";
-    // The format's origin is the centre of the first voxel.
-    for (std::size_t d = 0; d < rank_; ++d) header_->corner.push_back(numbers[d] - header_->spacing[d] / 2);
+    header_->corner = numbers;  // the format's origin is the centre of the first voxel
+    for (std::size_t d = 0; d < header_->spacing.size(); ++d) header_->corner[d] -= header_->spacing[d] / 2;
     return {};
   }
 

@@ -15,7 +15,7 @@ struct NrrdHeader {
   bool big_endian = false;
   Encoding encoding = Encoding::raw;
   std::vector<double> spacing;  ///< empty = not given
-  std::vector<double> corner;   ///< low corner of the first voxel; empty = not given
+  std::vector<double> corner;   ///< low corner of the first voxel, its centre without a spacing; empty = not given
   std::string data_file;        ///< what holds the values: the file itself, or the one that a detached header names
   std::int64_t data = 0;        ///< offset of the first value
 };

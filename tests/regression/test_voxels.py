@@ -104,7 +104,8 @@ class Voxels(WithRoom):
         # The file's origin is in units of the file: it goes with the file's spacing alone.
         corner = numpy.zeros(SHAPE)
         corner[:2, :2, :2] = 1
-        numpy.testing.assert_array_equal(self.phi(self.hdf5(solid, **at), "-part_voxels_spacing", ".1,.1,.1"), corner)
+        for of_file in (at, dict(origin=at["origin"])):
+            numpy.testing.assert_array_equal(self.phi(self.hdf5(solid, **of_file), "-part_voxels_spacing", ".1,.1,.1"), corner)
         numpy.testing.assert_array_equal(self.phi(self.hdf5(solid, **at), "-part_voxels_spacing", ".1,.1,.1",
                                                   "-part_voxels_origin", ".1,.3,.2"), wanted)
 
@@ -319,7 +320,7 @@ class Voxels(WithRoom):
                 (dict(space_directions="(1,0,0) (0,1,1e-5) (0,0,1)"), "along x, y, z"),
                 (dict(kinds="RGB-color domain domain"), "axis 1 is not in space; accepted: domain or space"),
                 (dict(kinds="domain domain vector"), "axis 3 is not in space"), (dict(kinds="domain domain"), "3 axes"),
-                (dict(space_directions="(1,0,0) (0,1,0)"), "3 vectors"), (dict(space_origin="(0,0,0)"), "spacings")]:
+                (dict(space_directions="(1,0,0) (0,1,0)"), "3 vectors"), (dict(space_origin="(0,0,0)"), "origin without a spacing")]:
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.write("v.nrrd", nrrd(good, **fields)), says=["v.nrrd", says])
         packed, plain, words = (nrrd(good, e) for e in ("gzip", "raw", "ascii"))
