@@ -33,6 +33,8 @@ double TimeCourse::rate(double time) const {
   return length > 0 ? (after[1] - before[1]) / length : 0;
 }
 
+double TimeCourse::angular_frequency() const { return period > 0 ? 2 * M_PI / period : std::fabs(frequency); }
+
 std::array<double, 2> TimeCourse::range() const {
   if (table.empty()) {
     const double size = std::fabs(value);

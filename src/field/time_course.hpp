@@ -17,6 +17,7 @@ struct TimeCourse {
   double period = 0;                         ///< of the table; 0: it does not repeat
   double at(double time) const;
   double rate(double time) const;       ///< its change per time; of a table that of the piece that begins then
+  double angular_frequency() const;     ///< of what repeats, >= 0; 0: nothing does
   std::array<double, 2> range() const;  ///< least and largest at any time
   double largest() const;               ///< of its size, at any time
 

@@ -168,7 +168,7 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
     for (const auto &pair : sides)
       for (const Side &side : pair) {
         speed = std::max(speed, std::fabs(side.motion.velocity[d]));
-        frequency = std::max({frequency, std::fabs(side.motion.frequency), std::fabs(side.given.frequency)});
+        frequency = std::max({frequency, std::fabs(side.motion.frequency), side.given.angular_frequency()});
       }
     speed = std::max(speed, inflow_speed(sides)[d]);
     S += 1 / (spacing[d] * spacing[d]);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Texts of numbers as others write them: tables over time, lists of positions, profiles; what happens where a table ends."""
 import pathlib
+import re
 import sys
 import unittest
 
@@ -50,6 +51,14 @@ class Tables(WithRoom):
         numpy.testing.assert_allclose(flow, numpy.interp(time, *numpy.transpose(BEAT)), rtol=1e-12)
         time, flow = self.inflow("-inflow_xmin_velocity", name, "-inflow_xmin_period", ".15", end=.4)
         numpy.testing.assert_allclose(flow, numpy.interp(time, *numpy.transpose(BEAT), period=.15), rtol=1e-9)
+
+    def test_no_beat_is_stepped_over(self):
+        """A flow so slow that nothing else limits the step: it is that of a cosine of the same period."""
+        name = self.write("beat.csv", table([(time, 1e-9 * value) for time, value in BEAT]))
+        slow = [*CHANNEL[:CHANNEL.index("-fluid_viscosity")], "-fluid_viscosity", "1e-6", "-time_end", "1", "-check_only"]
+        found = [re.search(r"time step \(estimate\): .*", self.start(*slow, "-inflow_xmin_velocity", *options).stdout)[0]
+                 for options in ((name, "-inflow_xmin_period", ".15"), ("1e-9", "-inflow_xmin_frequency", str(numpy.pi / .075)))]
+        self.assertEqual(found, ["time step (estimate): 0.00375 (forcing period)"] * 2)
 
     def test_a_run_goes_on_when_its_table_is_held_or_repeats(self):
         name = self.write("beat.csv", table(BEAT))

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace eulastic;
 
 TEST(TimeCourse, IsLinearBetweenRowsAndConstantOutside) {
@@ -17,6 +19,7 @@ TEST(TimeCourse, IsLinearBetweenRowsAndConstantOutside) {
 TEST(TimeCourse, RepeatsWithItsPeriod) {
   TimeCourse course{0, 0, 0, {{1, 2}, {3, 6}}};
   course.period = 4;  // back from 6 to 2 between t = 3 and t = 5
+  EXPECT_DOUBLE_EQ(course.angular_frequency(), std::acos(-1) / 2);
   const double wanted[][3] = {{0, 4, -2}, {1, 2, 2}, {2, 4, 2}, {3, 6, -2}, {4, 4, -2}, {5, 2, 2}, {4002, 4, 2}};
   for (const auto &[time, value, rate] : wanted) {
     EXPECT_DOUBLE_EQ(course.at(time), value) << time;
