@@ -11,6 +11,9 @@ namespace eulastic {
 /// Reads all of `word` as one number; returns false if it is none. Infinity and nan are numbers here.
 bool read_number(std::string_view word, double *number);
 
+/// How many bytes of a text are its byte-order mark (of UTF-8): 3, or 0 where it has none.
+std::size_t mark_length(std::string_view text);
+
 /// What a text of numbers holds.
 struct RowFormat {
   std::string expected;              ///< for messages, such as "rows of time,value"

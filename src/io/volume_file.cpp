@@ -1,5 +1,6 @@
 #include "io/volume_file.hpp"
 
+#include "base/number_rows.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/stl_file.hpp"
 
@@ -17,8 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr unsigned long long most_voxels = 1 << 20;  // in one direction
 
-constexpr char byte_order_mark[] = "\xEF\xBB\xBF";
-
 }  // namespace
 
 const double VolumeFile::not_given = std::numeric_limits<double>::quiet_NaN();
@@ -27,16 +26,15 @@ std::string find_volume(const std::string &path, VolumeFormat *format, std::stri
   split_dataset(path, file, dataset);
   std::error_code ignored;
   if (!fs::is_regular_file(*file, ignored)) return *file + " is not a file";
-  char magic[10] = "";
+  char magic[11] = "";
   std::ifstream stream(*file, std::ios::binary);
-  stream.read(magic, sizeof magic);
+  stream.read(magic, sizeof magic - 1);
   if (!stream && stream.gcount() == 0) return *file + " is empty or cannot be read";
-  const char *text = std::memcmp(magic, byte_order_mark, 3) == 0 ? magic + 3 : magic;
   std::string suffix = fs::path(*file).extension().string();
   for (char &c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (is_hdf5(*file))
     *format = VolumeFormat::hdf5;
-  else if (std::memcmp(text, "NRRD000", 7) == 0)
+  else if (std::strncmp(magic + mark_length(magic), "NRRD000", 7) == 0)
     *format = VolumeFormat::nrrd;
   else if (is_stl(*file) || suffix == ".stl")  // the reader says what is wrong with a damaged one
     *format = VolumeFormat::stl;

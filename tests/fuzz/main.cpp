@@ -168,9 +168,13 @@ Outcome Fuzzer::options_file(Dice &dice) {
 
 Outcome Fuzzer::positions(Dice &dice) {
   std::string text = dice.one_in(2) ? "x,y,z\n" : dice.one_in(2) ? "x,y,z,angle_x,angle_y,angle_z\n" : "";
-  for (std::size_t n = 1 + dice.below(4); n > 0; --n) {
+  const std::string separator(1, ",,; \t"[dice.below(5)]);
+  std::size_t n = 1 + dice.below(4);
+  if (dice.one_in(4)) text = std::to_string(dice.one_in(4) ? dice.below(9) : n) + "\n" + text;
+  if (dice.one_in(8)) text = "\xEF\xBB\xBF# cells\n" + text;
+  for (; n > 0; --n) {
     for (int c = 0, columns = dice.one_in(3) ? 6 : 3; c < columns; ++c)
-      text += (c ? "," : "") + std::to_string(0.1 * static_cast<double>(dice.below(12)));
+      text += (c ? separator : "") + std::to_string(0.1 * static_cast<double>(dice.below(12)));
     text += dice.one_in(4) ? "\r\n" : "\n";
   }
   if (!dice.one_in(3)) text = dice.spoil(text, 2);
