@@ -6,7 +6,7 @@ import numpy
 
 from . import derived
 from .reading import VESSELS
-from .surfaces import body_pieces, enclosing, sample
+from .surfaces import at_points, body_pieces, enclosing, sample, spread
 
 KINDS = "vtp", "stl"
 
@@ -98,9 +98,16 @@ class Contours:
         places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing - 0.5
         return numpy_to_vtk(sample(field, places, self.periodic), deep=1)
 
+    def stress_at_points(self, surface, snapshot):
+        """Size of the shear stress on vessels and obstacles at the points of a vtkPolyData, as a VTK array."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing + 0.5
+        return numpy_to_vtk(at_points(spread(self.widened(snapshot.surface_shear_stress())), places), deep=1)
+
     def all_surfaces(self, snapshot, field="", whole=False):
         """vtkPolyData of triangles: all bodies and vessels. Of cells `body`, the label (0 of vessels), and `species`, 1, 2,
-        ... in the order of `species_names`, the strings of the whole; of points `field`."""
+        ... in the order of `species_names`, the strings of the whole; of points `field`, and `wall_shear_stress`, its size, where
+        the snapshot has it: 0 on bodies that move."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         vtk, names = self.vtk, self.run.species
         together, values = vtk.vtkAppendPolyData(), derived.field(snapshot, field) if field else None
@@ -121,6 +128,11 @@ class Contours:
                     points = self.at_points(surface, values)
                     points.SetName(field)
                     surface.GetPointData().AddArray(points)
+                if "wall_shear_stress" in snapshot and surface.GetNumberOfPoints() > 0:
+                    none = numpy.zeros(surface.GetNumberOfPoints())
+                    stress = self.stress_at_points(surface, snapshot) if self.run.is_fixed(name) else numpy_to_vtk(none, deep=1)
+                    stress.SetName("wall_shear_stress")
+                    surface.GetPointData().AddArray(stress)
                 together.AddInputData(surface)
         together.Update()
         strings = vtk.vtkStringArray()

@@ -11,7 +11,6 @@ from .contours import Contours
 from .framing import Framed
 from .reading import VESSELS
 from .rounding import round_up
-from .surfaces import at_points, spread
 
 BLUES = (.97, .98, 1), (.80, .88, .95), (.58, .76, .88), (.30, .58, .79), (.10, .36, .62)  # of a size
 BOTH = (.13, .40, .67), (.57, .77, .87), (.97, .97, .97), (.96, .65, .51), (.70, .09, .17)  # of what has a sign
@@ -170,12 +169,9 @@ class Scene(Framed):
         if "wall_shear_stress" not in snapshot:
             self.actor(renderer, surface, (0.80, 0.72, 0.70), Opacity=0.45, **look)
             return
-        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
         surface.Update()
         lumen = surface.GetOutput()
-        places = vtk_to_numpy(lumen.GetPoints().GetData()) / self.run.spacing + 0.5
-        stress = spread(self.contours.widened(snapshot.surface_shear_stress()))
-        lumen.GetPointData().SetScalars(numpy_to_vtk(at_points(stress, places), deep=1))
+        lumen.GetPointData().SetScalars(self.contours.stress_at_points(lumen, snapshot))
         mapper = self.actor(renderer, surface, (1, 1, 1), Ambient=0.25, **look).GetMapper()
         mapper.ScalarVisibilityOn()
         mapper.SetLookupTable(self.table(0, self.stress, GREENS))

@@ -5,6 +5,7 @@
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "grid/grid.hpp"
+#include "io/snapshot_format.hpp"
 #include "physics/fluid.hpp"
 #include "physics/initial_velocity.hpp"
 #include "solver/method.hpp"
@@ -65,9 +66,9 @@ struct OutputControl {
   bool snapshot_exact = false;   ///< at the multiples of the interval, else at the steps that reach them
   double snapshot_interval = 0;  ///< simulated time; 0 = no snapshots, else the start and the end are written too
   std::vector<std::string> snapshot_fields{"velocity", "pressure", "solid_fraction", "body", "wall_shear_stress"};
-  bool snapshot_single = true;   ///< single precision
-  bool snapshot_vtkhdf = false;  ///< VTKHDF beside XDMF
-  double series_interval = 0;    ///< simulated time; after parsing never 0: time_end / 200 unless given
+  bool snapshot_single = true;  ///< single precision
+  SnapshotFormat snapshot_format = SnapshotFormat::xdmf;
+  double series_interval = 0;  ///< simulated time; after parsing never 0: time_end / 200 unless given
 };
 
 /// One profile: the means over planes of cells, or the values along a line through `line`.

@@ -209,8 +209,10 @@ void add_running(Rows &rows, Config &config) {
              {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"},
              "fields in snapshots");
   rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
-  rows.choice("snapshot_format", output.snapshot_vtkhdf, {"xdmf", "vtkhdf"},
-              "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later");
+  rows.choice(
+      "snapshot_format", output.snapshot_format, {"xdmf", "vtkhdf", "vti"},
+      "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later; vti: also a "
+      "file for each that every version of VTK and ParaView reads, with the wall shear stress always");
   rows.real("series_interval", output.series_interval, not_negative, "time",
             "time between lines of series.csv; 0 = default")
       .default_note = "time_end/200";

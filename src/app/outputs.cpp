@@ -41,7 +41,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   }
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotOutput>(*grid_, directory, config_.output.snapshot_vtkhdf);
+    snapshots_ = std::make_unique<SnapshotOutput>(*grid_, directory, config_.output.snapshot_format);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);

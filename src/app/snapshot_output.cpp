@@ -71,7 +71,7 @@ PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, *phases);
   std::vector<WallStress> walls;
   FieldBlock rigid, elastic, stress, widened;
-  if (wants(config.output, "wall_shear_stress")) {
+  if (wants(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
     EdgeViscosity of_place{grid, config.fluid.viscosity, config.fluid.density, viscosity};
     walls = wall_shear_stress(grid, config.sides, state.time, of_place, state.velocity, *phases);
     PetscCall(solid_of_vessels(config, true, *phases, solver, &rigid));

@@ -10,8 +10,8 @@ namespace eulastic {
 
 class SnapshotOutput {
 public:
-  SnapshotOutput(const Grid &grid, const std::string &directory, bool vtkhdf)
-      : writer_(grid, directory, vtkhdf), fields_(grid) {}
+  SnapshotOutput(const Grid &grid, const std::string &directory, SnapshotFormat shown)
+      : writer_(grid, directory, shown), fields_(grid) {}
 
   /// As SnapshotWriter's.
   PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }

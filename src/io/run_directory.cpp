@@ -31,7 +31,7 @@ bool list(const std::string &path, std::vector<fs::path> *entries) {
 bool is_output_file(const std::string &name) {
   static const std::regex ours(
       "(options\\.txt|(series|probes|profile_[xyz])\\.csv|summary\\.json|bodies\\.h5|(snapshots|walls)\\.xdmf|"
-      "snapshots\\.vtkhdf\\.series|snapshot_[0-9]+\\.vtkhdf|(snapshot|checkpoint)_[0-9]+\\.h5)"
+      "snapshots\\.(vtkhdf\\.series|pvd)|snapshot_[0-9]+\\.(vtkhdf|vti)|(snapshot|checkpoint)_[0-9]+\\.h5)"
       "(\\.tmp)?");
   return std::regex_match(name, ours);
 }

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "io/text_file.hpp"
+#include "io/vti.hpp"
 #include "io/vtkhdf.hpp"
 #include "io/wall_index.hpp"
 
@@ -94,7 +95,8 @@ PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   if (end != 0) index_ = text.str().substr(head.size(), end - head.size());
   std::error_code error;  // one that stays is written over
   for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n)
-    std::filesystem::remove(directory_ + "/" + file_name(n) + ".vtkhdf", error);
+    for (const char *shown : {".vtkhdf", ".vti"})
+      std::filesystem::remove(directory_ + "/" + file_name(n) + shown, error);
   PetscFunctionReturn(0);
 }
 
@@ -112,19 +114,21 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   PetscCall(file.write_attribute("/", "length", std::vector<double>(length.begin(), length.end())));
   for (const SnapshotField &field : fields) PetscCall(file.write_field(*grid_, field.format, field.components));
   PetscCall(file.commit());
-  if (vtkhdf_) {
-    std::vector<std::string> drawn;
-    for (const SnapshotField &field : fields)
-      if (is_drawn(field.format)) drawn.push_back(field.format.name);
-    PetscCall(write_vtkhdf(*grid_, directory_, name, drawn));
+  std::vector<SnapshotField> drawn, on_walls;
+  for (const SnapshotField &field : fields) {
+    if (is_drawn(field.format)) drawn.push_back(field);
+    if (field.format.plane >= 0) on_walls.push_back(field);
   }
+  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf(*grid_, directory_, name, drawn));
+  if (shown_ == SnapshotFormat::vti) PetscCall(write_vti(*grid_, directory_, name, time, drawn, on_walls));
   ++count_;
   index_ += index_entry(name, time, fields);
   PetscCall(write_text_file(grid_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
   const std::vector<SnapshotEntry> all = entries();
   const std::string walls = wall_index(*grid_, all, fields);
   if (!walls.empty()) PetscCall(write_text_file(grid_->comm(), directory_ + "/walls.xdmf", walls));
-  if (vtkhdf_) PetscCall(write_vtkhdf_series(grid_->comm(), directory_, all));
+  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf_series(grid_->comm(), directory_, all));
+  if (shown_ == SnapshotFormat::vti) PetscCall(write_pvd(grid_->comm(), directory_, all));
   PetscFunctionReturn(0);
 }
 

@@ -1,8 +1,9 @@
 // snapshot_NNNNNN.h5, a picture of the fields at one time, and snapshots.xdmf, which shows them all to ParaView; on
-// request the same as VTKHDF.
+// request the same as VTKHDF or as VTK's XML image data.
 #pragma once
 
 #include "io/hdf5_file.hpp"
+#include "io/snapshot_format.hpp"
 
 namespace eulastic {
 
@@ -20,8 +21,8 @@ struct SnapshotEntry {
 /// Numbers snapshots from 0 and remembers them for the index.
 class SnapshotWriter {
 public:
-  SnapshotWriter(const Grid &grid, std::string directory, bool vtkhdf)
-      : grid_(&grid), directory_(std::move(directory)), vtkhdf_(vtkhdf) {}
+  SnapshotWriter(const Grid &grid, std::string directory, SnapshotFormat shown)
+      : grid_(&grid), directory_(std::move(directory)), shown_(shown) {}
 
   /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
   /// index goes on too, and later ones are removed.
@@ -37,7 +38,7 @@ private:
 
   const Grid *grid_;
   std::string directory_;
-  bool vtkhdf_;  ///< .vtkhdf files too
+  SnapshotFormat shown_;
   int count_ = 0;
   std::string index_;  ///< one XDMF grid per snapshot
 };

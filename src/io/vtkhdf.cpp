@@ -8,7 +8,7 @@
 namespace eulastic {
 
 PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, const std::string &name,
-                            const std::vector<std::string> &datasets) {
+                            const std::vector<SnapshotField> &drawn) {
   PetscFunctionBeginUser;
   const Int3 &n = grid.cells();
   const Real3 &h = grid.spacing();
@@ -23,7 +23,8 @@ PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, cons
   PetscCall(file.write_attribute(root, "Spacing", std::vector<double>(h.begin(), h.end())));
   PetscCall(file.write_attribute(root, "Direction", std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
   PetscCall(file.create_group(cells));
-  for (const std::string &dataset : datasets) PetscCall(file.link(cells + "/" + dataset, name + ".h5", dataset));
+  for (const SnapshotField &field : drawn)
+    PetscCall(file.link(cells + "/" + field.format.name, name + ".h5", field.format.name));
   PetscCall(file.commit());
   PetscFunctionReturn(0);
 }

@@ -6,10 +6,10 @@
 
 namespace eulastic {
 
-/// Collective. Writes `directory`/`name`.vtkhdf: the grid of cells, and links to `datasets` of `name`.h5 in the same
-/// directory, (nz,ny,nx) or (nz,ny,nx,3), as fields of cells. Holds no values.
+/// Collective. Writes `directory`/`name`.vtkhdf: the grid of cells, and links to the datasets of the `drawn` fields in
+/// `name`.h5 in the same directory, (nz,ny,nx) or (nz,ny,nx,3), as fields of cells. Holds no values.
 PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, const std::string &name,
-                            const std::vector<std::string> &datasets);
+                            const std::vector<SnapshotField> &drawn);
 
 /// Collective. Writes the list anew: those of `entries` that have a .vtkhdf file.
 PetscErrorCode write_vtkhdf_series(MPI_Comm comm, const std::string &directory,

@@ -104,7 +104,7 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
   SnapshotFields fields(scene.grid);
-  SnapshotWriter writer(scene.grid, directory / "", true);
+  SnapshotWriter writer(scene.grid, directory / "", SnapshotFormat::vtkhdf);
   for (int n = 0; n < 2; ++n)
     ASSERT_EQ(writer.write(0.5 * n, 10 * n, fields.collect(selection, velocity, pressure, phases)), 0);
   check_index(directory, 2);
@@ -176,7 +176,8 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   SnapshotField field;
   field.format.name = "pressure";
   field.components = {pressure[0]};
-  SnapshotWriter first(scene.grid, directory / "", true), second(scene.grid, directory / "", true);
+  SnapshotWriter first(scene.grid, directory / "", SnapshotFormat::vtkhdf),
+      second(scene.grid, directory / "", SnapshotFormat::vtkhdf);
   for (int n = 0; n < 4; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
   ASSERT_EQ(second.resume(1, true), 0);
   ASSERT_EQ(second.write(0.25, 9, {field}), 0);

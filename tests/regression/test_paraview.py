@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""snapshots.xdmf, walls.xdmf and the .vtkhdf files as ParaView sees them. Every item is followed to its dataset: shape,
+"""snapshots.xdmf, walls.xdmf, the .vtkhdf and the .vti files as ParaView sees them. Every item is followed to its dataset: shape,
 type, place and values. Debian's VTK must read the .vtkhdf files; where pvpython is installed, ParaView's own two XDMF
 readers must see the same."""
 import json
@@ -59,6 +59,23 @@ image = reader.GetOutput()
 fields = {image.GetCellData().GetArrayName(n): vtk_to_numpy(image.GetCellData().GetArray(n))
           for n in range(image.GetCellData().GetNumberOfArrays())}
 numpy.savez(sys.argv[2], origin=image.GetOrigin(), spacing=image.GetSpacing(), extent=image.GetExtent() + less, **fields)
+"""
+
+
+# All cells of a .vti file as VTK reads them.
+READ_VTI = """
+import sys
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+reader = vtkXMLImageDataReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+image = reader.GetOutput()
+fields = {image.GetCellData().GetArrayName(n): vtk_to_numpy(image.GetCellData().GetArray(n))
+          for n in range(image.GetCellData().GetNumberOfArrays())}
+time = image.GetFieldData().GetArray("TimeValue").GetTuple1(0)
+numpy.savez(sys.argv[2], origin=image.GetOrigin(), spacing=image.GetSpacing(), extent=image.GetExtent(), time=time, **fields)
 """
 
 
@@ -223,10 +240,68 @@ class Paraview(unittest.TestCase):
         with h5py.File(flat / "snapshot_000001.vtkhdf") as file:
             self.assertIn("left_cauchy_green_xy", file["VTKHDF/CellData"])
 
+    def read_vti(self, path):
+        done = start(sys.executable, "-c", READ_VTI, str(path), str(self.room / "seen.npz"))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return dict(numpy.load(self.room / "seen.npz"))
+
+    @unittest.skipUnless(pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules").exists(), "VTK is not installed")
+    def test_vti(self):
+        """VTK sees the grid, all that the HDF5 file has at centres, and beside the walls the stress on them; on two ranks the same
+        bytes. The list has all times, in a run that goes on, too."""
+        out, two = self.room / "vti", self.room / "vti_two"
+        words = *SCENE, "-snapshot_format", "vti"
+        done = start(BINARY, *words, "-output_dir", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        seen = self.read_vti(out / "snapshot_000002.vti")
+        for name, exact in {"extent": [0, 12, 0, 10, 0, 8], "origin": [0, 0, 0], "spacing": self.last.attrs["spacing"], "time": 0.01}.items():
+            numpy.testing.assert_array_equal(seen.pop(name), exact)
+        walls = [self.last[f"wall_shear_stress_{wall}"][:, 0] for wall in ("ymin", "ymax")]
+        stress = seen.pop("wall_shear_stress").reshape(8, 10, 12, 3)
+        numpy.testing.assert_array_equal(stress[:, 0], walls[0])
+        numpy.testing.assert_array_equal(stress[:, -1], walls[1])
+        self.assertGreater(abs(walls[0]).min(axis=(0, 1)).max(), 0.4)
+        self.assertFalse(stress[:, 1:-1].any())
+        self.assertEqual(set(seen), {"velocity", "pressure", *(name + tail for name in ("body", "solid_fraction")
+                                                               for tail in ("", "_cell", "_seed"))})
+        for name, values in seen.items():
+            numpy.testing.assert_array_equal(values.ravel(), self.last[name][...].ravel(), name)
+            self.assertEqual(values.dtype, self.last[name].dtype)
+        done = start(os.environ.get("EULASTIC_MPIEXEC", "mpiexec"), "--oversubscribe", "-n", "2", BINARY, *words, "-output_dir", two)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((two / "snapshot_000002.vti").read_bytes(), (out / "snapshot_000002.vti").read_bytes())
+        longer = [".02" if word == ".01" else word for word in words]
+        done = start(BINARY, *longer, "-restart", out, "-output_dir", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        times = [(item.get("file"), float(item.get("timestep"))) for item in
+                 xml.etree.ElementTree.parse(out / "snapshots.pvd").getroot().iter("DataSet")]
+        self.assertEqual([name for name, _ in times], [f"snapshot_{n:06}.vti" for n in range(5)])
+        numpy.testing.assert_allclose([time for _, time in times], [0, 0.006, 0.01, 0.016, 0.02])
+        done = start(BINARY, *SCENE, "-output_overwrite", "-output_dir", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([path.name for path in out.iterdir() if path.suffix in (".vti", ".pvd")], [])
+
+    @unittest.skipUnless(pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules").exists(), "VTK is not installed")
+    def test_stress_on_a_vessel_is_always_in_vti(self):
+        """In 2-D, double precision, without -snapshot_fields that asks for it: what a run that asks for it has."""
+        flat = ("-grid_cells 16,12,1 -grid_length 1.6,1.2,.1 -species plates -plates_shape tube -plates_axis x -plates_radius .43 "
+                "-plates_law rigid -body_force 1,0,0 -time_step .01 -time_end .1 -snapshot_interval .1 -snapshot_precision double").split()
+        for name, words in {"asked": ("-snapshot_fields", "wall_shear_stress"),
+                            "vessel": ("-snapshot_fields", "pressure", "-snapshot_format", "vti")}.items():
+            done = start(BINARY, *flat, *words, "-output_dir", self.room / name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        seen = self.read_vti(self.room / "vessel/snapshot_000001.vti")
+        with h5py.File(self.room / "asked/snapshot_000001.h5") as file:
+            exact = file["wall_shear_stress"][...]
+        self.assertEqual(set(seen) - {"origin", "spacing", "extent", "time"}, {"pressure", "wall_shear_stress"})
+        self.assertEqual(exact.dtype, numpy.float64)
+        self.assertGreater(abs(exact).max(), 0.05)
+        numpy.testing.assert_array_equal(seen["wall_shear_stress"].ravel(), exact.ravel())
+
     def test_other_formats_are_refused(self):
         done = start(BINARY, *SCENE, "-snapshot_format", "vtk", "-output_dir", self.room / "none")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r"\A[^\n]*-snapshot_format[^\n]*xdmf, vtkhdf[^\n]*\n\Z")
+        self.assertRegex(done.stderr, r"\A[^\n]*-snapshot_format[^\n]*xdmf, vtkhdf, vti[^\n]*\n\Z")
         self.assertFalse((self.room / "none").exists())
 
     @unittest.skipUnless(shutil.which("pvpython"), "pvpython is not installed")

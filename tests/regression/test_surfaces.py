@@ -105,7 +105,9 @@ class Surfaces(unittest.TestCase):
             self.assertRegex(done.stderr, rf"\Arender: [^\n]*{reason}[^\n]*\n\Z")
 
     def test_species_and_vessels(self):
-        """A tube along x before a species of two bodies: names in order; the tube's surface is that of its lumen."""
+        """A tube along x before a species of two bodies: names in order; the tube's surface is that of its lumen, with the stress
+        that the cells at it hold."""
+        from vtkmodules.util.numpy_support import vtk_to_numpy
         with open(self.run_.directory / "options.txt", "a") as file:
             file.write("-species wall,cell\n-wall_shape tube\n-cell_shape sphere\n")
         run = Run(self.run_.directory)
@@ -116,6 +118,8 @@ class Surfaces(unittest.TestCase):
                 file[name + "_cell"] = file[name][...]
             file["solid_fraction_wall"] = numpy.clip(0.5 + (distance - 1.5) / 0.25, 0, 1)
             file["body_wall"] = (distance > 1.4).astype("i4")
+            file["wall_shear_stress"] = (abs(distance - 1.5) < 0.25)[..., None] * numpy.array([0.3, 0.4, 0])
+        run = Run(self.run_.directory)
         surface = Contours(run).all_surfaces(run.snapshots[0])
         names = surface.GetFieldData().GetAbstractArray("species_names")
         self.assertEqual([names.GetValue(n) for n in range(names.GetNumberOfValues())], ["wall", "cell"])
@@ -124,6 +128,13 @@ class Surfaces(unittest.TestCase):
         x, y, z = triangles[species == 1].reshape(-1, 3).T
         numpy.testing.assert_allclose(numpy.hypot(y - 3, z - 2), 1.5, atol=0.05)
         numpy.testing.assert_allclose([x.min(), x.max()], [-0.125, 8.125], atol=0.025)
+        points, stress = (vtk_to_numpy(array) for array in (surface.GetPoints().GetData(), surface.GetPointData().GetArray("wall_shear_stress")))
+        on_lumen = numpy.zeros(len(points), bool)
+        cells = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        on_lumen[cells[species == 1]] = True
+        self.assertTrue(0.3 * len(points) < on_lumen.sum() < 0.9 * len(points))
+        numpy.testing.assert_allclose(stress[on_lumen], 0.5, rtol=1e-6)
+        numpy.testing.assert_array_equal(stress[~on_lumen], 0)
 
     def test_nothing_to_enclose(self):
         with h5py.File(self.run_.snapshots[0].path, "a") as file:

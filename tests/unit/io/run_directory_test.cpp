@@ -43,9 +43,11 @@ TEST(RunDirectory, AnEarlierRunIsRefused) {
 TEST(RunDirectory, OverwriteTakesOnlyWhatIsOurs) {
   const TemporaryDirectory base;
   fs::create_directory(base / "run");
-  const char *const ours[] = {"options.txt",      "series.csv",    "summary.json",           "bodies.h5",
-                              "snapshots.xdmf",   "bodies.h5.tmp", "snapshot_000012.h5",     "checkpoint_000001.h5",
-                              "summary.json.tmp", "walls.xdmf",    "snapshot_000012.vtkhdf", "snapshots.vtkhdf.series"};
+  const char *const ours[] = {
+      "options.txt",         "series.csv",    "summary.json",           "bodies.h5",
+      "snapshots.xdmf",      "bodies.h5.tmp", "snapshot_000012.h5",     "checkpoint_000001.h5",
+      "summary.json.tmp",    "walls.xdmf",    "snapshot_000012.vtkhdf", "snapshots.vtkhdf.series",
+      "snapshot_000012.vti", "snapshots.pvd"};
   const char *const theirs[] = {"notes.txt", "snapshot_000012.h5.old", "my_snapshot_000012.h5", "snapshot_.h5",
                                 "optionsXtxt"};
   for (const char *name : ours) put(base / ("run/" + std::string(name)), "x");
@@ -66,8 +68,7 @@ TEST(RunDirectory, OverwriteTakesOnlyWhatIsOurs) {
   EXPECT_EQ(run.path(), base / "run");
   EXPECT_EQ(text_of(base / "run/options.txt"), "new");
   EXPECT_FALSE(fs::exists(base / "run/.new"));
-  for (const char *name : ours)
-    EXPECT_EQ(fs::exists(base / ("run/" + std::string(name))), name == ours[0]) << name;
+  for (const char *name : ours) EXPECT_EQ(fs::exists(base / ("run/" + std::string(name))), name == ours[0]) << name;
   for (const char *name : theirs) EXPECT_TRUE(fs::exists(base / ("run/" + std::string(name)))) << name;
 }
 

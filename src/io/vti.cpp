@@ -1,0 +1,204 @@
+#include "io/vti.hpp"
+
+#include "io/fail_together.hpp"
+#include "io/text_file.hpp"
+
+#include <unistd.h>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace eulastic {
+namespace {
+
+constexpr const char *stress_name = "wall_shear_stress";
+
+struct CellArray {
+  std::string name;
+  Stored stored;
+  std::size_t components;
+};
+
+std::size_t bytes_of(Stored stored) { return stored == Stored::float64 ? 8 : 4; }
+
+const char *vtk_type(Stored stored) {
+  return stored == Stored::int32 ? "Int32" : stored == Stored::float32 ? "Float32" : "Float64";
+}
+
+hid_t memory_type(Stored stored) {
+  return stored == Stored::int32     ? hdf5_type<int>()
+         : stored == Stored::float32 ? hdf5_type<float>()
+                                     : hdf5_type<double>();
+}
+
+// Copies a snapshot of HDF5 into a .vti file, plane by plane. One rank does, without MPI.
+class Copy {
+public:
+  Copy(const Grid &grid, const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls)
+      : cells_(grid.cells()), spacing_(grid.spacing()), walls_(walls) {
+    for (const SnapshotField &field : drawn)
+      arrays_.push_back({field.format.name, field.format.stored, field.components.size()});
+    bool has_stress = false;
+    for (const CellArray &array : arrays_) has_stress = has_stress || array.name == stress_name;
+    if (!has_stress && !walls.empty()) arrays_.push_back({stress_name, walls[0].format.stored, 3});
+  }
+
+  // Empty, or what went wrong.
+  std::string make(const std::string &from, const std::string &to, double time) {
+    const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+    (void)H5Pset_file_locking(access.get(), false, true);  // the directory is locked
+    from_ = Hdf5FileHandle(H5Fopen(from.c_str(), H5F_ACC_RDONLY, access.get()));
+    if (!from_) return "cannot read " + from;
+    to_.reset(std::fopen(temporary_name(to).c_str(), "we"));
+    if (!to_) return "cannot create " + to + ": " + std::strerror(errno);
+    bool written = write(head(time));
+    for (const CellArray &array : arrays_) written = written && write_array(array);
+    written = written && write("\n  </AppendedData>\n</VTKFile>\n");
+    const int reason = errno;
+    if (std::fclose(to_.release()) == 0 && written) return replace_file(to);
+    ::unlink(temporary_name(to).c_str());
+    return "cannot write " + to + ": " + std::strerror(reason);
+  }
+
+private:
+  std::size_t values_of_plane(const CellArray &array) const {
+    return std::size_t(cells_[0]) * std::size_t(cells_[1]) * array.components;
+  }
+  std::uint64_t bytes_of(const CellArray &array) const {
+    return std::uint64_t(cells_[2]) * values_of_plane(array) * eulastic::bytes_of(array.stored);
+  }
+  // Counts of bytes have 4 bytes in files of version 0.1, which older programs read, and 8 in those of version 1.0.
+  bool is_large() const {
+    for (const CellArray &array : arrays_)
+      if (bytes_of(array) > UINT32_MAX) return true;
+    return false;
+  }
+
+  std::string head(double time) const {
+    const auto number = [](long long n) { return std::to_string(n); };
+    const std::string extent = "0 " + number(cells_[0]) + " 0 " + number(cells_[1]) + " 0 " + number(cells_[2]);
+    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=";
+    text += is_large() ? "\"1.0\" header_type=\"UInt64\"" : "\"0.1\"";
+    text += " byte_order=\"LittleEndian\">\n  <ImageData WholeExtent=\"" + extent + "\" Origin=\"0 0 0\" Spacing=\"" +
+            format_double(spacing_[0]) + " " + format_double(spacing_[1]) + " " + format_double(spacing_[2]) +
+            "\">\n    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+            "format=\"ascii\">" +
+            format_double(time) + "</DataArray>\n    </FieldData>\n    <Piece Extent=\"" + extent +
+            "\">\n      <CellData>\n";
+    std::uint64_t offset = 0;
+    for (const CellArray &array : arrays_) {
+      text += std::string("        <DataArray type=\"") + vtk_type(array.stored) + "\" Name=\"" + array.name +
+              "\" NumberOfComponents=\"" + std::to_string(array.components) + "\" format=\"appended\" offset=\"" +
+              std::to_string(offset) + "\"/>\n";
+      offset += bytes_of(array) + (is_large() ? 8 : 4);
+    }
+    return text + "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
+  }
+
+  bool write(const void *data, std::size_t bytes) { return std::fwrite(data, 1, bytes, to_.get()) == bytes; }
+  bool write(const std::string &text) { return write(text.data(), text.size()); }
+
+  bool write_array(const CellArray &array) {
+    const std::uint64_t bytes = bytes_of(array);
+    const auto less = static_cast<std::uint32_t>(bytes);
+    if (!(is_large() ? write(&bytes, sizeof bytes) : write(&less, sizeof less))) return false;
+    switch (array.stored) {
+      case Stored::float32:
+        return write_planes<float>(array);
+      case Stored::float64:
+        return write_planes<double>(array);
+      case Stored::int32:
+        return write_planes<int>(array);
+    }
+    return false;
+  }
+
+  template <class T>
+  bool write_planes(const CellArray &array) {
+    std::vector<T> plane(values_of_plane(array));
+    const bool there = H5Lexists(from_.get(), array.name.c_str(), H5P_DEFAULT) > 0;
+    for (int k = 0; k < cells_[2]; ++k) {
+      if (there && !read(array.name, {k, 0, 0}, {1, cells_[1], cells_[0]}, array, &plane)) return false;
+      if (!there) std::fill(plane.begin(), plane.end(), T{});
+      if (array.name == stress_name)
+        for (const SnapshotField &wall : walls_)
+          if (!add_wall(array, wall.format, k, &plane)) return false;
+      if (!write(plane.data(), plane.size() * sizeof(T))) return false;
+    }
+    return true;
+  }
+
+  // A part of a dataset: first index and count along z, y, x.
+  template <class T>
+  bool read(const std::string &name, const Int3 &first, const Int3 &count, const CellArray &array,
+            std::vector<T> *values) const {
+    hsize_t start[4] = {}, size[4] = {0, 0, 0, array.components};
+    for (int d = 0; d < 3; ++d) start[d] = hsize_t(first[d]), size[d] = hsize_t(count[d]);
+    const int rank = array.components > 1 ? 4 : 3;
+    const Hdf5Dataset dataset(H5Dopen2(from_.get(), name.c_str(), H5P_DEFAULT));
+    const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(rank, size, nullptr));
+    return H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, size, nullptr) >= 0 &&
+           H5Dread(dataset.get(), memory_type(array.stored), memory_space.get(), file_space.get(), H5P_DEFAULT,
+                   values->data()) >= 0;
+  }
+
+  // The stress on a wall of the box where it is larger than what the cell beside it holds.
+  template <class T>
+  bool add_wall(const CellArray &array, const FieldFormat &wall, int k, std::vector<T> *plane) const {
+    const int d = wall.plane, edge = wall.plane_high ? cells_[d] - 1 : 0;
+    if (d == 2 && k != edge) return true;
+    const int nx = d == 0 ? 1 : cells_[0], ny = d == 1 ? 1 : cells_[1];
+    std::vector<T> stress(std::size_t(nx) * std::size_t(ny) * 3);
+    if (!read(wall.name, {d == 2 ? 0 : k, 0, 0}, {1, ny, nx}, array, &stress)) return false;
+    const auto squared = [](const T *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const T *here = &stress[3 * (std::size_t(j) * std::size_t(nx) + std::size_t(i))];
+        T *cell =
+            &(*plane)[3 * (std::size_t(d == 1 ? edge : j) * std::size_t(cells_[0]) + std::size_t(d == 0 ? edge : i))];
+        if (squared(here) > squared(cell)) std::copy_n(here, 3, cell);
+      }
+    return true;
+  }
+
+  struct Close {
+    void operator()(std::FILE *file) const { (void)std::fclose(file); }
+  };
+  Int3 cells_;
+  Real3 spacing_;
+  std::vector<SnapshotField> walls_;
+  std::vector<CellArray> arrays_;
+  Hdf5FileHandle from_;
+  std::unique_ptr<std::FILE, Close> to_;
+};
+
+}  // namespace
+
+PetscErrorCode write_vti(const Grid &grid, const std::string &directory, const std::string &name, double time,
+                         const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls) {
+  PetscFunctionBeginUser;
+  const std::string path = directory + "/" + name;
+  std::string problem;
+  if (grid.rank() == 0) problem = Copy(grid, drawn, walls).make(path + ".h5", path + ".vti", time);
+  PetscCall(fail_together(grid.comm(), problem));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode write_pvd(MPI_Comm comm, const std::string &directory, const std::vector<SnapshotEntry> &entries) {
+  int rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+  for (const SnapshotEntry &entry : entries) {
+    std::error_code error;
+    if (rank > 0 || !std::filesystem::exists(directory + "/" + entry.name + ".vti", error)) continue;  // rank 0 writes
+    text +=
+        "    <DataSet timestep=\"" + format_double(entry.time) + "\" part=\"0\" file=\"" + entry.name + ".vti\"/>\n";
+  }
+  PetscCall(write_text_file(comm, directory + "/snapshots.pvd", text + "  </Collection>\n</VTKFile>\n"));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
