@@ -11,11 +11,10 @@ def differing_options(runs):
     return [{name: run.options[name] for name in differ if name in run.options} for run in runs]
 
 
-def label_of(run, options):
-    """At most three options, or the name of the directory."""
-    if not options or len(options) > 3:
-        return run.directory.name
-    return ", ".join(f"{name} {value}" for name, value in options.items())
+def labels_of(runs):
+    """For each run the options in which it differs from others, at most three, or else the name of its directory."""
+    return [", ".join(f"{name} {value}" for name, value in options.items()) if 0 < len(options) <= 3 else run.directory.name
+            for run, options in zip(runs, differing_options(runs))]
 
 
 def overlay(runs, quantity, axis=None, labels=None, **style):
@@ -32,7 +31,7 @@ def overlay(runs, quantity, axis=None, labels=None, **style):
         import matplotlib.pyplot
         axis = matplotlib.pyplot.subplots()[1]
     if labels is None:
-        labels = [label_of(run, options) for run, options in zip(runs, differing_options(runs))]
+        labels = labels_of(runs)
     for run, label in zip(runs, labels):
         if not callable(quantity) and quantity not in run.series.dtype.names:
             raise KeyError(f"{quantity}; accepted: {', '.join(run.series.dtype.names)}")

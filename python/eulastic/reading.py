@@ -107,8 +107,8 @@ class Run:
         self.summary = self._if_there("summary.json", lambda path: json.loads(path.read_text()), {})
         self.series = self._if_there("series.csv", read_series, None)
         self.probes = self._if_there("probes.csv", read_series, None)
-        self.profile = {d: read_series(self.directory / f"profile_{d}.csv") for d in "xyz"
-                        if (self.directory / f"profile_{d}.csv").exists()}
+        profiles = {d: self._if_there(f"profile_{d}.csv", read_series, None) for d in "xyz"}
+        self.profile = {d: rows for d, rows in profiles.items() if rows is not None}
         self.bodies = self._if_there("bodies.h5", read_bodies, None)
         snapshots = (_unless_damaged(lambda p: Snapshot(p, self), p) for p in self.directory.glob("snapshot_*.h5"))
         self.snapshots = sorted((s for s in snapshots if s is not None), key=lambda s: s.time)

@@ -207,6 +207,18 @@ class SeveralRuns(WithRoom):
         with self.assertRaisesRegex(KeyError, "heat; accepted: step, time"):
             eulastic.overlay(runs, "heat")
 
+    def test_plot_with_other_runs(self):
+        for name, speed in ("slow", 0.01), ("fast", 0.02):
+            synthetic_run.write_run(self.room / name, speed=speed)
+        start = lambda *words: subprocess.run([ROOT / "scripts/plot", self.room / "slow", "--only", "series", "--format", "svg", *words],
+                                              capture_output=True, text=True)
+        done = start("--with", self.room / "fast")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        words = (self.room / "slow/plot_series.svg").read_text()
+        self.assertEqual([f">{name}<" in words for name in ("slow", "fast")], [True, True])
+        (self.room / "fast/series.csv").unlink()
+        self.assertEqual(start("--with", self.room / "fast").stderr, f"plot: --with {self.room / 'fast'}: there is no series.csv\n")
+
 
 class FilesAsTheProgramReadsThem(WithRoom):
     def test_quotes_includes_and_comments(self):
