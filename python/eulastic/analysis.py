@@ -94,6 +94,13 @@ def tubes(run):
     return [name for name, shape in run.species.items() if shape in ("tube", "constricted_tube")]
 
 
+def refuse_inner_walls(run, what):
+    """Between slabs and in vessels from a file the distance of the walls is not known here."""
+    inner = [name for name, shape in run.species.items() if shape in ("slab", "voxels") and run.is_fixed(name)]
+    if inner:
+        raise ValueError(f"{run.directory}: {what}: {inner[0]} is neither a tube nor a wall of the box")
+
+
 def apparent_viscosity(run, species=None):
     """(nt) at the rows of series.csv: the viscosity with which a Newtonian fluid would have the flow rate of this run, driven
     by its pressure drop. In a tube, `species` or the only one, it is the column NAME_apparent_viscosity (Poiseuille's law); in
@@ -102,6 +109,7 @@ def apparent_viscosity(run, species=None):
     vessels = [species] if species else tubes(run)
     if len(vessels) == 1 and f"{vessels[0]}_apparent_viscosity" in run.series.dtype.names:
         return run.series[f"{vessels[0]}_apparent_viscosity"]
+    refuse_inner_walls(run, "apparent viscosity")
     walls = [d for d in range(dimension(run)) if gap(run, d) > 0]
     if vessels or len(walls) != 1 or direction_of_flow(run) in walls:
         raise ValueError(f"{run.directory}: apparent viscosity: neither a tube (of several, name one) nor a plane channel")
@@ -189,6 +197,7 @@ def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
     The namespace has `time` (nt) of the snapshots; `thickness` (nt), the mean over all walls, and `walls`, {wall: (nt)} for
     each (ymin, ..., or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time
     (roughness); `covered`, the share of the lines that meet a body. ValueError where there is no wall or no snapshot."""
+    refuse_inner_walls(run, "cell-free layer")
     snapshots, walls, every = between(run, since, until), {}, []
     for snapshot in snapshots:
         fraction = (snapshot.fraction_of(species) if species else snapshot.fraction_of_bodies()).astype(float)

@@ -124,10 +124,12 @@ class Run:
         return {name: self.options.get(name + "_shape") for name in names.split(",")} if names else {}
 
     def is_fixed(self, species):
-        """Whether the species is a vessel, a slab, rigid or attached: no body that the flow carries along."""
+        """Whether the species is a vessel or an obstacle (rigid, attached or from a file, membranes aside): no body that the flow
+        carries along."""
         shape, of = self.species[species], lambda name, default: self.options.get(f"{species}_{name}", default)
         attached = of("attached", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
-        return attached == "true" or of("law", "neo_hookean") == "rigid"
+        law = of("law", "neo_hookean")
+        return law == "rigid" or law not in ("membrane", "red_cell") and (attached == "true" or shape == "voxels")
 
     @property
     def cells(self):

@@ -183,6 +183,9 @@ class Walls(WithRoom):
         options = "-grid_cells 4,4,1\n-grid_length 1,1,1\n-species rbc\n-rbc_shape sphere\n"
         with self.assertRaisesRegex(ValueError, "neither a tube nor a wall"):
             self.layer(options, (4, 4, 1), lambda x, y, z, t: 0 * x)
+        for more in "-wall_shape slab\n-wall_interval 0,.1\n", "-wall_shape voxels\n-wall_shear_modulus 1\n":
+            with self.assertRaisesRegex(ValueError, "wall is neither a tube nor a wall of the box"):
+                self.layer("-grid_cells 4,4,1\n-grid_length 1,1,1\n-boundary_y wall\n-species wall\n" + more, (4, 4, 1), lambda x, y, z, t: 0 * x)
         found = self.layer(options + "-boundary_y wall\n", (4, 4, 1), lambda x, y, z, t: 0 * x)
         self.assertEqual(found.covered, 0)
         self.assertTrue(numpy.isnan(found.mean))

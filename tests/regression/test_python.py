@@ -131,6 +131,13 @@ class Sweep(WithRoom):
         self.assertEqual(list(table.pressure_solver), ["acm", "smac"] * 2)
         self.assertEqual([run.cells[0] for run in table.run], [16, 16, 24, 24])
 
+    def test_numbers_of_numpy_and_options_that_are_not_given(self):
+        table = self.sweep({"disc_radius": numpy.array([3, 4]), "disc_shear_modulus": [None, numpy.float32(0.5)]}, time_steps_max=1)
+        self.assertTrue(numpy.issubdtype(table.disc_radius.dtype, numpy.integer))
+        self.assertEqual(list(table.disc_shear_modulus), [None, 0.5] * 2)
+        of_the_case = eulastic.read_options(CASE)["disc_shear_modulus"]
+        self.assertEqual([float(run.options["disc_shear_modulus"]) for run in table.run], [float(of_the_case), 0.5] * 2)
+
     def test_one_that_fails_does_not_end_the_others(self):
         with self.assertRaises(eulastic.RunError) as caught:
             self.sweep({"disc_radius": [-1, 3, "x"]})
