@@ -4,8 +4,9 @@
 #include "app/run.hpp"
 #include "app/signals.hpp"
 #include "base/message_keeper.hpp"
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
-#include "io/hdf5_file.hpp"
+#include "io/hdf5_handle.hpp"
 
 #include <unistd.h>
 #include <cstdio>
@@ -22,7 +23,7 @@ bool finalize() {
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   const MessageKeeper kept;
   if (!PetscFinalize()) return MPI_Finalize() != MPI_SUCCESS;
-  if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", kept.text().c_str());
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: at the end: %s\n", one_line(kept.text()).c_str());
   return true;
 }
 
@@ -71,7 +72,7 @@ int program(int argc, char **argv) {
   (void)PetscCommBuildTwoSidedSetType(PETSC_COMM_WORLD, PETSC_BUILDTWOSIDED_IBARRIER);
   catch_faults();
   const int code = act(parsed);
-  if (Hdf5File::left_open()) MPI_Abort(PETSC_COMM_WORLD, code);
+  if (hdf5_file_left_open) MPI_Abort(PETSC_COMM_WORLD, code);
   return finalize() && code == exit_fine ? exit_failed : code;
 }
 

@@ -139,7 +139,8 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   StageScope stage(Stage::output);
   const State &state = solver_->state();
   PetscCall(measure());
-  if (bodies_file_) PetscCall(bodies_file_->flush());
+  // What could not be written is not tried again: after an fsync that failed the system forgets what it had to write.
+  if (bodies_file_ && summary.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
   summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];
   summary.cells = static_cast<long>(grid_->cell_count());

@@ -4,44 +4,60 @@
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
-#include <string_view>
+#include <cstring>
 
 namespace eulastic {
 namespace {
 
 volatile std::sig_atomic_t caught = 0;
 bool speaks = false;
+int own_rank = 0;
+
+// write(2) alone, as a signal may come inside malloc or printf.
+void say(const char *text) { (void)!::write(STDERR_FILENO, text, std::strlen(text)); }
 
 // The step under way may be long, and a launcher may kill before it ends: a word at once.
 void remember(int signal) {
-  static constexpr std::string_view term = "eulastic: SIGTERM: ends after this step, with a checkpoint\n",
-                                    interrupt = "eulastic: SIGINT: ends after this step, with a checkpoint\n",
-                                    user = "eulastic: SIGUSR1: ends after this step, with a checkpoint\n";
   if (speaks && !caught) {
-    const std::string_view line = signal == SIGTERM ? term : signal == SIGINT ? interrupt : user;
-    (void)!::write(STDERR_FILENO, line.data(), line.size());
+    char line[100] = "eulastic: SIG";
+    const char *name = sigabbrev_np(signal);
+    std::strncat(line, name ? name : "NAL", 20);
+    std::strncat(line, ": ends after this step, with a checkpoint\n", 60);
+    say(line);
   }
   caught = 1;
 }
 
-void handle(int signal, int flags) {
+bool is_ignored(int signal) {
   struct sigaction action {};
-  action.sa_handler = remember;
-  action.sa_flags = SA_RESTART | flags;
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void handle(int signal, void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
   (void)sigaction(signal, &action, nullptr);
 }
 
-// Others must not wait for a rank that is gone.
-PetscErrorCode end_all(int signal, void *) {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+void end_now(int) { _exit(1); }
+
+// Others must not wait for a rank that is gone. MPI_Abort tells them, but takes locks that this process may hold: after
+// five seconds the process ends without it, which the launcher notices.
+void end_all(int signal) {
   char text[160];
   const int length = std::snprintf(
-      text, sizeof text, "eulastic: error: rank %d met signal %d (%s): a defect of the program or the machine\n", rank,
-      signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
+      text, sizeof text, "eulastic: error: rank %d met signal %d (%s): a defect of the program or the machine\n",
+      own_rank, signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
   (void)!::write(STDERR_FILENO, text, static_cast<std::size_t>(length));
+  handle(SIGALRM, end_now, 0);
+  sigset_t alarms;
+  (void)sigemptyset(&alarms);
+  (void)sigaddset(&alarms, SIGALRM);
+  (void)pthread_sigmask(SIG_UNBLOCK, &alarms, nullptr);
+  (void)::alarm(5);
   MPI_Abort(PETSC_COMM_WORLD, 1);
-  return 0;
+  _exit(1);
 }
 
 }  // namespace
@@ -49,16 +65,21 @@ PetscErrorCode end_all(int signal, void *) {
 void catch_faults() {
   PetscBool unwanted = PETSC_FALSE;
   (void)PetscOptionsHasName(nullptr, nullptr, "-no_signal_handler", &unwanted);
-  if (!unwanted) (void)PetscPushSignalHandler(end_all, nullptr);
+  if (unwanted) return;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &own_rank);
+  static char stack[1 << 16];  // the handler's, as a fault may be that the program's own stack has come to its end
+  const stack_t alternative{stack, 0, sizeof stack};
+  (void)sigaltstack(&alternative, nullptr);
+  const int once = static_cast<int>(SA_RESETHAND) | SA_ONSTACK;  // a second fault kills at once
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP}) handle(signal, end_all, once);
 }
 
 void catch_signals() {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  speaks = rank == 0;
-  handle(SIGUSR1, 0);
-  handle(SIGTERM, 0);
-  handle(SIGINT, static_cast<int>(SA_RESETHAND));
+  MPI_Comm_rank(PETSC_COMM_WORLD, &own_rank);
+  speaks = own_rank == 0;
+  for (const int signal : {SIGTERM, SIGUSR1, SIGUSR2, SIGHUP, SIGPIPE, SIGXCPU})
+    if (!is_ignored(signal)) handle(signal, remember, SA_RESTART);  // ignored: as nohup asks for SIGHUP
+  handle(SIGINT, remember, SA_RESTART | static_cast<int>(SA_RESETHAND));
   (void)std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error we report
 }
 

@@ -33,6 +33,8 @@ bool is_file(const std::string &path) {
 }
 
 bool read_file_here(const std::string &path, std::string *bytes) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // a FIFO waits for ever, a device never ends
   std::FILE *file = std::fopen(path.c_str(), "re");
   if (!file) return false;
   char piece[1 << 14];

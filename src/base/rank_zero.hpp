@@ -54,9 +54,9 @@ auto on_rank_0(Look look) {
 }
 
 bool is_file(const std::string &path);
-/// All bytes of a file, read by this rank for itself; false if it cannot be read.
+/// All bytes of a regular file, read by this rank for itself; false if it is none or cannot be read.
 bool read_file_here(const std::string &path, std::string *bytes);
-/// All bytes of a file; false if it cannot be read.
+/// All bytes of a regular file; false if it is none or cannot be read.
 bool read_file(const std::string &path, std::string *bytes);
 
 }  // namespace eulastic

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "io/body_record.hpp"
+#include "io/file_stamp.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <cstdint>
@@ -53,6 +54,7 @@ private:
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
   std::string path_;
+  FileStamp stamp_;    ///< of the file as rank 0 has written it
   BodySpecies known_;  ///< who the bodies are
   std::vector<Column> columns_;
   int width_ = 0;  ///< values of a body in a row

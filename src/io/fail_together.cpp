@@ -1,5 +1,7 @@
 #include "io/fail_together.hpp"
 
+#include "base/one_line.hpp"
+
 #include <unistd.h>
 #include <cstdio>
 
@@ -15,7 +17,7 @@ PetscErrorCode wait_for_others(MPI_Comm comm, MPI_Request *request, int rank, co
   for (const double begin = MPI_Wtime(); !there && MPI_Wtime() < begin + patience; (void)::usleep(1000))
     PetscCallMPI(MPI_Test(request, &there, MPI_STATUS_IGNORE));
   if (!there) {
-    std::fprintf(stderr, "eulastic: error: rank %d alone: %s\n", rank, problem.c_str());
+    std::fprintf(stderr, "eulastic: error: rank %d alone: %s\n", rank, one_line(problem).c_str());
     std::fflush(stderr);
     MPI_Abort(comm, 1);
   }

@@ -5,6 +5,7 @@
 #include "io/text_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <cerrno>
 #include <cstring>
@@ -25,6 +26,8 @@ Hdf5Property parallel_access(MPI_Comm comm) {
 // MPI-IO does not say why it cannot open a file; the system does. Every rank tries: one that alone does not see the
 // directory would wait inside MPI-IO, and the others elsewhere.
 std::string try_to_open(const std::string &path, int flags) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) return path + ": not a regular file";
   const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return "cannot open " + path + ": " + std::strerror(errno);
   (void)::close(file);
@@ -90,8 +93,6 @@ PetscErrorCode Hdf5File::commit() {
   PetscFunctionReturn(0);
 }
 
-bool Hdf5File::left_open_ = false;
-
 // A rank that alone cannot write would leave the others waiting in H5Fclose: then the file stays open.
 // HDF5 1.10 crashes in MPI_Finalize if a file cannot be closed. So an unfinished one first gives its space back: then
 // there is room for what a full disk had no room for.
@@ -99,12 +100,11 @@ Hdf5File::~Hdf5File() {
   if (writing_ && file_) {
     if (ranks_differ(comm_, temporary_name(path_))) {
       file_.forget();
-      left_open_ = true;
     }
     if (mpi_rank_ == 0) (void)!::truncate(temporary_name(path_).c_str(), 0);
     (void)MPI_Barrier(comm_);
   }
-  if (!file_.close()) left_open_ = true;
+  (void)file_.close();
   if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
 }
 

@@ -34,8 +34,6 @@ public:
   Hdf5File(const Hdf5File &) = delete;
   Hdf5File &operator=(const Hdf5File &) = delete;
   ~Hdf5File();
-  /// Local. Some file of this process could not even be closed: HDF5 1.10 will crash in MPI_Finalize.
-  static bool left_open() { return left_open_; }
 
   // All members are collective over the communicator given here.
   PetscErrorCode create(MPI_Comm comm, const std::string &path);
@@ -107,7 +105,6 @@ private:
   PetscErrorCode verify(const std::string &name, std::uint64_t sum);
   PetscErrorCode check(bool fine, const std::string &what) const;
 
-  static bool left_open_;
   MPI_Comm comm_ = MPI_COMM_NULL;
   int mpi_rank_ = 0;
   bool writing_ = false;

@@ -8,6 +8,9 @@
 
 namespace eulastic {
 
+/// Whether a file could not be closed. HDF5 1.10 then crashes in MPI_Finalize, so that the process must end without it.
+inline bool hdf5_file_left_open = false;
+
 template <herr_t (*Close)(hid_t)>
 class Hdf5Handle {
 public:
@@ -28,9 +31,16 @@ public:
   hid_t get() const noexcept { return id_; }
   explicit operator bool() const noexcept { return id_ >= 0; }
   /// Leaves the object open for ever.
-  void forget() noexcept { id_ = H5I_INVALID_HID; }
+  void forget() noexcept {
+    id_ = H5I_INVALID_HID;
+    if constexpr (Close == H5Fclose) hdf5_file_left_open = true;
+  }
   /// False if HDF5 could not: a file's last bytes may fail to reach the disk here.
-  bool close() noexcept { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
+  bool close() noexcept {
+    const bool closed = id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0;
+    if constexpr (Close == H5Fclose) hdf5_file_left_open = hdf5_file_left_open || !closed;
+    return closed;
+  }
 
 private:
   hid_t id_ = H5I_INVALID_HID;

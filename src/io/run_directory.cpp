@@ -45,7 +45,9 @@ std::string RunDirectory::open_locally() {
   std::vector<fs::path> entries;
   if (!list(path_, &entries)) return because("cannot be read");
   if (!entries.empty() && earlier_ == Earlier::refused)
-    return because("is not empty (choose another -output_dir, or -output_overwrite to replace the earlier run)");
+    return because(
+        "is not empty (choose another -output_dir, or -output_overwrite on the command line to replace the earlier "
+        "run)");
   lock_ = ::open((path_ + "/" + lock_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) return because(std::strerror(errno));
   // Any other failure: a file system without locks, where we do without.

@@ -31,9 +31,11 @@ std::uintmax_t bytes_of(const std::string &path, long *rows) {
 }  // namespace
 
 std::string Series::append(const std::string &line) {
+  if (std::string problem = stamp_.difference(path_); !problem.empty()) return problem;
   const bool written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
-  if (std::fflush(file_.get()) == 0 && written) return {};
-  return "cannot write " + path_ + ": " + std::strerror(errno);
+  if (std::fflush(file_.get()) != 0 || !written) return "cannot write " + path_ + ": " + std::strerror(errno);
+  stamp_.take(path_);
+  return {};
 }
 
 PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::vector<std::string> &columns,
@@ -53,6 +55,7 @@ PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::v
     if (first == header) std::filesystem::resize_file(path, bytes_of(path, &rows_kept), error);
     if (first == header) rows_ = rows_kept;
     file_.reset(std::fopen(path.c_str(), "ae"));
+    stamp_.take(path);
     if (error || !file_)
       problem = "cannot open " + path + ": " + (error ? error.message() : std::strerror(errno));
     else if (first.empty())

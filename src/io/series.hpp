@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "io/file_stamp.hpp"
 
 #include <cstdio>
 #include <limits>
@@ -34,6 +35,7 @@ private:
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   std::string path_;
+  FileStamp stamp_;
   std::size_t columns_ = 0;
   long rows_ = 0;
   std::unique_ptr<std::FILE, Close> file_;

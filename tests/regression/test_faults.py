@@ -62,6 +62,25 @@ class Faults(Restart):
         self.fails("exit", "EulACM", 1)  # Open MPI has the word
         self.fails("memory", "EulACM", 2, ranks=3)
 
+    def test_crash_that_holds_a_lock(self):
+        lines = self.fails("locked", "EulMomentum", 1)
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn("rank 1 met signal 11", lines[0])
+
+    def test_a_failed_fsync_is_not_tried_again(self):
+        self.environment["LD_PRELOAD"] = LIBRARY
+        for name in "checkpoint_", "bodies.h5", "series.csv", "snapshot_", "summary.json":
+            for count in 1, 3:
+                with self.subTest(name, count=count):
+                    shutil.rmtree(self.room / "run", ignore_errors=True)
+                    self.environment["EULASTIC_FSYNC"] = f"{name} {count}"
+                    result = self.call(*FLAT, *OFTEN, "-snapshot_interval", ".05", "-time_steps_max", 30, "-output_dir", "run")
+                    self.assertEqual(result.returncode, 1, result.stderr)
+                    self.assertRegex(result.stderr, r"\Aeulastic: error: [^\n]+\n\Z")
+                    self.assertIn(name.rstrip("_"), result.stderr)
+                    if name == "checkpoint_":
+                        self.assertEqual(len(self.checkpoints()), count // 2)  # each is synced twice
+
     def test_flush_of_one_rank(self):
         for rank in (0, 1):  # the other waits inside HDF5
             with self.subTest(rank):

@@ -7,8 +7,10 @@
 //   absent   it cannot open files that are being written
 //   flush    its next H5Fflush fails, and it alone does not take part
 //   crash    it meets SIGSEGV
+//   locked   it meets SIGSEGV while it holds a lock that MPI_Abort waits for
 //   exit     it leaves without a word
-// Deadline (io/deadline.hpp) waits three seconds, not five minutes.
+// EULASTIC_FSYNC="NAME COUNT": the COUNT-th fsync of a file with NAME in its path fails, and a later one of that file
+// is reported. Deadline (io/deadline.hpp) waits three seconds, not five minutes.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <hdf5.h>
@@ -18,6 +20,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
@@ -30,6 +33,7 @@
 #undef MPI_Iallreduce
 #undef MPI_Startall
 #undef MPI_Bcast
+#undef MPI_Abort
 
 namespace {
 
@@ -44,7 +48,8 @@ PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscOb
   if (rank != wanted_rank || --left > 0) return 0;
   std::fprintf(stderr, "fault: %s in %s\n", kind, verb);
   if (!std::strcmp(kind, "memory")) throw std::bad_alloc();
-  if (!std::strcmp(kind, "crash")) std::raise(SIGSEGV);
+  met = !std::strcmp(kind, "locked");
+  if (!std::strcmp(kind, "crash") || met) std::raise(SIGSEGV);
   if (!std::strcmp(kind, "exit")) _exit(0);
   (std::strcmp(kind, "error") ? met : next_call_fails) = true;
   return 0;
@@ -91,6 +96,30 @@ int MPI_Startall(int count, MPI_Request requests[]) {
 int MPI_Bcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm comm) {
   const int failed = fails();
   return failed ? failed : PMPI_Bcast(buffer, count, type, root, comm);
+}
+
+int MPI_Abort(MPI_Comm comm, int code) {
+  while (meets("locked")) ::pause();
+  return PMPI_Abort(comm, code);
+}
+
+int fsync(int file) {
+  static char failed[PATH_MAX];
+  static int count = 0;
+  char name[64] = "", link[32], path[PATH_MAX] = "";
+  int wanted = 0;
+  const char *fault = std::getenv("EULASTIC_FSYNC");
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+  if (fault && std::sscanf(fault, "%63s %d", name, &wanted) == 2 && ::readlink(link, path, sizeof path - 1) > 0 &&
+      std::strstr(path, name)) {
+    if (failed[0] && !std::strcmp(path, failed)) std::fprintf(stderr, "fault: fsync again of %s\n", path);
+    if (++count == wanted) {
+      std::strcpy(failed, path);
+      errno = EIO;
+      return -1;
+    }
+  }
+  return next<int(int)>("fsync")(file);
 }
 
 int MPI_File_open(MPI_Comm comm, const char *name, int mode, MPI_Info info, MPI_File *file) {
