@@ -67,10 +67,10 @@ def stop(process):
         os.killpg(process.pid, signal.SIGTERM)
 
 
-def launch(case, directory, ranks, options, say, started=lambda process: None):
+def launch(case, directory, ranks, options, say, replace=False, started=lambda process: None):
     """Runs to the end and returns the Run; options are texts, `say` gets the lines on the way."""
     words = [word for name, text in options.items() for word in (f"-{name}", text)]
-    command = ["bash", SCRIPT, "--ranks", str(ranks), case, directory, *words]
+    command = ["bash", SCRIPT, "--ranks", str(ranks), *(["--replace"] if replace else []), case, directory, *words]
     # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                start_new_session=True)
@@ -92,11 +92,12 @@ def launch(case, directory, ranks, options, say, started=lambda process: None):
     return Run(directory)
 
 
-def run(case, output_dir=None, ranks=2, progress=True, **options):
+def run(case, output_dir=None, ranks=2, progress=True, replace=False, **options):
     """Runs a case, a file or the name of one that comes with the program, and returns its Run.
 
     output_dir  where the results go, by default output/CASE
     progress    prints the program's lines: percent, time left; a function is called with each
+    replace     a run that is there is lost; otherwise one that has other options or a later end is a RunError
     options     those of the program without dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0),
                 probe_points=[(0, 1, 2), (3, 4, 5)]; None: not given
 
@@ -105,17 +106,17 @@ def run(case, output_dir=None, ranks=2, progress=True, **options):
     """
     directory = output_dir or pathlib.Path("output") / pathlib.Path(case).stem
     say = progress if callable(progress) else print if progress else lambda _: None
-    return launch(case, directory, ranks, option_words(options), say)
+    return launch(case, directory, ranks, option_words(options), say, replace)
 
 
-def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options):
+def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, replace=False, **options):
     """Runs a case with every combination of the options in `grid`, {option: values}, `jobs` at a time.
 
     Returns a numpy record array with a row per run, in the order of the grid: the options of the grid, the numbers and
     words of summary.json, and `run`, the Run. Its directories are output_dir/OPTION=VALUE+..., by default in
     output/CASE_sweep; what is finished there is not repeated. If runs fail the others go on to their end, and RunError
     says what was wrong with each; its `table` has the rows of the others. `progress` prints a line when a run has ended;
-    `ranks` are those of each run, `options` are for all.
+    `ranks` are those of each run, `options` and `replace`, as in run(), are for all.
     """
     folder = pathlib.Path(output_dir or pathlib.Path("output") / f"{pathlib.Path(case).stem}_sweep")
     points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
@@ -127,7 +128,8 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, **options
 
     def one(texts, name):
         try:
-            result = launch(case, folder / name, ranks, {**common, **texts}, lambda _: None, processes.append)
+            result = launch(case, folder / name, ranks, {**common, **texts}, lambda _: None, replace,
+                            processes.append)
         except RunError as error:
             result = error
         with lock:

@@ -41,7 +41,8 @@ int Checkpoints::wishes() const {
   const double now = MPI_Wtime();
   int wishes = signal_caught() ? wish_signal : 0;
   if (solver_->grid().rank() > 0) return wishes;
-  if (control_.wall_minutes > 0 && now - last_wall_ >= 60 * control_.wall_minutes) wishes |= wish_checkpoint;
+  if (control_.keep > 0 && control_.wall_minutes > 0 && now - last_wall_ >= 60 * control_.wall_minutes)
+    wishes |= wish_checkpoint;
   if (control_.stop_after_minutes > 0 && now - begin_ >= 60 * control_.stop_after_minutes) wishes |= wish_wall_limit;
   return wishes;
 }

@@ -84,14 +84,11 @@ struct SampleControl {
 };
 
 struct CheckpointControl {
-  double interval = 0;      ///< simulated time; 0 = none
-  double wall_minutes = 0;  ///< since the last one; 0 = none
+  double interval = 0;       ///< simulated time; 0 = none
+  double wall_minutes = 30;  ///< since the last one; 0 = none
   long keep = 2;
   double stop_after_minutes = 0;  ///< of wall time; 0 = never
   std::string restart;            ///< a checkpoint, or a directory with some; empty = begin at t = 0
-
-  /// Whether the run writes any but the one that a signal or stop_after_minutes asks for.
-  bool regular() const { return interval > 0 || wall_minutes > 0; }
 };
 
 /// Bounds that stop a run; 0 = none.

@@ -17,9 +17,12 @@ namespace {
 
 const char *introduction =
     "Options stand in PETSc style, -name value, on the command line or in an options file with lines -name value\n"
-    "(# starts a comment). The command line wins over the environment variable PETSC_OPTIONS, which wins over the\n"
-    "file; .petscrc is not read. Lists have commas and no spaces. Units are any consistent set. Wrong input ends the\n"
-    "program with exit code 2, before anything is written.\n";
+    "(# starts a comment, \"...\" holds a value together). The command line wins over the environment variable\n"
+    "PETSC_OPTIONS, which wins over the file; .petscrc is not read. The value none makes an option of the file not "
+    "given;\n"
+    "an option of the file that another one has made meaningless is dropped with a warning. Lists have commas and no\n"
+    "spaces. Units are any consistent set. Wrong input ends the program with exit code 2, before anything is "
+    "written.\n";
 
 // One species stands for all.
 Config example() {

@@ -28,7 +28,7 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
                               "shape of the velocity into the box: uniform; developed, that of a steady flow along the "
                               "side; or one number per cell, of a text or an HDF5 file (docs/howto/vessel.md)");
   profile.accepted = "uniform, developed, or a path, of HDF5 also FILE:DATASET";
-  profile.is_input = true;
+  profile.names_file = [](const std::string &value) { return value != "uniform" && value != "developed"; };
   for (const bool flow : {false, true}) {
     std::string &target = flow ? spec.flow_rate : spec.velocity;
     Option &row =
@@ -38,7 +38,10 @@ void add_inflow(Rows &rows, Config &config, const std::string &side, int d, int 
     row.unit = flow ? "volume/time" : "length/time";
     row.accepted = "a number, or a path to a table of time,value";
     row.default_note = flow ? "" : "this or the flow rate is required, but with a file as profile";
-    row.is_input = true;
+    row.names_file = [](const std::string &value) {
+      double number;
+      return !read_reals(value, any_number, &number, 1).empty();
+    };
   }
   rows.real(name + "_frequency", spec.frequency, not_negative, "1/time",
             "angular frequency: times cos(frequency t + phase)");
@@ -55,7 +58,7 @@ void add_pressure(Rows &rows, Config &config, const std::string &side, int d, in
   rows.real("pressure_" + side + "_value", spec.value, any_number, "pressure", "pressure on the side");
   Option &table = rows.path("pressure_" + side + "_table", spec.table, "the pressure over time, in place of the value");
   table.accepted = "a path to a table of time,value";
-  table.is_input = true;
+  table.names_file = any_file;
   add_table_ends(rows, spec, "pressure_" + side);
   rows.real("pressure_" + side + "_resistance", spec.resistance, not_negative, "pressure time/volume",
             "the pressure rises by this times the flow rate out of the box");

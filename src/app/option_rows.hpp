@@ -11,6 +11,9 @@ namespace eulastic {
 
 using Names = std::vector<std::string>;
 
+/// For Option::names_file of an option whose every value is a path.
+inline bool any_file(const std::string &) { return true; }
+
 inline std::string several(std::size_t count, const std::string &noun, const Range &range) {
   return (count == 1 ? (noun[0] == 'i' ? "an " : "a ") + noun : std::to_string(count) + " " + noun + "s") +
          range.text() + (count == 1 ? "" : ", separated by commas");

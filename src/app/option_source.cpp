@@ -64,7 +64,8 @@ std::string read_words_as_entries(const std::vector<std::string> &words, const s
 
 std::string split_words(const std::string &line, std::vector<std::string> *words) {
   bool inside = false, quoted = false;
-  for (char c : line) {
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    char c = line[at];
     if (!quoted && (std::isspace(static_cast<unsigned char>(c)))) {
       inside = false;
       continue;
@@ -72,7 +73,9 @@ std::string split_words(const std::string &line, std::vector<std::string> *words
     if (!inside && c == '#') break;
     if (!inside) words->emplace_back();
     inside = true;
-    if (c == '"')
+    const bool escape = quoted && c == '\\' && at + 1 < line.size() && (line[at + 1] == '"' || line[at + 1] == '\\');
+    if (escape) c = line[++at];
+    if (c == '"' && !escape)
       quoted = !quoted;
     else
       words->back() += c;
@@ -80,14 +83,26 @@ std::string split_words(const std::string &line, std::vector<std::string> *words
   return quoted ? "a quote is not closed" : "";
 }
 
+std::string quote_word(const std::string &word) {
+  if (!word.empty() && word.find_first_of(" \t#\"") == std::string::npos) return word;
+  std::string text;
+  for (const char c : word) text += (c == '"' || c == '\\') ? std::string{'\\', c} : std::string(1, c);
+  return '"' + text + '"';
+}
+
 namespace {
 
 std::string read_entries(const std::string &path, int depth, std::vector<Source> *sources) {
+  constexpr int deepest = 8;
+  constexpr std::size_t most = 100;
   std::string text, line;
-  if (depth > 8) return "-options_file: " + path + " brings in itself";
+  if (depth > deepest || sources->size() >= most)
+    return "-options_file: " + path +
+           " brings in itself, or too many files; accepted: files within files to a depth of " +
+           std::to_string(deepest) + ", at most " + std::to_string(most) + " in all";
   if (!read_file(path, &text))
     return "options file " + path +
-           " cannot be read; accepted: one options file and options -name value, lists without spaces";
+           " cannot be read; accepted: one regular file of options and options -name value, lists without spaces";
   std::istringstream file(text);
   Source entries;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -118,7 +133,7 @@ std::string find_input(const Entry &entry) {
   const auto is_there = [](const fs::path &place) {
     std::error_code ignored;
     const std::string text = place.string();
-    return fs::exists(place, ignored) || fs::exists(text.substr(0, text.rfind(':')), ignored);
+    return fs::is_regular_file(place, ignored) || fs::is_regular_file(text.substr(0, text.rfind(':')), ignored);
   };
   const fs::path path = entry.value;
   if (entry.options_file.empty() || path.is_absolute()) return entry.value;

@@ -24,7 +24,10 @@ std::string read_words_as_entries(const std::vector<std::string> &words, const s
 std::string read_options_file(const std::string &path, std::vector<Source> *sources);
 /// The file (or FILE:DATASET) an entry names: as it is, or if it is not there, beside the options file.
 std::string find_input(const Entry &entry);
-/// Words of a line: separated by white space, "..." holds a word together, # before a word starts a comment.
+/// Words of a line: separated by white space, "..." holds a word together and within it \" is a quote and \\ a
+/// backslash, # before a word starts a comment.
 std::string split_words(const std::string &line, std::vector<std::string> *words);
+/// The word as split_words() reads it back.
+std::string quote_word(const std::string &word);
 
 }  // namespace eulastic

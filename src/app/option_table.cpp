@@ -81,7 +81,7 @@ void add_flow(Rows &rows, Config &config) {
   rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
   rows.path("initial_state", config.initial_state,
             "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)")
-      .is_input = true;
+      .names_file = any_file;
 }
 
 void add_bodies(Rows &rows, Config &config) {
@@ -199,7 +199,9 @@ void add_running(Rows &rows, Config &config) {
   rows.group = "Output";
   OutputControl &output = config.output;
   rows.path("output_dir", output.directory, "directory of everything that is written");
-  rows.boolean("output_overwrite", output.overwrite, "replace the output of an earlier run");
+  rows.boolean("output_overwrite", output.overwrite,
+               "replaces the run that -output_dir holds; counts only on the command line, not in a file of options")
+      .command_line = true;
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
             "time between snapshots, the start and the end included; 0 = none");
   rows.choice(
@@ -220,10 +222,15 @@ void add_running(Rows &rows, Config &config) {
 
   rows.group = "Checkpoints and restart";
   CheckpointControl &checkpoint = config.checkpoint;
+  const std::size_t regular = rows.rows.size();
   rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
-            "time between checkpoints, and one before the end; 0 = none");
+            "simulated time between checkpoints; 0 = none but by wall time and before the end");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
-            "wall time between checkpoints, and one before the end; 0 = none");
+            "wall time between checkpoints; 0 = none but by simulated time and before the end");
+  for (std::size_t r = regular; r < rows.rows.size(); ++r) {
+    rows.rows[r].only_with = "-checkpoint_keep > 0";
+    rows.rows[r].applies = [&checkpoint] { return checkpoint.keep > 0; };
+  }
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
                "checkpoints that stay; a run that ends well leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",

@@ -19,11 +19,13 @@ struct Option {
   std::string accepted;  ///< in words, e.g. "3 numbers > 0, separated by commas"
   bool bare = false;     ///< may stand without a value
   bool required = false;
-  bool may_change = false;   ///< at a restart
-  bool is_input = false;     ///< a file to read: if it is not there, it is looked for beside the options file
-  std::string alias_of;      ///< another way to give that option
-  std::string default_note;  ///< what happens when it is not given, if the initial value does not say it
+  bool may_change = false;    ///< at a restart
+  bool command_line = false;  ///< counts only there: a file of options cannot give it, and options.txt leaves it out
+  std::string alias_of;       ///< another way to give that option
+  std::string default_note;   ///< what happens when it is not given, if the initial value does not say it
 
+  /// Whether a value names a file to read, which is then also looked for beside the options file; null = no value does.
+  std::function<bool(const std::string &value)> names_file;
   /// Reads a value into the Config; returns what is wrong with it, or nothing.
   std::function<std::string(const std::string &value)> read;
   /// The member's present value as the user would write it; empty = none.

@@ -119,7 +119,7 @@ std::string read_words(const std::string &text, const std::vector<std::string> &
 
 std::string read_text(const std::string &text, std::string *target) {
   for (unsigned char c : text)
-    if (c == '"' || c < 0x20 || c == 0x7f) return "a quote or control character in the value";
+    if (c < 0x20 || c == 0x7f) return "a control character in the value";
   *target = text;
   return {};
 }

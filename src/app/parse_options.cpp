@@ -10,6 +10,7 @@
 #include "app/red_cell.hpp"
 #include "app/unknown_option.hpp"
 #include "app/validate.hpp"
+#include "base/one_line.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -19,13 +20,15 @@
 namespace eulastic {
 namespace {
 
-// What the highest source says of an option, or null.
+constexpr const char *unset = "none";  // the value that makes an option of a lower source not given
+
+// The entry of the highest source that gives an option, or null.
 const Entry *last_given(const std::vector<Source> &sources, const std::string &name) {
   const Entry *given = nullptr;
   for (const Source &source : sources)
     for (const Entry &entry : source)
       if (entry.name == name) given = &entry;
-  return given;
+  return given && given->value != unset ? given : nullptr;
 }
 
 // Names of the species, from the highest source that gives any.
@@ -47,6 +50,11 @@ std::string read_species(const std::vector<Source> &sources, Config *config) {
   return wrong.empty() ? wrong : "-species: " + wrong + given->where;
 }
 
+// An option that a file gives and whose meaning a higher source has taken.
+struct Lost {
+  std::string name, only_with, where;
+};
+
 class Reader {
 public:
   explicit Reader(std::vector<Option> &table) : table_(table) {
@@ -56,15 +64,32 @@ public:
     }
   }
 
-  /// Reads one source over what is there.
-  std::string read(const Source &source) {
+  /// Removes options with the value none, and what lower sources say of them.
+  void remove_unset(std::vector<Source> *sources) const {
+    std::set<std::string> removed;
+    for (auto source = sources->rbegin(); source != sources->rend(); ++source) {
+      std::set<std::string> here;
+      const auto is_unset = [&](const Entry &entry) {
+        const auto found = index_.find(entry.name);
+        if (found == index_.end() || entry.name == "output_dir") return false;  // a directory may have this name
+        const std::string &name = target(*found->second);
+        if (entry.value == unset) here.insert(name);
+        return entry.value == unset || removed.count(name) > 0;
+      };
+      source->erase(std::remove_if(source->begin(), source->end(), is_unset), source->end());
+      removed.merge(here);
+    }
+  }
+
+  /// Reads one source over those before it.
+  std::string read(const Source &source, bool is_last) {
     std::set<std::string> here;
     for (const Entry &entry : source) {
       if (is_petsc_option(entry.name)) continue;
       const auto found = index_.find(entry.name);
       if (found == index_.end()) return unknown_option(entry.name, table_) + entry.where;
       const Option &option = *found->second;
-      const std::string &name = option.alias_of.empty() ? option.name : option.alias_of;
+      const std::string &name = target(option);
       const auto refuse = [&](const std::string &what) {
         return "-" + entry.name + ": " + what + "; accepted: " + option.accepted + entry.where;
       };
@@ -72,80 +97,149 @@ public:
         return refuse(option.alias_of.empty() ? "given twice" : "given twice, also as -" + name);
       if (entry.value.empty() && !option.bare) return refuse("a value is missing");
       if (!option.read) return refuse("out of place");
-      const std::string wrong = option.read(entry.value.empty() ? "true"
-                                            : option.is_input   ? find_input(entry)
-                                                                : entry.value);
+      const bool is_file = option.names_file && option.names_file(entry.value);
+      const std::string wrong = option.read(entry.value.empty() ? "true" : is_file ? find_input(entry) : entry.value);
       if (!wrong.empty()) {
         const std::string why = option.accepted.rfind("one of ", 0) == 0 ? not_supported(entry.value) : "";
         return refuse(wrong + (why.empty() ? "" : "; " + why));
       }
-      where_[name] = entry.where;
+      given_[name] = {entry.where, false};
     }
+    for (const std::string &name : here) given_[name].may_lose = !is_last && applies(*index_.at(name));
     return clash_;
   }
 
-  /// Options that are missing or have no meaning beside the others.
-  std::string check_given() const {
+  /// Options that are missing, or that have no meaning beside the others. `lost`: those that had one in their own file.
+  std::string check_given(std::vector<Lost> *lost) const {
     for (const Option &option : table_) {
-      const bool applies = !option.applies || option.applies();
-      const auto given = where_.find(option.name);
-      if (given != where_.end() && !applies)
-        return "-" + option.name + ": has a meaning only with " + option.only_with + given->second;
-      if (given == where_.end() && applies && option.required)
+      const auto given = given_.find(option.name);
+      if (given != given_.end() && !applies(option)) {
+        if (!given->second.may_lose)
+          return "-" + option.name + ": has a meaning only with " + option.only_with + given->second.where;
+        lost->push_back({option.name, option.only_with, given->second.where});
+      }
+      if (given == given_.end() && applies(option) && option.required)
         return "-" + option.name + ": must be given; accepted: " + option.accepted;
     }
     return {};
   }
-  /// As if it were given, where it is not.
+  /// Sets an option that was not given, as if it were.
   void preset(const std::string &name, const std::string &value) {
     if (!given(name)) (void)index_.at(name)->read(value);
-    where_.emplace(name, "");
+    given_.emplace(name, Given{});
   }
-  bool given(const std::string &name) const { return where_.count(name) > 0; }
+  bool given(const std::string &name) const { return given_.count(name) > 0; }
 
 private:
+  struct Given {
+    std::string where;
+    bool may_lose = false;  ///< had a meaning when its source had been read, and is not of the command line
+  };
+  static bool applies(const Option &option) { return !option.applies || option.applies(); }
+  static const std::string &target(const Option &option) {
+    return option.alias_of.empty() ? option.name : option.alias_of;
+  }
+
   const std::vector<Option> &table_;
   std::map<std::string, const Option *> index_;
-  std::map<std::string, std::string> where_;  ///< of what was given
+  std::map<std::string, Given> given_;
   std::string clash_;
 };
 
-std::string read_sources(const std::vector<Source> &sources, Config *config) {
-  if (std::string wrong = read_species(sources, config); !wrong.empty()) return wrong;
-  if (const Entry *method = last_given(sources, "method"))
+// PETSc's part of the pressure solver, which means something with one of them only. `had_ksp`: whether that was chosen
+// when each source had been read.
+std::string check_petsc_entries(const std::vector<Source> &sources, const Config &config,
+                                const std::vector<bool> &had_ksp, std::vector<Lost> *lost) {
+  const std::string needed = "-pressure_solver ksp";
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    for (const Entry &entry : sources[s]) {
+      if (is_pressure_ksp_option(entry.name) && config.method.pressure != PressureKind::ksp) {
+        if (!had_ksp[s] || s + 1 == sources.size())
+          return "-" + entry.name + ": has a meaning only with " + needed + entry.where;
+        lost->push_back({entry.name, needed, entry.where});
+      }
+      if (const std::string wrong = check_petsc_value(entry.name, entry.value, config.output.directory); !wrong.empty())
+        return wrong + entry.where;
+    }
+  return {};
+}
+
+// Reads all sources into `config`. `lost`: options that are to be removed, after which all is read once more.
+std::string read_sources_once(std::vector<Source> *sources, Config *config, std::vector<Lost> *lost) {
+  if (std::string wrong = read_species(*sources, config); !wrong.empty()) return wrong;
+  if (const Entry *method = last_given(*sources, "method"))
     (void)read_method(method->value, config);  // what is wrong with it is reported later
-  if (const Entry *state = last_given(sources, "initial_state")) {
+  if (const Entry *state = last_given(*sources, "initial_state")) {
     config->initial_state = find_input(*state);
     for (SpeciesSpec &spec : config->species) spec.shape = Shape::state;
   }
   std::vector<Option> table = option_table(*config);
   Reader reader(table);
-  for (const Source &source : sources)
-    if (std::string wrong = reader.read(source); !wrong.empty()) return wrong;
+  reader.remove_unset(sources);
+  std::vector<bool> had_ksp;
+  for (const Source &source : *sources) {
+    if (std::string wrong = reader.read(source, &source == &sources->back()); !wrong.empty()) return wrong;
+    had_ksp.push_back(config->method.pressure == PressureKind::ksp);
+  }
   for (int d = 0; d < 3; ++d)
     config->grid.boundary[d] = config->boundary.bounded(d) ? Boundary::wall : Boundary::periodic;
   for (const SpeciesSpec &spec : config->species)
     if (spec.law == Law::red_cell)
       for (const auto &[name, value] : red_cell_preset()) reader.preset(spec.name + "_" + name, value);
-  if (std::string wrong = reader.check_given(); !wrong.empty()) return wrong;
-  if (std::string wrong = resolve_openings(config); !wrong.empty()) return wrong;
-  for (const Source &source : sources)
-    for (const Entry &entry : source) {
-      if (is_pressure_ksp_option(entry.name) && config->method.pressure != PressureKind::ksp)
-        return "-" + entry.name + ": has a meaning only with -pressure_solver ksp" + entry.where;
-      if (const std::string wrong = check_petsc_value(entry.name, entry.value); !wrong.empty())
-        return wrong + entry.where;
-    }
+  if (std::string wrong = reader.check_given(lost); !wrong.empty()) return wrong;
+  if (std::string wrong = check_petsc_entries(*sources, *config, had_ksp, lost); !wrong.empty()) return wrong;
   for (SpeciesSpec &spec : config->species) {
     spec.centre_given = reader.given(spec.name + "_centre");
     const Real3 &length = config->grid.length;
     if (!spec.centre_given) spec.centre = {length[0] / 2, length[1] / 2, length[2] / 2};
   }
+  return {};
+}
+
+// One line for all options that need the same.
+void remove_lost(const std::vector<Lost> &lost, std::vector<Source> *sources, std::vector<std::string> *warnings) {
+  std::map<std::string, std::string> lines;
+  for (const Lost &one : lost) {
+    std::string &line = lines[one.only_with];
+    line += (line.empty() ? "-" : ", -") + one.name + one.where;
+  }
+  for (const auto &[only_with, names] : lines)
+    warnings->push_back(names + ": dropped, as it has a meaning only with " + only_with);
+  for (Source &source : *sources)
+    source.erase(std::remove_if(source.begin(), source.end(),
+                                [&](const Entry &entry) {
+                                  return std::any_of(lost.begin(), lost.end(),
+                                                     [&](const Lost &one) { return one.name == entry.name; });
+                                }),
+                 source.end());
+}
+
+std::string read_sources(std::vector<Source> *sources, Config *config, std::vector<std::string> *warnings) {
+  const Config fresh = *config;
+  for (std::vector<Lost> lost;; lost.clear()) {
+    *config = fresh;
+    if (std::string wrong = read_sources_once(sources, config, &lost); !wrong.empty()) return wrong;
+    if (lost.empty()) break;
+    remove_lost(lost, sources, warnings);
+  }
+  if (std::string wrong = resolve_openings(config); !wrong.empty()) return wrong;
   if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
   const Method &method = config->method;
   const bool paper = method.interface == InterfaceScheme::weno5 && method.exterior == SolidExterior::identity;
   if (paper || config->species.empty()) config->grid.ghosts = Grid::stencil_width;
   return validate(config);
+}
+
+// Removes options that count on the command line alone.
+void leave_to_command_line(Source *source, std::vector<std::string> *warnings) {
+  const auto counts_elsewhere = [&](const Entry &entry) {
+    if (entry.name != "output_overwrite") return false;
+    bool asked = true;
+    (void)read_boolean(entry.value, &asked);
+    if (asked) warnings->push_back("-" + entry.name + ": counts only on the command line" + entry.where);
+    return true;
+  };
+  source->erase(std::remove_if(source->begin(), source->end(), counts_elsewhere), source->end());
 }
 
 std::string parse_into(const std::vector<std::string> &arguments, ParseResult *result) {
@@ -160,15 +254,16 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
   if (wrong.empty()) wrong = read_words_as_entries(words, " (in PETSC_OPTIONS)", &environment, nullptr);
   if (!wrong.empty()) return wrong;
   sources.push_back(std::move(environment));
+  for (Source &source : sources) leave_to_command_line(&source, &result->warnings);
   sources.push_back(std::move(command_line));
-
+  wrong = read_sources(&sources, &result->config, &result->warnings);
   for (const Source &source : sources)
     for (const Entry &entry : source)
       if (is_petsc_option(entry.name)) {
         result->petsc_arguments.push_back("-" + entry.name);
         if (!entry.value.empty()) result->petsc_arguments.push_back(entry.value);
       }
-  return read_sources(sources, &result->config);
+  return wrong;
 }
 
 }  // namespace
@@ -202,11 +297,7 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
   if (!result.message.empty()) return result;
   if (result.error.empty()) result.error = parse_into(arguments, &result);
   if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
-  constexpr std::size_t longest = 1000;                         // what was typed may be longer than anybody reads
-  if (const std::size_t length = result.error.size(); length > longest)
-    result.error.replace(longest / 2, length - longest, " ... ");
-  for (char &c : result.error)
-    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';  // one line, whatever was typed
+  result.error = one_line(result.error);
   return result;
 }
 
@@ -219,12 +310,11 @@ std::string options_text(const ParseResult &result) {
     text += "\n";
   }
   const auto line = [&](const std::string &name, const std::string &value) {
-    const bool quotes = value.find_first_of(" #") != std::string::npos;
-    text += "-" + name + (value.empty() ? "" : quotes ? " \"" + value + '"' : " " + value) + "\n";
+    text += "-" + name + (value.empty() ? "" : " " + quote_word(value)) + "\n";
   };
   std::string group;
   for (const Option &option : option_table(config)) {
-    if (!option.text || (option.applies && !option.applies())) continue;
+    if (!option.text || option.command_line || (option.applies && !option.applies())) continue;
     const std::string value = option.text();
     if (value.empty()) continue;
     if (option.group != group) text += "\n# " + (group = option.group) + "\n";

@@ -10,10 +10,11 @@ namespace eulastic {
 
 struct ParseResult {
   Config config;
-  std::string error;                 ///< one line without "eulastic: error: ", empty if all is well; exit code 2
-  std::string message;               ///< -help, -version: print to stdout and exit 0
-  bool alone = false;                ///< nothing was asked for: the message is the usage, the exit code 2
-  std::string program = "eulastic";  ///< as it was started
+  std::string error;                  ///< one line without "eulastic: error: ", empty if all is well; exit code 2
+  std::vector<std::string> warnings;  ///< one line each, without "eulastic: warning: "
+  std::string message;                ///< -help, -version: print to stdout and exit 0
+  bool alone = false;                 ///< nothing was asked for: the message is the usage, the exit code 2
+  std::string program = "eulastic";   ///< as it was started
   /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
   /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
   std::vector<std::string> petsc_arguments;

@@ -1,10 +1,13 @@
 #include "app/petsc_options.hpp"
 
 #include "base/rank_zero.hpp"
+#include "io/run_directory.hpp"
 
 #include <petscsys.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <sstream>
 
 namespace eulastic {
 
@@ -56,16 +59,57 @@ bool is_pressure_ksp_option(const std::string &name) {
   return name.rfind("pressure_", 0) == 0 && is_petsc_option(name);
 }
 
-// PETSc looks at some of these after the run only, when it is too late.
-std::string check_petsc_value(const std::string &name, const std::string &value) {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether PETSc may take (a part of) the value of this option for the name of a file to write.
+bool writes_file(const std::string &name) {
+  static const std::vector<std::string> parts{"log_",      "info",    "view",     "monitor", "converged_reason",
+                                              "citations", "malloc_", "options_", "memory_", "viewer_"};
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const std::string &part) { return name.find(part) != std::string::npos; });
+}
+
+// FILE, :FILE, TYPE:FILE:FORMAT: what stands between colons; PETSc adds the rank to some names.
+std::vector<std::string> possible_files(const std::string &value) {
+  std::vector<std::string> files;
+  std::istringstream parts(value);
+  for (std::string part; std::getline(parts, part, ':');)
+    if (!part.empty()) files.insert(files.end(), {part, part + ".0"});
+  return files;
+}
+
+bool is_of_run(const std::string &file, const std::string &output_directory) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(file, error).parent_path();
+  return is_output_file(fs::path(file).filename()) &&
+         fs::weakly_canonical(folder, error) == fs::weakly_canonical(fs::absolute(output_directory, error), error);
+}
+
+}  // namespace
+
+std::string check_petsc_value(const std::string &name, const std::string &value, const std::string &output_directory) {
   const bool type = name.size() > 5 && name.compare(name.size() - 5, 5, "_type") == 0;
   for (const char *device : {"cuda", "hip", "kokkos", "viennacl", "sycl", "cusparse"})
     if (type && value.find(device) != std::string::npos)
       return "-" + name + ": \"" + value +
              "\" runs on graphics processors; accepted: types that run on processors, such as standard or aij";
-  if (name != "log_view" || value.empty() || value[0] == ':' || value.rfind("ascii", 0) == 0) return {};
-  return "-log_view: \"" + value +
-         "\" is no viewer; accepted: nothing, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";
+  if (value.empty() || !writes_file(name)) return {};
+  // PETSc looks at this one after the run, when it is too late.
+  if (name == "log_view" && value[0] != ':' && value.rfind("ascii", 0) != 0)
+    return "-log_view: \"" + value +
+           "\" is no viewer; accepted: nothing, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";
+  return on_rank_0([&] {
+    std::error_code ignored;
+    for (const std::string &file : possible_files(value)) {
+      const bool of_run = is_of_run(file, output_directory);
+      if (of_run || fs::is_regular_file(file, ignored))
+        return "-" + name + ": " + file + (of_run ? " is the name of a file of the run" : " exists") +
+               "; accepted: the name of a new file";
+    }
+    return std::string();
+  });
 }
 
 PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments) {

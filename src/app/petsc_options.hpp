@@ -17,8 +17,9 @@ const std::vector<std::string> &petsc_option_names();
 /// Whether it belongs to the KSP of -pressure_solver ksp.
 bool is_pressure_ksp_option(const std::string &name);
 
-/// What is wrong with the value of that option, in one line, or nothing.
-std::string check_petsc_value(const std::string &name, const std::string &value);
+/// What is wrong with the value of that option, in one line, or nothing. A file that PETSc would write must not exist,
+/// nor have the name of a file of the run in `output_directory`.
+std::string check_petsc_value(const std::string &name, const std::string &value, const std::string &output_directory);
 
 using PetscOptionValues = std::map<std::string, std::string>;
 /// Those among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.

@@ -6,6 +6,7 @@
 #include "app/scene_warnings.hpp"
 #include "base/events.hpp"
 #include "base/message_keeper.hpp"
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 
 #include <cstdio>
@@ -16,7 +17,7 @@ namespace {
 void print_error(const std::string &message) {
   int rank = 0;
   MPI_Comm_rank(run_communicator(), &rank);
-  if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", message.c_str());
+  if (rank == 0) std::fprintf(stderr, "eulastic: error: %s\n", one_line(message).c_str());
 }
 
 // Prints the answer of -help, -check_only or -print_options, or fills `refusal`.
@@ -29,6 +30,7 @@ PetscErrorCode print_answer(const ParseResult &parsed, int ranks, std::string *r
     PetscCall(find_overlap(run_communicator(), parsed.config, &overlap, refusal));
     if (!refusal->empty()) PetscFunctionReturn(0);
     if (!overlap.empty()) text += "warning: " + overlap + "\n";
+    for (const std::string &warning : parsed.warnings) text += "warning: " + one_line(warning) + "\n";
     for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
   }
   PetscCall(PetscPrintf(run_communicator(), "%s", text.c_str()));
@@ -66,7 +68,8 @@ int act(ParseResult &parsed) {
   }
   if (failed) {
     // A rank that fails alone must not leave the others waiting in a collective call.
-    std::fprintf(stderr, "eulastic: error: %s\n", kept.text().empty() ? "internal error" : kept.text().c_str());
+    std::fprintf(stderr, "eulastic: error: %s\n",
+                 kept.text().empty() ? "internal error" : one_line(kept.text()).c_str());
     std::fflush(stderr);
     MPI_Abort(PETSC_COMM_WORLD, exit_failed);
   }

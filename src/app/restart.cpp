@@ -1,6 +1,7 @@
 #include "app/restart.hpp"
 
 #include "app/option_table.hpp"
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "io/fail_together.hpp"
 
@@ -54,9 +55,9 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   const std::string step = "time_step";
   if (values_of(options)[step] != values_of(options_text(parsed))[step]) position->dt = 0;  // chosen anew at once
   if (file.version() != EULASTIC_VERSION)
-    (void)PetscFPrintf(solver->grid().comm(), stderr,
-                       "eulastic: warning: %s was written by version %s: the same bits are not certain\n", path.c_str(),
-                       file.version().c_str());
+    (void)PetscFPrintf(
+        solver->grid().comm(), stderr, "eulastic: warning: %s\n",
+        one_line(path + " was written by version " + file.version() + ": the same bits are not certain").c_str());
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +141,7 @@ PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *p
         older = other;
     *refusal = "-restart: " + damage + (older.empty() ? "; there is no older one" : "; the next older one is " + older);
     if (!is_directory || older.empty()) PetscFunctionReturn(0);
-    (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", refusal->c_str());
+    (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(*refusal).c_str());
     refusal->clear();
   }
   PetscFunctionReturn(0);

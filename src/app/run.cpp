@@ -12,6 +12,7 @@
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
 #include "base/events.hpp"
+#include "base/one_line.hpp"
 #include "base/progress.hpp"
 #include "base/rank_zero.hpp"
 #include "grid/threads.hpp"
@@ -40,6 +41,7 @@ struct Run {
   Stop stop;              ///< by a guard
   std::string noted;      ///< newest checkpoint that summary.json knows of
   bool accepted = false;  ///< summary.json is that of this run
+  bool summary_failed = false;
 };
 
 bool finished(const State &state, const TimeControl &time, std::string *reason) {
@@ -51,7 +53,7 @@ bool finished(const State &state, const TimeControl &time, std::string *reason) 
 }
 
 void print_warning(MPI_Comm comm, const std::string &warning) {
-  if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", warning.c_str());
+  if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(warning).c_str());
 }
 
 // Threads that would take turns: Open MPI binds a rank to one core unless told otherwise.
@@ -111,7 +113,9 @@ PetscErrorCode write_summary(const std::string &reason, Run *run) {
   summary.checkpoint = run->noted = run->checkpoints.newest();
   summary.wall_seconds = run->position.wall_seconds;
   summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+  run->summary_failed = true;
   PetscCall(run->outputs.write_summary(summary));
+  run->summary_failed = false;
   PetscFunctionReturn(0);
 }
 
@@ -246,6 +250,7 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
     PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
                                   refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
+  for (const std::string &warning : parsed.warnings) print_warning(grid.comm(), warning);
   PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
   for (const std::string &line : red_cell_lines(config)) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
   if (!balanced.empty()) PetscCall(PetscPrintf(grid.comm(), "%s\n", balanced.c_str()));
@@ -315,7 +320,7 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
     run.exit_reason = "output_failed";
     *code = exit_failed;
     if (run.directory.pending()) PetscFunctionReturn(0);
-    PetscCall(catch_together([&] { return write_summary(run.exit_reason, &run); }, &ignored));
+    if (!run.summary_failed) PetscCall(catch_together([&] { return write_summary(run.exit_reason, &run); }, &ignored));
     PetscCall(say_last_word(run));
     PetscFunctionReturn(0);
   }

@@ -1,5 +1,6 @@
 #include "app/saved_state.hpp"
 
+#include "app/checkpoint_range.hpp"
 #include "bodies/colours.hpp"
 #include "io/fail_together.hpp"
 
@@ -112,9 +113,9 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   BodyTracker &bodies = solver.bodies();
   PetscCall(bodies.known(solver.grid(), &references, &first_volumes));
   if (bodies.bodies() == 0) PetscFunctionReturn(0);
-  std::vector<long> &cells = numbers->integers["body_references"];
+  std::vector<long> &cells = numbers->integers["bodies.references"];  // "body_" begins the labels of a species
   for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
-  numbers->reals["body_first_volumes"] = std::move(first_volumes);
+  numbers->reals["bodies.first_volumes"] = std::move(first_volumes);
   const Feeders *feeders = solver.feeders();
   if (!feeders) PetscFunctionReturn(0);
   if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
@@ -125,7 +126,14 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *bodies, Feeders *feeders) {
+PetscErrorCode require_range(const Grid &grid, const std::string &path, const std::string &absurd) {
+  PetscFunctionBeginUser;
+  PetscCall(fail_together(grid.comm(), absurd.empty() ? absurd : path + ": " + absurd));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Grid &grid, BodyTracker *bodies,
+                           Feeders *feeders) {
   const BodyRange own = BodyRange::of(bodies->bodies(), grid.rank(), grid.ranks());
   const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
@@ -133,14 +141,17 @@ PetscErrorCode load_bodies(CheckpointFile *file, const Grid &grid, BodyTracker *
   std::vector<Int3> references(own.size());
   PetscFunctionBeginUser;
   if (all == 0) PetscFunctionReturn(0);
-  PetscCall(file->read_share("body_references", 3 * all, 3 * begin, &cells));
-  PetscCall(file->read_share("body_first_volumes", all, begin, &first_volumes));
+  const std::string earlier = file->has("bodies.references") ? "bodies." : "body_";  // of version 0.2.0 and before
+  PetscCall(file->read_share(earlier + "references", 3 * all, 3 * begin, &cells));
+  PetscCall(file->read_share(earlier + "first_volumes", all, begin, &first_volumes));
+  PetscCall(require_range(grid, path, find_absurd_body(cells, first_volumes)));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
   if (!feeders) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
   PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
+  PetscCall(require_range(grid, path, find_absurd_feeder(stretches, feeders->count())));
   for (int b = 0; b < own.size(); ++b)
     if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
   PetscCall(feeders->set_inside(inside));
@@ -170,6 +181,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_if_there("forgotten", &forgotten));
   if (solver->feeders()) {
     PetscCall(file->read_if_there("bodies_like", &like));
+    solver->bodies().set_like({});
+    PetscCall(require_range(grid, path, find_absurd_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
   const bool fits = set_colours(grid, colours, &solver->state().phases);
@@ -179,13 +192,17 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
-  PetscCall(load_bodies(file, grid, &solver->bodies(), solver->feeders()));
+  PetscCall(require_range(grid, path, find_absurd_number(numbers)));
+  PetscCall(load_bodies(file, path, grid, &solver->bodies(), solver->feeders()));
   if (FieldBlock *memory = solver->pressure_memory()) memory->clear();               // the file may know of fewer
   for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));
   take_numbers(numbers, solver, position);
   CheckpointRecords records = markers_of({});
   PetscCall(file->read_records(&records));
+  PetscCall(require_range(grid, path,
+                          find_absurd_marker(records.values, grid, solver->bodies().bodies(),
+                                             static_cast<int>(solver->state().phases.size()))));
   std::vector<SurfaceMarker> markers;
   for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(&records.values[n]));

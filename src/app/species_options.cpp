@@ -74,8 +74,9 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
             "shear modulus G_s of a membrane")
       .required = true;
+  const std::size_t modulus = rows.rows.size();
   rows.real("area_modulus", spec.membrane.area_modulus, not_negative, "",
-            "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; neo_hookean: unused, it is 3 G_s");
+            "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; that of neo_hookean is 3 G_s");
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
             "area of a membrane at the start over that at rest");
   rows.real("bending_modulus", spec.membrane.bending_modulus, not_negative, "energy",
@@ -87,7 +88,10 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "pulls both ends of every body apart along x, as optical tweezers do; 2-D: per depth");
   rows.real("stretch_volume", spec.stretch_force.volume, {0, true, 0.5}, "",
             "the part of its volume at each end that -NAME_stretch_force pulls; of a red cell the outer half um");
-  for_law(8, {Law::membrane, Law::red_cell});
+  for_law(9, {Law::membrane, Law::red_cell});
+  Option &area_modulus = rows.rows[modulus];
+  area_modulus.only_with = "-" + rows.prefix + "membrane skalak";
+  area_modulus.applies = [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; };
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
             "velocity V cos(frequency t + phase) of a rigid body, which travels through the grid (a slab: along its "
@@ -196,7 +200,8 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   Option &positions =
       rows.path("positions", spec.positions_file,
                 "file with the bodies: rows of x,y,z, or of x,y,z and angles in degrees (docs/howto/numbers.md)");
-  positions.required = positions.is_input = true;
+  positions.required = true;
+  positions.names_file = any_file;
   for_placement(1, {Placement::list});
   add_count(rows, spec);
   for_placement(1, {Placement::lattice, Placement::random});
@@ -228,6 +233,11 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.prefix = spec.name + "_";
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
+  const std::vector<Law> not_rigid{Law::neo_hookean, Law::mooney_rivlin, Law::membrane, Law::red_cell};
+  const auto for_all_but_rigid = [&](std::size_t first) {
+    rows.restrict(first, rows.prefix + "law", spec.law, law_names, not_rigid);
+  };
+  std::size_t first = rows.rows.size();
   add_viscosity(rows, spec);
   add_surface_tension(rows, spec);
   add_body_force(rows, spec);
@@ -235,8 +245,11 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
       "initial_stretch", spec.initial_stretch, positive, "",
       "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T, of "
       "a membrane what that makes of its surface; the shape is given in the stretched state");
+  for_all_but_rigid(first);
   add_attached_row(rows, spec);
+  first = rows.rows.size();
   add_contact(rows, spec);
+  for_all_but_rigid(first);
   add_placement(rows, spec);
   rows.prefix.clear();
 }

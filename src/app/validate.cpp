@@ -136,11 +136,6 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
   const std::string name = "-" + spec.name + "_";
   const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
-  if (spec.viscosity) return no("viscosity", "nothing flows in a rigid body; accepted: without");
-  if (spec.body_force.acts()) return no("body_force", "no force moves a rigid body; accepted: 0,0,0");
-  if (spec.surface_tension > 0) return no("surface_tension", "a rigid body keeps its shape; accepted: 0");
-  if (spec.contact == Contact::separate)
-    return no("contact", "rigid bodies go as they are told; accepted: merge, or without");
   const RigidMotion &motion = spec.motion;
   const bool closed = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid || spec.shape == Shape::biconcave ||
                       spec.shape == Shape::voxels;
@@ -304,8 +299,16 @@ std::string check_time(const Config &config) {
 }
 
 std::string check_snapshots(const Config &config) {
-  if (!config.output.snapshot_exact || config.method.staggered()) return {};
-  return "-snapshot_times: exact needs -time_integrator staggered; accepted here: steps";
+  const OutputControl &output = config.output;
+  if (!output.snapshot_exact) return {};
+  if (!config.method.staggered())
+    return "-snapshot_times: exact needs -time_integrator staggered; accepted here: steps";
+  constexpr double most = 1e5, most_in_step = 100;
+  const double least = std::max(config.time.end / most, config.time.step / most_in_step);
+  if (output.snapshot_interval == 0 || output.snapshot_interval >= least) return {};
+  return "-snapshot_interval: " + to_text(output.snapshot_interval) + " with -snapshot_times exact makes more than " +
+         to_text(most) + " snapshots until -time_end, or " + to_text(most_in_step) +
+         " in a -time_step; accepted: at least " + to_text(least) + ", or -snapshot_times steps";
 }
 
 std::string check_restart(const Config &config) {
@@ -315,8 +318,6 @@ std::string check_restart(const Config &config) {
     return std::filesystem::exists(path, ignored);
   };
   if (!path.empty() && !on_rank_0(is_there)) return "-restart: there is no file or directory " + path;
-  if (config.checkpoint.keep == 0 && config.checkpoint.regular())
-    return "-checkpoint_keep: 0 with -checkpoint_interval or -checkpoint_wall_minutes; accepted: at least 1";
   return {};
 }
 

@@ -7,7 +7,8 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
       rows.path("voxels", voxels.path,
                 "volume of solid fractions or a mask (HDF5, NRRD), or a closed surface (STL): docs/voxels.md");
   path.accepted = "a path, of HDF5 also FILE:DATASET";
-  path.required = path.is_input = true;
+  path.required = true;
+  path.names_file = any_file;
   const auto unless_not_given = [](Option &option, const Real3 &value, const char *note) {
     option.default_note = note;
     option.text = [text = option.text, &value] { return value[0] == value[0] ? text() : std::string(); };

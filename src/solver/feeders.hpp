@@ -22,6 +22,7 @@ public:
   Feeders &operator=(const Feeders &) = delete;
   ~Feeders();
   PetscErrorCode create(const Grid &grid, const BoxSides &sides);
+  int count() const { return static_cast<int>(stretches_.size()); }
   /// One line if rigid bodies are not the same all along a stretch.
   PetscErrorCode check_lumen(const std::vector<Phase> &phases, std::string *wrong) const;
 

@@ -260,7 +260,8 @@ class RealRun(WithFolder):
         half = Run(self.folder)
         self.assertEqual(half.summary["state_hash"], whole.summary["state_hash"])
         numpy.testing.assert_array_equal(half.series.kinetic_energy, whole.series.kinetic_energy)
-        other = start(*command, "-fluid_viscosity", "2")  # another run: from its beginning
+        self.assertEqual(start(*command, "-fluid_viscosity", "2").returncode, 2)  # another run, which would replace this one
+        other = start(command[0], "--replace", *command[1:], "-fluid_viscosity", "2")
         self.assertEqual(other.returncode, 0, other.stderr)
         self.assertNotIn("goes on", other.stdout)
         self.assertNotEqual(Run(self.folder).summary["state_hash"], whole.summary["state_hash"])
@@ -322,14 +323,14 @@ class RealRun(WithFolder):
                         "-disc_shear_modulus 1\n"
                         "-time_end 0.02\n-series_interval 0.005\n-snapshot_interval 0.01\n")
 
-        def run(*options):
-            done = start(SCRIPTS / "run", case, self.folder / "out", *options)
+        def run(*options, how=()):
+            done = start(SCRIPTS / "run", *how, case, self.folder / "out", *options)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             return "already" in done.stdout
 
         self.assertFalse(run())
         self.assertTrue(run())
-        self.assertFalse(run("-pressure_solver", "smac"))
+        self.assertFalse(run("-pressure_solver", "smac", how=["--replace"]))
         results = Run(self.folder / "out")
         self.assertEqual(results.options["pressure_solver"], "smac")
         self.assertEqual(results.summary["exit_reason"], "time_end")

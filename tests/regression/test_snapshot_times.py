@@ -19,7 +19,7 @@ EVERY = .17
 INTERVAL = ["-snapshot_interval", EVERY]
 EXACT = ["-snapshot_times", "exact", "-snapshot_precision", "double", "-snapshot_fields",
          "velocity,solid_fraction,left_cauchy_green,body"]
-MEMBRANE = [*BALL[:-2], *("-cell_law membrane -cell_surface_shear_modulus .5 -cell_area_modulus 1 "
+MEMBRANE = [*BALL[:-2], *("-cell_law membrane -cell_surface_shear_modulus .5 "
                           "-cell_viscosity .6").split()]
 
 

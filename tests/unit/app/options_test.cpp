@@ -1,6 +1,7 @@
 // From the command line to a Config and back: what is accepted, where it arrives, which source wins.
 #include "app/check_only.hpp"
 #include "app/help_text.hpp"
+#include "app/option_source.hpp"
 #include "app/option_table.hpp"
 #include "support/command_line.hpp"
 
@@ -193,6 +194,41 @@ TEST(Options, AFileBringsInAnotherAndWins) {
   const TemporaryFile loop("");
   std::ofstream(loop.path()) << "-options_file " << loop.path() << "\n";
   EXPECT_NE(parse({loop.path()}).error.find("brings in itself"), std::string::npos);
+}
+
+TEST(Options, AQuotedWordReadsBackTheSame) {
+  for (const std::string word : {"plain", "a b", "#", "\"", "\\", "a\\b", "a \\\"b\\\\", "tab\there", ""}) {
+    Words words;
+    EXPECT_EQ(split_words("-x " + quote_word(word) + " # a comment", &words), "");
+    EXPECT_EQ(words, (Words{"-x", word}));
+  }
+  Words words;
+  EXPECT_NE(split_words("-x \"a\\\"", &words), "");  // the quote is escaped and the word never ends
+}
+
+TEST(Options, AValueOfTheFileIsUnset) {
+  const TemporaryFile file(
+      "-time_end 1\n-species a\n-a_shape sphere\n-a_diameter 2\n-a_shear_modulus 1\n-a_viscosity 3\n");
+  const ParseResult result = parse({file.path(), "-a_viscosity", "none"});
+  ASSERT_EQ(result.error, "");
+  EXPECT_FALSE(result.config.species[0].viscosity.has_value());
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NE(parse({file.path(), "-a_radius", "none"}).error.find("-a_radius: must be given"), std::string::npos);
+}
+
+TEST(Options, WhatHasLostItsMeaningIsDropped) {
+  const TemporaryFile file(
+      "-time_end 1\n-pressure_solver ksp\n-pressure_ksp_rtol 1e-3\n-boundary_y wall\n-wall_ymax_velocity 1,0,0\n");
+  const ParseResult result = parse({file.path(), "-pressure_solver", "acm", "-boundary_y", "periodic"});
+  ASSERT_EQ(result.error, "");
+  ASSERT_EQ(result.warnings.size(), 2U);
+  EXPECT_EQ(result.warnings[0],
+            "-wall_ymax_velocity (" + file.path() + ":5): dropped, as it has a meaning only with -boundary_y wall");
+  EXPECT_EQ(result.warnings[1],
+            "-pressure_ksp_rtol (" + file.path() + ":3): dropped, as it has a meaning only with -pressure_solver ksp");
+  EXPECT_EQ(result.config.sides[1][1].motion.velocity, Real3{});
+  EXPECT_EQ(result.petsc_arguments, (Words{"-skip_petscrc"}));
+  EXPECT_NE(parse({file.path(), "-pressure_solver", "acm", "-pressure_ksp_rtol", "1"}).error, "");
 }
 
 TEST(Options, PositionsAreRead) {

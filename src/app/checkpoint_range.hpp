@@ -1,0 +1,22 @@
+// Ranges of what a checkpoint holds: a file whose checksums are right may still hold numbers that no run has saved.
+#pragma once
+
+#include "grid/grid.hpp"
+#include "io/checkpoint.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+/// All of these return nothing, or what is out of range, "time: -1; accepted: ...".
+std::string find_absurd_number(const CheckpointNumbers &numbers);
+/// `like`: of every body that has come in, the label of an earlier one; `placed`: bodies of the scene.
+std::string find_absurd_link(const std::vector<long> &like, int placed);
+/// Of one rank's share of the bodies: their cells, their first volumes, and their feeders (0 = none) of `feeders`.
+std::string find_absurd_body(const std::vector<long> &cells, const std::vector<double> &first_volumes);
+std::string find_absurd_feeder(const std::vector<long> &inside, int feeders);
+/// Markers of membranes, packed as by SurfaceMarker::packed().
+std::string find_absurd_marker(const std::vector<double> &packed, const Grid &grid, int bodies, int phases);
+
+}  // namespace eulastic

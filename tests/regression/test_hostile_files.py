@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+"""Files that were made to harm: checkpoints whose checksums are right and whose numbers are not, FIFOs, endless files, options
+that bring in one another, names that break a terminal, and PETSc's output over a file that is there.
+
+Needs EULASTIC and EULASTIC_MPIEXEC.
+"""
+import os
+import pathlib
+import sys
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from restart_case import FLAT, Restart  # noqa: E402
+
+MASK = (1 << 64) - 1
+FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax pressure "
+          "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -inflow_xmin_feeder 1.5 -fluid_viscosity .1 -species a "
+          "-a_shape sphere -a_radius .2 -a_law membrane -a_surface_shear_modulus .1 -a_placement random -a_count 2 "
+          "-initial_velocity_mean 1,0,0 -guard_volume_drift 0 -time_end 100").split()
+
+
+def mix(z):
+    z = (z + 0x9e3779b97f4a7c15) & MASK
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9 & MASK
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb & MASK
+    return z ^ (z >> 31)
+
+
+def checksum(values):
+    """That of src/io/checksum.hpp."""
+    words = numpy.ascontiguousarray(values).reshape(-1).view(numpy.uint64 if values.dtype.itemsize == 8 else numpy.uint8)
+    return sum(mix(int(word) ^ mix(n)) for n, word in enumerate(words)) & MASK
+
+
+class Numbers(Restart):
+    def refuse_changed(self, case, path, name, index, value, says=None):
+        good = path.read_bytes()
+        with h5py.File(path, "r+") as file:
+            data = file[name][...]
+            data.reshape(-1)[index] = value
+            file[name][...] = data
+            text = f"{checksum(data):016x}".encode()
+            self.assertEqual(len(file[name].attrs["checksum"]), 16)
+            file[name].attrs.modify("checksum", numpy.array(text, dtype="S16")[()])
+        with self.subTest(name, index=index, value=value):
+            self.refused(*case, "-restart", path, "-output_dir", "new", says=["-restart", says or name, "accepted"])
+            self.assertFalse((self.room / "new").exists())
+        path.write_bytes(good)
+
+    def test_of_a_run(self):
+        case = [*FLAT, "-time_steps_max", 9]
+        self.run_case("run", *FLAT, "-time_steps_max", 4)
+        path = self.checkpoints()[0]
+        with h5py.File(path) as file:
+            self.assertEqual(int(file["time"].attrs["checksum"], 16), checksum(file["time"][...]))
+        nan, inf = numpy.nan, numpy.inf
+        for name, index, value in (("time", 0, nan), ("time", 0, -1.), ("time", 0, inf), ("time_step", 0, nan), ("time_step", 0, 1e300),
+                                   ("time_step", 0, -1e-3), ("time_step", 1, inf), ("time_step", 1, -1.), ("step", 0, -4),
+                                   ("step", 0, 1 << 62), ("output_rows", 0, -1), ("output_rows", 2, 1 << 60), ("flow_scales", 0, nan),
+                                   ("energy_budget", 1, inf), ("guarded_energy", 0, nan), ("mach_max", 0, -1.), ("wall_seconds", 0, -1.),
+                                   ("stages_and_sweeps", 0, -5), ("output_times", 0, nan)):
+            self.refuse_changed(case, path, name, index, value)
+        self.refuse_changed(case, path, "bodies.references", 0, 1 << 40, says="cell of a body")
+        self.refuse_changed(case, path, "bodies.first_volumes", 0, nan, says="first volume")
+        self.refuse_changed(case, path, "bodies.first_volumes", 1, -1., says="first volume")
+
+    def test_of_bodies_that_come_in(self):
+        self.run_case("run", *FEEDER, "-time_steps_max", 4)
+        path = self.checkpoints()[0]
+        case = [*FEEDER, "-time_steps_max", 6]
+        for value in (-1, 2, 1 << 40):
+            self.refuse_changed(case, path, "bodies_in_feeders", 0, value)
+        for name in ("nan", "cell", "label", "phase"):
+            index, value = {"nan": 7, "cell": 3, "label": 1, "phase": 2}[name], {"nan": numpy.nan, "cell": 1e9, "label": 77., "phase": -1.}[name]
+            self.refuse_changed(case, path, "membrane_markers", index, value)
+
+
+class Files(Restart):
+    def test_no_regular_file(self):
+        fifo = self.room / "fifo"
+        os.mkfifo(fifo)
+        scene = [word for word in FLAT if not word.startswith("none")]
+        for path in (fifo, "/dev/zero"):
+            self.refused(path, says=[str(path), "regular file"])
+            self.refused(*scene, "-initial_state", path, says=["-initial_state"])
+            self.refused(*scene, "-restart", path, says=["-restart"])
+            self.refused(*FEEDER[:FEEDER.index("-inflow_xmin_velocity") + 1], path, *FEEDER[FEEDER.index("-inflow_xmin_velocity") + 2:],
+                         says=["-inflow_xmin_velocity"])
+        (self.room / "include.opts").write_text("-options_file fifo\n")
+        self.refused(self.room / "include.opts", says=["fifo", "regular file"])
+
+    def test_options_that_bring_in_one_another(self):
+        for n in range(12):
+            (self.room / f"{n}.opts").write_text(f"-options_file {n + 1}.opts\n" * 12)
+        (self.room / "12.opts").write_text("-fluid_density 1\n")
+        self.refused(self.room / "0.opts", says=["-options_file", "depth"])
+        for n in (5, 10):  # 12^7 files, and 12^2
+            self.refused(self.room / f"{n}.opts", says=["-options_file", "in all"])
+
+    def test_messages_are_one_printable_line(self):
+        for name in ("\x1b]0;title\x07\x1b[2J", "a\nb", "x" * 5000, "\x9b31m", "\u202e" + "y" * 3000):
+            for words in ((name,), (*FLAT, "-" + name, "1"), (*FLAT, "-cell_radius", name), (*FLAT, "-restart", name)):
+                result = self.call(*words)
+                self.assertEqual(result.returncode, 2)
+                self.assertRegex(result.stderr, r"\Aeulastic: error: [^\n]+\n\Z")
+                self.assertFalse([c for c in result.stderr[:-1] if ord(c) < 32 or 127 <= ord(c) < 160], result.stderr)
+                self.assertLess(len(result.stderr), 1100)
+
+    def test_endless_snapshots(self):
+        case = [*FLAT[:-4], "-time_end", ".2", "-snapshot_times", "exact", "-snapshot_interval"]
+        self.refused(*case, "1e-300", says=["-snapshot_interval", "accepted: at least"])
+        self.refused(*case, "1e-7", says=["-snapshot_interval", "accepted: at least 2e-06"])
+        self.refused(*case, "1e-4", "-time_step", ".02", says=["-snapshot_interval", "accepted: at least 2e-04"])
+
+
+class Logs(Restart):
+    def test_petsc_does_not_write_over_a_file(self):
+        self.run_case("run", *FLAT, "-time_steps_max", 2)
+        mine = self.room / "mine.txt"
+        mine.write_text("mine")
+        (self.room / "info.0").write_text("mine")
+        case = [*FLAT, "-time_steps_max", 2]
+        for options in (["-log_trace", "mine.txt"], ["-citations", "mine.txt"], ["-malloc_view", "mine.txt"]):
+            self.refused(*case, "-output_dir", "new", *options, says=["mine"])  # taken for a file of options
+        for options in (["-log_view", ":mine.txt"], ["-log_view", "ascii:mine.txt:ascii_xml"], ["-info", "info"],
+                        ["-log_trace", "info"], ["-citations", "./mine.txt:"],
+                        ["-pressure_solver", "ksp", "-pressure_ksp_view", ":mine.txt"],
+                        ["-pressure_solver", "ksp", "-pressure_ksp_monitor", "ascii:mine.txt"]):
+            self.refused(*case, "-output_dir", "new", *options, says=[options[-2], "exists", "accepted: the name of a new file"])
+        for name in "series.csv", "summary.json", "checkpoint_00000002.h5", "snapshot_000000.h5.tmp":
+            self.refused(*case, "-output_dir", "new", "-log_view", f":new/{name}", says=["-log_view", "a file of the run"])
+            self.refused(*case, "-output_dir", self.room / "new", "-log_view", f":./new/{name}", says=["-log_view", "a file of the run"])
+        self.assertEqual(mine.read_text(), "mine")
+        self.run_case("new", *case, "-log_view", ":log.txt")
+        self.assertIn("EulMomentum", (self.room / "log.txt").read_text())
+        self.refused(*case, "-output_dir", "newer", "-log_view", ":log.txt", says=["log.txt exists"])
+
+
+if __name__ == "__main__":
+    unittest.main()
