@@ -296,6 +296,7 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
   answer(arguments, &result);
   if (!result.message.empty()) return result;
   if (result.error.empty()) result.error = parse_into(arguments, &result);
+  if (result.error.empty()) result.inputs = hash_input_files(result.config);
   if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
   result.error = one_line(result.error);
   return result;
@@ -319,6 +320,8 @@ std::string options_text(const ParseResult &result) {
     if (value.empty()) continue;
     if (option.group != group) text += "\n# " + (group = option.group) + "\n";
     line(option.name, value);
+    for (const InputFile &file : result.inputs)
+      if (file.option == option.name) text += content_mark + file.content + "\n";
   }
   group.clear();
   for (const auto &[name, value] : petsc_option_values(result.petsc_arguments)) {

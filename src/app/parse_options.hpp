@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "app/input_files.hpp"
 
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@ namespace eulastic {
 struct ParseResult {
   Config config;
   std::string error;                  ///< one line without "eulastic: error: ", empty if all is well; exit code 2
+  std::vector<InputFile> inputs;      ///< files that options name, of a config without error
   std::vector<std::string> warnings;  ///< one line each, without "eulastic: warning: "
   std::string message;                ///< -help, -version: print to stdout and exit 0
   bool alone = false;                 ///< nothing was asked for: the message is the usage, the exit code 2

@@ -17,17 +17,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::map<std::string, std::string> values_of(const std::string &options) {
-  std::map<std::string, std::string> values;
+struct Value {
+  std::string text, content;  ///< the value, and of a file what it contains if that is known
+  bool differs(const Value &other) const {
+    const bool known = !content.empty() && !other.content.empty();
+    return known ? content != other.content : text != other.text;
+  }
+};
+
+std::map<std::string, Value> values_of(const std::string &options) {
+  std::map<std::string, Value> values;
   std::istringstream lines(options);
+  std::string name;
   for (std::string line; std::getline(lines, line);) {
     const std::size_t space = line.find(' ');
-    if (line[0] == '-' && space != std::string::npos) values[line.substr(1, space - 1)] = line.substr(space + 1);
+    if (line.rfind(content_mark, 0) == 0 && !name.empty()) values[name].content = line.substr(content_mark.size());
+    if (line[0] != '-' || space == std::string::npos) continue;
+    name = line.substr(1, space - 1);
+    values[name].text = line.substr(space + 1);
   }
   return values;
 }
 
-std::string shown(const std::string &value) { return value.empty() ? "not given" : value; }
+std::string shown(const Value &value) {
+  if (value.text.empty()) return "not given";
+  return value.text + (value.content.empty() ? "" : " with the content " + value.content);
+}
 
 // Rank 0's answer counts: others may see the directory a moment later.
 std::vector<std::string> list_everywhere(const std::string &directory) {
@@ -53,7 +68,8 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(load_state(&file, path, solver, position));
   const std::string step = "time_step";
-  if (values_of(options)[step] != values_of(options_text(parsed))[step]) position->dt = 0;  // chosen anew at once
+  if (values_of(options)[step].text != values_of(options_text(parsed))[step].text)
+    position->dt = 0;  // chosen anew at once
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(
         solver->grid().comm(), stderr, "eulastic: warning: %s\n",
@@ -102,14 +118,14 @@ PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, dou
 
 std::string changed_option(const std::string &before, const ParseResult &now) {
   const auto then = values_of(before), here = values_of(options_text(now));
-  const auto value = [](const std::map<std::string, std::string> &values, const std::string &name) {
+  const auto value = [](const std::map<std::string, Value> &values, const std::string &name) {
     const auto found = values.find(name);
-    return found == values.end() ? std::string() : found->second;
+    return found == values.end() ? Value{} : found->second;
   };
   Config config = now.config;
   for (const Option &option : option_table(config)) {
-    const std::string a = value(then, option.name), b = value(here, option.name);
-    if (!option.may_change && a != b)
+    const Value a = value(then, option.name), b = value(here, option.name);
+    if (!option.may_change && a.differs(b))
       return "-" + option.name + ": cannot change at a restart; in the checkpoint: " + shown(a) + ", now: " + shown(b);
   }
   return {};

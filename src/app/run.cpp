@@ -110,6 +110,7 @@ PetscErrorCode write_summary(const std::string &reason, Run *run) {
   PetscFunctionBeginUser;
   Summary summary;
   summary.exit_reason = reason;
+  for (const InputFile &file : run->parsed.inputs) summary.files.push_back({file.option, file.path, file.content});
   summary.checkpoint = run->noted = run->checkpoints.newest();
   summary.wall_seconds = run->position.wall_seconds;
   summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;

@@ -37,6 +37,9 @@ std::string summary_text(const Summary &s) {
   std::vector<Json> sides;
   for (const Summary::SideRecord &side : s.sides)
     sides.push_back(Json().add("side", side.side).add("flow_rate", side.flow_rate).add("pressure", side.pressure));
+  std::vector<Json> files;
+  for (const Summary::FileRecord &file : s.files)
+    files.push_back(Json().add("option", file.option).add("path", file.path).add("content", file.content));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))
@@ -79,6 +82,7 @@ std::string summary_text(const Summary &s) {
       .add("surface_energy", s.surface_energy)
       .add("surface_power", s.surface_power)
       .add("side_power", s.side_power)
+      .add("files", files)
       .add("sides", sides)
       .add("bulk_velocity", s.bulk_velocity)
       .add("state_hash", checksum_text(s.state_hash))

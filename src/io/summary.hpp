@@ -27,6 +27,10 @@ struct Summary {
   double energy_supplied = 0, energy_dissipated = 0, energy_lost = 0, energy_lost_elastic = 0, energy_lost_extended = 0;
   double surface_energy = 0, surface_power = 0, side_power = 0;
   std::uint64_t state_hash = 0;
+  struct FileRecord {
+    std::string option, path, content;
+  };
+  std::vector<FileRecord> files;  ///< that options name, and hashes of what they contain
   struct SideRecord {
     std::string side;
     double flow_rate, pressure;

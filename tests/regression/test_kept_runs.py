@@ -214,6 +214,47 @@ class OtherOptions(Kept):
                      says=["-disc_area_modulus", "-disc_membrane skalak"])
 
 
+class Contents(Kept):
+    def setUp(self):
+        super().setUp()
+        self.case.write_text(RIGID.replace("-inflow_xmin_velocity 1", "-inflow_xmin_velocity pulse.csv"))
+        self.pulse = self.room / "pulse.csv"
+        self.pulse.write_text("0,1\n1,1\n")
+
+    def test_of_a_run_by_the_script(self):
+        run = self.room / "run"
+        self.assertEqual(self.script(self.case, run).returncode, 0)
+        text = (run / "options.txt").read_text()
+        content = re.search(r"\n-inflow_xmin_velocity pulse.csv\n# content ([0-9a-f]{16})\n", text)[1]
+        self.assertEqual(self.summary("run")["files"], [{"option": "inflow_xmin_velocity", "path": "pulse.csv", "content": content}])
+        (self.room / "sub").mkdir()
+        self.assertIn("already", self.script("../case.opts", "../run", at=self.room / "sub").stdout)
+        self.pulse.rename(self.room / "other.csv")
+        self.assertIn("already", self.script(self.case, run, "-inflow_xmin_velocity", "other.csv").stdout)
+        self.pulse.write_text("0,3\n1,3\n")
+        self.refused_by_script(self.case, run, says="-inflow_xmin_velocity")
+        self.assertEqual((run / "options.txt").read_text(), text)
+        (self.room / "other.csv").rename(self.pulse)
+        self.assertIn("already", self.script(self.case, run).stdout)
+
+    def test_at_a_restart(self):
+        self.run_case("run", self.case, *OFTEN)
+        again = [self.case, "-restart", "run", "-output_dir", "on", "-time_end", ".2"]
+        self.pulse.rename(self.room / "same.csv")
+        self.pulse.write_text("0,1\n1,1.0\n")
+        self.refused(*again, says=["-inflow_xmin_velocity: cannot change", "pulse.csv with the content"])
+        self.assertFalse((self.room / "on").exists())
+        self.run_case("on", *again[:3], "-time_end", ".2", "-inflow_xmin_velocity", "same.csv")
+
+    def test_every_byte_counts(self):
+        hashes = set()
+        for text in ("0,1\n1,1\n", "0,1\n1,1\n\n", "0,1\n1,1\n ", " 0,1\n1,1\n", "0,1\n1,2\n", "1,1\n2,1\n", "0,1\n1,1\n" + " " * 600000,
+                     "0,1\n1,1\n" + " " * 600001):
+            self.pulse.write_text(text)
+            hashes.add(re.search(r"# content (\w+)", self.call(self.case, "-print_options").stdout)[1])
+        self.assertEqual(len(hashes), 8)
+
+
 class Watched(Restart):
     def check(self, damage, name, options=()):
         shutil.rmtree(self.room / "run", ignore_errors=True)

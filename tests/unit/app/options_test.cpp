@@ -208,7 +208,7 @@ TEST(Options, AQuotedWordReadsBackTheSame) {
 
 TEST(Options, AValueOfTheFileIsUnset) {
   const TemporaryFile file(
-      "-time_end 1\n-species a\n-a_shape sphere\n-a_diameter 2\n-a_shear_modulus 1\n-a_viscosity 3\n");
+      "-time_end 1\n-species a\n-a_shape sphere\n-a_diameter .5\n-a_shear_modulus 1\n-a_viscosity 3\n");
   const ParseResult result = parse({file.path(), "-a_viscosity", "none"});
   ASSERT_EQ(result.error, "");
   EXPECT_FALSE(result.config.species[0].viscosity.has_value());
