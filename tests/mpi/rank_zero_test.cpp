@@ -75,8 +75,8 @@ TEST_F(RankZero, AlsoForOptionsAndWhatTheyName) {
   EXPECT_EQ(fine.config.sides[0][0].given.table.size(), 2u);
   EXPECT_EQ(fine.config.solid_volumes[1], 0.25);
   EXPECT_NE(result("none").error.find("cannot be read"), std::string::npos);
-  put(0, "places", "here\n");
-  EXPECT_NE(result("scene").error.find("line 1: expected x,y,z"), std::string::npos);
+  put(0, "places", "1,2\n");
+  EXPECT_NE(result("scene").error.find("line 1: a row has 2 numbers"), std::string::npos);
   EXPECT_TRUE(same_everywhere(result("scene").error));
   put(0, "table", "");
   EXPECT_NE(result("scene").error.find("holds no numbers"), std::string::npos);

@@ -10,7 +10,7 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts/studies"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts/studies")]
 sys.dont_write_bytecode = True
 from validation import ellipsoids  # noqa: E402
 from validation.boundary_integral import STARTUPS, Capsule, Membrane, extrapolated, moments, sphere, startup  # noqa: E402

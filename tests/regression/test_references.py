@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/studies"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / folder) for folder in ("scripts", "scripts/studies")]
 sys.dont_write_bytecode = True
 from validation import ellipsoids, exact  # noqa: E402
 
