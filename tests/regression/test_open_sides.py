@@ -246,7 +246,7 @@ class OpenSides(SceneCase):
         wrong = {file_of("turned.h5", velocity=numpy.ones((12, 14))): "has the shape (12, 14); accepted: (14, 12) or (14, 12, 3)",
                  file_of("two.h5", velocity=numpy.ones((14, 12, 2))): "has the shape (14, 12, 2); accepted",
                  file_of("nan.h5", velocity=numpy.full((14, 12), numpy.nan)): "values that are not finite",
-                 file_of("none.h5", speed=numpy.ones((14, 12))): "has no dataset velocity",
+                 file_of("none.h5", u=numpy.ones((14, 12)), v=numpy.ones((14, 12))): "has several datasets; accepted: ",
                  file_of("words.h5", velocity=numpy.full((14, 12), b"a")): "dataset velocity has no numbers",
                  file_of("zero.h5", velocity=numpy.zeros((14, 12))): "its mean is 0", cut: "is damaged or truncated"}
         for path, says in wrong.items():
