@@ -17,6 +17,8 @@ bool restarts_in_place(const Config &config);
 
 /// Collective. Simulated time after `time` that series.csv in `directory` tells of; 0 if it ends before.
 PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away);
+/// Nothing, or one line if a run in place would end before `held`, the time of the last row in its directory.
+std::string shorter_end(const Config &config, double held);
 
 /// The first option, among those that must not change at a restart, whose value differs between two options_text();
 /// empty if there is none, else one line.

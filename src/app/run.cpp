@@ -246,6 +246,11 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   if (refusal->empty() && run->in_place) PetscCall(run->directory.open(grid.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
+  if (refusal->empty() && run->in_place) {
+    const double now = run->solver.state().time;
+    PetscCall(time_thrown_away(grid.comm(), path, now, &thrown_away));
+    if (thrown_away > 0 && !config.output.overwrite) *refusal = shorter_end(config, now + thrown_away);
+  }
   if (refusal->empty() && config.balance) PetscCall(balance(restarted_from, made, run, &balanced, refusal));
   if (refusal->empty() && !run->in_place)
     PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
@@ -259,10 +264,7 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);
   run->guards.resume(run->position.energy);
-  if (run->in_place)
-    PetscCall(time_thrown_away(grid.comm(), path, run->solver.state().time, &thrown_away));
-  else
-    PetscCall(open_outputs(run));
+  if (!run->in_place) PetscCall(open_outputs(run));
   PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
   (void)run->outputs.take_row();
   PetscCall(run->outputs.measure());

@@ -67,10 +67,12 @@ void catch_faults() {
   (void)PetscOptionsHasName(nullptr, nullptr, "-no_signal_handler", &unwanted);
   if (unwanted) return;
   MPI_Comm_rank(PETSC_COMM_WORLD, &own_rank);
-  static char stack[1 << 16];  // the handler's, as a fault may be that the program's own stack has come to its end
+  static char stack[1 << 18];  // the handler's, as a fault may be that the program's own stack has come to its end
   const stack_t alternative{stack, 0, sizeof stack};
   (void)sigaltstack(&alternative, nullptr);
   const int once = static_cast<int>(SA_RESETHAND) | SA_ONSTACK;  // a second fault kills at once
+  for (const int signal : {SIGHUP, SIGPIPE, SIGQUIT, SIGTERM, SIGURG})
+    if (!is_ignored(signal)) handle(signal, SIG_DFL, 0);  // PETSc's handlers, which print a page
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP}) handle(signal, end_all, once);
 }
 

@@ -68,6 +68,16 @@ class NotReplaced(Kept):
         self.run_case("trap", options, "-output_overwrite", "-time_end", ".05")
         self.assertEqual(self.summary("trap")["time"], .05)
 
+    def test_a_restart_does_not_shorten_a_run(self):
+        self.run_case("run", self.case, "-checkpoint_keep", 50, *OFTEN)
+        before = listing(self.room / "run")
+        first = self.checkpoints()[0]
+        self.refused(self.case, "-restart", first, "-output_dir", "run", "-time_end", ".09", says=["-time_end", "t = 0.1", "-output_overwrite"])
+        self.refused(self.case, "-restart", "run", "-output_dir", "run", "-time_end", ".0999999", says=["-time_end", "-output_overwrite"])
+        self.assertEqual(listing(self.room / "run"), before)
+        self.run_case("run", self.case, "-restart", first, "-time_end", ".09", "-output_overwrite")
+        self.assertEqual(self.summary("run")["time"], .09)
+
     def test_script_replaces_when_asked(self):
         run = self.room / "run"
         self.assertEqual(self.script(self.case, run).returncode, 0)
