@@ -110,6 +110,7 @@ TEST(Summary, HasEveryKey) {
   summary.wall_seconds = 2;
   summary.state_hash = 0xfedcba9876543210u;
   summary.divergence_max = std::nan("");
+  summary.files = {{"vessel_voxels", "my \"best\" vessel.stl", "0123456789abcdef"}};
   summary.sides = {{"xmin", 2.5, 0.25}};
   summary.bodies = {{1, "rbc", {1, 2, 3}, {4, 5, 6}, 7, 0.5, -45}, {2, "rbc", {}, {}, 0, 0, 0}};
   ASSERT_EQ(write_summary(PETSC_COMM_SELF, base / "summary.json", summary), 0);
@@ -155,6 +156,10 @@ TEST(Summary, HasEveryKey) {
                                           "surface_energy",
                                           "surface_power",
                                           "side_power",
+                                          "files",
+                                          "files.0.option",
+                                          "files.0.path",
+                                          "files.0.content",
                                           "sides",
                                           "sides.0.side",
                                           "sides.0.flow_rate",
