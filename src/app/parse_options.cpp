@@ -61,6 +61,7 @@ public:
     for (Option &option : table) {
       if (!index_.emplace(option.name, &option).second && clash_.empty())
         clash_ = "-species: two species would share the option -" + option.name;
+      defaults_.emplace(option.name, option.text ? option.text() : std::string());
     }
   }
 
@@ -103,9 +104,13 @@ public:
         const std::string why = option.accepted.rfind("one of ", 0) == 0 ? not_supported(entry.value) : "";
         return refuse(wrong + (why.empty() ? "" : "; " + why));
       }
-      given_[name] = {entry.where, false};
+      given_[name] = {entry.where, false, false};
     }
-    for (const std::string &name : here) given_[name].may_lose = !is_last && applies(*index_.at(name));
+    for (const std::string &name : here) {
+      const Option &option = *index_.at(name);
+      given_[name].may_lose = !is_last && applies(option);
+      given_[name].says_nothing = !is_last && option.text && option.text() == defaults_.at(name);
+    }
     return clash_;
   }
 
@@ -114,6 +119,7 @@ public:
     for (const Option &option : table_) {
       const auto given = given_.find(option.name);
       if (given != given_.end() && !applies(option)) {
+        if (!given->second.may_lose && given->second.says_nothing) continue;
         if (!given->second.may_lose)
           return "-" + option.name + ": has a meaning only with " + option.only_with + given->second.where;
         lost->push_back({option.name, option.only_with, given->second.where});
@@ -133,7 +139,8 @@ public:
 private:
   struct Given {
     std::string where;
-    bool may_lose = false;  ///< had a meaning when its source had been read, and is not of the command line
+    bool says_nothing = false;  ///< a file gives the default, as options.txt of earlier versions does beside any law
+    bool may_lose = false;      ///< had a meaning when its source had been read, and is not of the command line
   };
   static bool applies(const Option &option) { return !option.applies || option.applies(); }
   static const std::string &target(const Option &option) {
@@ -142,6 +149,7 @@ private:
 
   const std::vector<Option> &table_;
   std::map<std::string, const Option *> index_;
+  std::map<std::string, std::string> defaults_;
   std::map<std::string, Given> given_;
   std::string clash_;
 };
@@ -198,13 +206,11 @@ std::string read_sources_once(std::vector<Source> *sources, Config *config, std:
 
 // One line for all options that need the same.
 void remove_lost(const std::vector<Lost> &lost, std::vector<Source> *sources, std::vector<std::string> *warnings) {
-  std::map<std::string, std::string> lines;
-  for (const Lost &one : lost) {
-    std::string &line = lines[one.only_with];
-    line += (line.empty() ? "-" : ", -") + one.name + one.where;
-  }
-  for (const auto &[only_with, names] : lines)
-    warnings->push_back(names + ": dropped, as it has a meaning only with " + only_with);
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const Lost &one : lost) groups[one.only_with].push_back("-" + one.name + one.where);
+  for (const auto &[only_with, names] : groups)
+    warnings->push_back(join(names, ", ") + ": dropped, as " + (names.size() > 1 ? "they have" : "it has") +
+                        " a meaning only with " + only_with);
   for (Source &source : *sources)
     source.erase(std::remove_if(source.begin(), source.end(),
                                 [&](const Entry &entry) {

@@ -132,6 +132,7 @@ std::string changed_option(const std::string &before, const ParseResult &now) {
   };
   Config config = now.config;
   for (const Option &option : option_table(config)) {
+    if (option.applies && !option.applies()) continue;  // earlier versions had some of them in options.txt
     const Value a = value(then, option.name), b = value(here, option.name);
     if (!option.may_change && a.differs(b))
       return "-" + option.name + ": cannot change at a restart; in the checkpoint: " + shown(a) + ", now: " + shown(b);

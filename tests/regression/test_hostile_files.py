@@ -13,26 +13,13 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from checksum import checksum  # noqa: E402
 from restart_case import FLAT, Restart  # noqa: E402
 
-MASK = (1 << 64) - 1
 FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax pressure "
           "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -inflow_xmin_feeder 1.5 -fluid_viscosity .1 -species a "
           "-a_shape sphere -a_radius .2 -a_law membrane -a_surface_shear_modulus .1 -a_placement random -a_count 2 "
           "-initial_velocity_mean 1,0,0 -guard_volume_drift 0 -time_end 100").split()
-
-
-def mix(z):
-    z = (z + 0x9e3779b97f4a7c15) & MASK
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9 & MASK
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb & MASK
-    return z ^ (z >> 31)
-
-
-def checksum(values):
-    """That of src/io/checksum.hpp."""
-    words = numpy.ascontiguousarray(values).reshape(-1).view(numpy.uint64 if values.dtype.itemsize == 8 else numpy.uint8)
-    return sum(mix(int(word) ^ mix(n)) for n, word in enumerate(words)) & MASK
 
 
 class Numbers(Restart):

@@ -14,9 +14,11 @@ import sys
 import unittest
 
 import h5py
+import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from restart_case import BINARY, ENDLESS, FLAT, OFTEN, ROOT, Restart  # noqa: E402
+from checksum import checksum  # noqa: E402
+from restart_case import FLAT, OFTEN, ROOT, Restart  # noqa: E402
 
 CASE = "\n".join(["-grid_cells 16,16,1", "-grid_length 1,1,1", "-fluid_viscosity .1", "-body_force 1,0,0", "-species disc",
                   "-disc_shape sphere", "-disc_radius .25", "-disc_shear_modulus 1", "-time_end .1", ""])
@@ -173,6 +175,20 @@ class OtherOptions(Kept):
             self.assertNotIn("-acm_", (self.room / solver / "options.txt").read_text())
         result = self.call("ksp/options.txt", "-restart", "ksp", "-output_dir", "back", "-time_end", ".3", "-pressure_solver", "acm")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
+        # As an earlier version wrote it.
+        old = self.room / "old.opts"
+        old.write_text(options.read_text().replace("-disc_law neo_hookean\n", "-disc_law neo_hookean\n-disc_membrane neo_hookean\n"))
+        self.assertIn("-disc_membrane", old.read_text())
+        self.run_case("old", old, "-restart", "one", "-time_end", ".2")
+        newest = self.checkpoints("one")[-1]
+        with h5py.File(newest, "r+") as file:
+            text = numpy.frombuffer(old.read_bytes(), dtype=numpy.uint8)
+            del file["options"]
+            file["options"] = text
+            file["options"].attrs["checksum"] = numpy.array(f"{checksum(text):016x}", dtype="S16")[()]
+        self.run_case("older", old, "-restart", "one", "-time_end", ".2")
+        old.write_text(old.read_text().replace("-disc_membrane neo_hookean", "-disc_membrane skalak"))
+        self.refused(old, says=["-disc_membrane", "-disc_law membrane"])
         # Of the same source, and on the command line: refused as ever.
         self.refused(self.case, "-pressure_solver", "smac", "-acm_memory", "1", says=["-acm_memory", "-pressure_solver acm"])
         wrong = self.room / "wrong.opts"
