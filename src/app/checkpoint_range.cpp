@@ -28,14 +28,19 @@ std::string find_absurd_number(const CheckpointNumbers &numbers) {
       if (never_negative.count(name) > 0 && value < 0) return absurd(name, value, "a number >= 0");
     }
   for (const auto &[name, values] : numbers.integers)
-    for (const long value : values)
-      if (name != "state_hash" && !is_within(double(value), 0, most))
-        return absurd(name, double(value), "0 ... " + to_text(most));
+    if (name != "state_hash")
+      if (std::string wrong = find_absurd_count(name, values); !wrong.empty()) return wrong;
   const double time = numbers.reals.at("time")[0], dt = numbers.reals.at("time_step")[0];
   const double step = double(numbers.integers.at("step")[0]);
   if (step > 0 && !(time > 0)) return absurd("time", time, "after a step a number > 0");
   if (step > 0 && !(dt > 0 && dt <= time * (1 + 1e-9)))
     return absurd("time_step", dt, "after a step a number > 0, at most the time " + to_text(time));
+  return {};
+}
+
+std::string find_absurd_count(const std::string &name, const std::vector<long> &values) {
+  for (const long value : values)
+    if (!is_within(double(value), 0, most)) return absurd(name, double(value), "0 ... " + to_text(most));
   return {};
 }
 

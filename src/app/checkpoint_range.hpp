@@ -11,6 +11,7 @@ namespace eulastic {
 
 /// All of these return nothing, or what is out of range, "time: -1; accepted: ...".
 std::string find_absurd_number(const CheckpointNumbers &numbers);
+std::string find_absurd_count(const std::string &name, const std::vector<long> &values);
 /// `like`: of every body that has come in, the label of an earlier one; `placed`: bodies of the scene.
 std::string find_absurd_link(const std::vector<long> &like, int placed);
 /// Of one rank's share of the bodies: their cells, their first volumes, and their feeders (0 = none) of `feeders`.

@@ -185,6 +185,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
     PetscCall(require_range(grid, path, find_absurd_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
+  PetscCall(require_range(grid, path, find_absurd_count("forgotten", forgotten)));
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
   const CheckpointNumbers expected = numbers_of(*solver, *position, 0);

@@ -94,6 +94,8 @@ class NotReplaced(Kept):
         self.assertEqual(listing(run), before)
         self.assertEqual(self.script("--replace", self.case, run, "-time_end", ".05").returncode, 0)
         self.assertEqual(self.summary("run")["time"], .05)
+        self.assertEqual(self.script(self.case, run, "-time_end", ".03", "--replace").returncode, 0)
+        self.assertEqual(self.summary("run")["time"], .03)
         self.assertEqual(self.script(self.case, run, "-time_end", ".02", "-output_overwrite").returncode, 0)
         self.assertEqual(self.summary("run")["time"], .02)
 
