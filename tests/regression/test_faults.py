@@ -63,9 +63,10 @@ class Faults(Restart):
         self.fails("memory", "EulACM", 2, ranks=3)
 
     def test_crash_that_holds_a_lock(self):
-        lines = self.fails("locked", "EulMomentum", 1)
-        self.assertEqual(len(lines), 1, lines)
-        self.assertIn("rank 1 met signal 11", lines[0])
+        for kind, signal in ("locked", 11), ("heap", 6):
+            lines = self.fails(kind, "EulMomentum", 1)
+            self.assertEqual(len(lines), 1, lines)
+            self.assertIn(f"rank 1 met signal {signal}", lines[0])
 
     def test_a_failed_fsync_is_not_tried_again(self):
         self.environment["LD_PRELOAD"] = LIBRARY

@@ -8,6 +8,7 @@
 //   flush    its next H5Fflush fails, and it alone does not take part
 //   crash    it meets SIGSEGV
 //   locked   it meets SIGSEGV while it holds a lock that MPI_Abort waits for
+//   heap     malloc finds its memory overwritten and aborts, with its lock held
 //   exit     it leaves without a word
 // EULASTIC_FSYNC="NAME COUNT": the COUNT-th fsync of a file with NAME in its path fails, and a later one of that file
 // is reported. Deadline (io/deadline.hpp) waits three seconds, not five minutes.
@@ -41,6 +42,13 @@ char kind[16], verb[32];
 int wanted_rank = -1, left = 0;
 bool next_call_fails = false, met = false;
 
+void overwrite_heap() {
+  constexpr std::size_t size = 100000;
+  volatile char *const block = static_cast<char *>(std::malloc(size));
+  for (std::size_t n = 0; n < 64; ++n) block[size + n] = -1;
+  for (int n = 0; n < 100000; ++n) *static_cast<volatile char *>(std::malloc(size)) = 1;
+}
+
 PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscObject, PetscObject) {
   if (left <= 0 || std::strcmp(petsc_stageLog->eventLog->eventInfo[event].name, verb) != 0) return 0;
   int rank = 0;
@@ -48,6 +56,7 @@ PetscErrorCode begin(PetscLogEvent event, int, PetscObject, PetscObject, PetscOb
   if (rank != wanted_rank || --left > 0) return 0;
   std::fprintf(stderr, "fault: %s in %s\n", kind, verb);
   if (!std::strcmp(kind, "memory")) throw std::bad_alloc();
+  if (!std::strcmp(kind, "heap")) overwrite_heap();
   met = !std::strcmp(kind, "locked");
   if (!std::strcmp(kind, "crash") || met) std::raise(SIGSEGV);
   if (!std::strcmp(kind, "exit")) _exit(0);
