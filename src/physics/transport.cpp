@@ -151,7 +151,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
     // Whether any point of a vector does: segments are those of all locations together.
     const auto evolves = [&](std::ptrdiff_t at_first, int count) EULASTIC_BODY {
-      if (t.whole_rows || phi.origin[at_first] > 0.5) return true;  // the latter within bodies
+      if (t.whole_rows || phi.origin[at_first] > 0.5) return true;  // all points within bodies evolve
       bool any = false;
 #pragma omp simd reduction(| : any)
       for (int i = 0; i < count; ++i) any |= fraction_at(phi.origin + at_first + i, centre, da, db) >= threshold;

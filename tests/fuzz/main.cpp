@@ -7,6 +7,7 @@
 #include "app/check_only.hpp"
 #include "app/run.hpp"
 #include "base/events.hpp"
+#include "base/message_keeper.hpp"
 #include "fuzz/command_lines.hpp"
 #include "fuzz/hdf5_files.hpp"
 #include "fuzz/volume_files.hpp"
@@ -100,23 +101,17 @@ bool one_line(const std::string &message) {
 
 // Runs what was accepted; what PETSc calls an error without a line for the user is found.
 std::string Fuzzer::run_it(const ParseResult &parsed, Outcome *outcome) {
-  const auto keep = [](MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
-                       const char *message, void *text) {
-    if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
-    return code;
-  };
-  std::string kept, refusal;
+  std::string refusal;
   int code = -1;
   const fs::path directory = parsed.config.output.directory;
   fs::remove_all(directory);
-  (void)PetscPushErrorHandler(keep, &kept);
+  const MessageKeeper kept;
   const PetscErrorCode failed = run(parsed, &code, &refusal);
-  (void)PetscPopErrorHandler();
   if (failed) {
-    refusal = kept;
+    refusal = kept.text();
     code = failed == PETSC_ERR_USER_INPUT ? exit_usage : exit_failed;
     if (failed != PETSC_ERR_FILE_UNEXPECTED && failed != PETSC_ERR_NOT_CONVERGED && failed != PETSC_ERR_USER_INPUT)
-      outcome->found = "internal error " + std::to_string(failed) + ": " + kept;
+      outcome->found = "internal error " + std::to_string(failed) + ": " + kept.text();
   }
   if (code == exit_fine && !refusal.empty()) outcome->found = "exit code 0 with an error: " + refusal;
   if (code != exit_fine && !one_line(refusal)) outcome->found = "not one line: " + refusal;
