@@ -38,6 +38,22 @@ class Ends(Restart):
         children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         return [int(pid) for pid in children if os.readlink(f"/proc/{pid}/exe") == os.path.realpath(BINARY)]
 
+    def kill_all(self, process):
+        """SIGKILL to mpiexec and its ranks; returns when none of them runs any more."""
+        ranks = self.ranks(process)
+        for pid in [process.pid, *ranks]:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        process.wait(60)
+
+        def ended(pid):
+            try:
+                return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+            except OSError:
+                return True
+
+        self.wait_until(lambda: all(map(ended, ranks)))
+
     def test_user_signal_to_mpiexec(self):
         process = self.start_endless(ranks=2)
         process.send_signal(signal.SIGUSR1)
@@ -90,14 +106,12 @@ class Ends(Restart):
         process = self.start_endless(ranks=2)
         self.wait_until(lambda: (self.room / "run/summary.json").exists())
         self.assertEqual((self.summary("run")["exit_reason"], self.summary("run")["checkpoint"]), ("unfinished", ""))
-        process.kill()
-        process.wait()
+        # The ranks too: without mpiexec they live for a moment, in which they would write to the directory of the next run.
+        self.kill_all(process)
         shutil.rmtree(self.room / "run")
         process = self.start_endless(ranks=2, options=["-checkpoint_interval", "1e-3"])
         self.wait_until(lambda: len(self.checkpoints()) == 2 and self.summary("run")["checkpoint"])
-        for pid in self.ranks(process):
-            os.kill(pid, signal.SIGKILL)
-        process.wait(60)
+        self.kill_all(process)
         summary = self.summary("run")
         self.assertEqual(summary["exit_reason"], "unfinished")
         with h5py.File(self.room / "run" / summary["checkpoint"]) as file:
