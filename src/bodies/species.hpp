@@ -1,7 +1,7 @@
 // A species: bodies of one shape and one material, and where they are placed.
 #pragma once
 
-#include "field/law.hpp"
+#include "field/material.hpp"
 #include "field/rigid_faces.hpp"
 #include "grid/grid.hpp"
 
@@ -92,20 +92,7 @@ struct SpeciesSpec {
     return (shape == Shape::tube || shape == Shape::cylinder) && d == axis;
   }
   bool is_membrane() const { return law == Law::membrane || law == Law::red_cell; }
-  Material material() const {
-    const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
-    return {at_rest,
-            attached.value_or(is_attached(shape)),
-            is_membrane() ? Law::membrane : law,
-            c1,
-            c2,
-            c3,
-            viscosity.value_or(0),
-            surface_tension,
-            body_force,
-            membrane,
-            stretch_force};
-  }
+  Material material() const;
 };
 
 }  // namespace eulastic

@@ -1,5 +1,7 @@
 #include "diagnostics/viscous_dissipation.hpp"
 
+#include "field/tangential_rows.hpp"
+
 namespace eulastic {
 namespace {
 

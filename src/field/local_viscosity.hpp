@@ -2,7 +2,6 @@
 #pragma once
 
 #include "field/field_block.hpp"
-#include "kernels/tangential_stress.hpp"
 
 namespace eulastic {
 
@@ -28,28 +27,5 @@ struct EdgeViscosity {
     return local ? density * (*local)[0](cell[0], cell[1], cell[2]) : uniform;
   }
 };
-
-/// The stress along surfaces around the centres of a row; two ghosts of v.
-template <int Dim>
-EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Grid &grid, const FieldBlock &viscosity,
-                                                                 const FieldBlock &velocity, int j, int k) {
-  const int along = viscosity_along_surface(Dim), last = Dim - 1;
-  const ConstView q = velocity[0];
-  const Real3 &h = grid.spacing();
-  const auto of_block = [j, k](const FieldBlock &block, int f) { return block[f].row(j, k); };
-  return {of_block(velocity, 0),
-          of_block(velocity, 1),
-          of_block(velocity, last),
-          of_block(viscosity, along),
-          of_block(viscosity, along + 1),
-          of_block(viscosity, along + 2),
-          of_block(viscosity, along + 1 + last),
-          q.stride(0),
-          q.stride(1),
-          q.stride(last),
-          1 / h[0],
-          1 / h[1],
-          1 / h[last]};
-}
 
 }  // namespace eulastic

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
+#include "kernels/momentum.hpp"
 
 namespace eulastic {
 namespace {

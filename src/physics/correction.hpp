@@ -2,9 +2,12 @@
 #pragma once
 
 #include "field/field_block.hpp"
-#include "kernels/momentum.hpp"
 
 namespace eulastic {
+
+namespace kernels {
+struct AcmIncrement;
+}
 
 /// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too
 /// (8). rotation = nu/2 is the rotational form of the second-order step, 0 the paper's. Rows of v are wrapped by three

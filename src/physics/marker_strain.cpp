@@ -2,6 +2,7 @@
 #include "base/events.hpp"
 #include "grid/threads.hpp"
 #include "kernels/surface_fit.hpp"
+#include "physics/membrane_tensor.hpp"
 #include "physics/surface_markers.hpp"
 
 #include <algorithm>

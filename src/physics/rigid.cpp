@@ -1,6 +1,7 @@
 #include "physics/rigid.hpp"
 
 #include "base/events.hpp"
+#include "kernels/super_time_stepping.hpp"
 #include "kernels/weno5.hpp"
 #include "physics/rigid_rows.hpp"
 

@@ -4,10 +4,13 @@
 
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
-#include "kernels/super_time_stepping.hpp"
 #include "physics/fluid.hpp"
 
 namespace eulastic {
+
+namespace kernels {
+struct RklStage;
+}
 
 /// Advection of cut faces whose neighbour upwind is inside: by the difference between the surface there and the face
 /// ahead, in place of WENO5. To `advection`, -v.grad v of now (may be null), and `scale` times to `rate`, which have

@@ -4,6 +4,7 @@
 #include "base/events.hpp"
 #include "grid/threads.hpp"
 #include "kernels/surface_fit.hpp"
+#include "physics/membrane_tensor.hpp"
 
 #include <algorithm>
 #include <cmath>

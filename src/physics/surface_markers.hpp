@@ -2,8 +2,8 @@
 // so that its strain does not fade; docs/method.md, section 18.
 #pragma once
 
+#include "field/field_block.hpp"
 #include "field/surface_marker.hpp"
-#include "physics/membrane_tensor.hpp"
 #include "physics/surface_cells.hpp"
 
 #include <vector>

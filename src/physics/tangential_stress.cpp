@@ -1,8 +1,8 @@
 #include "physics/tangential_stress.hpp"
 
+#include "field/tangential_rows.hpp"
 #include "grid/blocks.hpp"
 #include "grid/threads.hpp"
-#include "kernels/tangential_stress.hpp"
 
 #include <algorithm>
 #include <cstdint>

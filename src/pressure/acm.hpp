@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/ghost_exchange.hpp"
+#include "kernels/momentum.hpp"
 #include "pressure/pressure_solver.hpp"
 
 #include <array>

@@ -2,9 +2,12 @@
 #pragma once
 
 #include "field/field_block.hpp"
-#include "kernels/momentum.hpp"
 
 namespace eulastic {
+
+namespace kernels {
+struct AcmIncrement;
+}
 
 class PressureSolver {
 public:

@@ -84,15 +84,16 @@ TEST(AcmSweeps, SameBitsOnLargerGrids) {
         Sweeper one(PETSC_COMM_SELF, spec, {6, 2, multigrid});
         one.set(f);
         for (int repeat = 0; repeat < 2; ++repeat) one.solve(1e-5);
-        for (const GridSpec &shared : all_decompositions(spec))
-          for (const int team : {1, 3}) {
-            set_threads(team);
-            Sweeper many(run_communicator(), shared, {6, 2, multigrid});
-            many.set(f);
-            for (int repeat = 0; repeat < 2; ++repeat) many.solve(1e-5);
-            set_threads(1);
-            EXPECT_EQ(differences(many, one), 0) << name(shared) << multigrid << ", " << team << " threads";
-          }
+        int team = multigrid ? 1 : 3;  // threads: with every other decomposition
+        for (const GridSpec &shared : all_decompositions(spec)) {
+          team = 4 - team;
+          set_threads(team);
+          Sweeper many(run_communicator(), shared, {6, 2, multigrid});
+          many.set(f);
+          for (int repeat = 0; repeat < 2; ++repeat) many.solve(1e-5);
+          set_threads(1);
+          EXPECT_EQ(differences(many, one), 0) << name(shared) << multigrid << ", " << team << " threads";
+        }
       }
     }
 }

@@ -1,5 +1,6 @@
 // What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
 #include "grid/blocks.hpp"
+#include "kernels/momentum.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
 #include "support/polynomials.hpp"

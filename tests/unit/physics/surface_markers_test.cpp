@@ -1,6 +1,7 @@
 // Markers of membranes: the strain they tell, where they go, and who keeps them.
 #include "physics/surface_markers.hpp"
 #include "kernels/surface_fit.hpp"
+#include "physics/membrane_tensor.hpp"
 #include "support/interface_scene.hpp"
 
 #include <gtest/gtest.h>
