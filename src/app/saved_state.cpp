@@ -69,6 +69,28 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   return numbers;
 }
 
+// Of every body: force, torque, power.
+std::vector<double> numbers_of(const std::vector<RigidLoad> &loads) {
+  std::vector<double> numbers;
+  for (const RigidLoad &load : loads) {
+    numbers.insert(numbers.end(), load.force.begin(), load.force.end());
+    numbers.insert(numbers.end(), load.torque.begin(), load.torque.end());
+    numbers.push_back(load.power);
+  }
+  return numbers;
+}
+
+std::vector<RigidLoad> loads_of(const std::vector<double> &numbers) {
+  std::vector<RigidLoad> loads(numbers.size() / 7);
+  for (std::size_t b = 0; b < loads.size(); ++b) {
+    const double *from = &numbers[7 * b];
+    std::copy_n(from, 3, loads[b].force.begin());
+    std::copy_n(from + 3, 3, loads[b].torque.begin());
+    loads[b].power = from[6];
+  }
+  return loads;
+}
+
 // Null, or the array that has not the length it is expected to have.
 const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumbers &found) {
   for (const auto &[name, values] : expected.reals)
@@ -100,6 +122,8 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
   if (s.pressure_before) s.pressure_interval = reals["pressure_interval"][0];
   s.step = integers["step"][0];
+  if (const auto loads = reals.find("rigid_loads"); loads != reals.end())
+    solver->set_rigid_loads(loads_of(loads->second));
   o.series_rows = integers["output_rows"][0];
   o.bodies_rows = integers["output_rows"][1];
   o.snapshots = integers["output_rows"][2];
@@ -167,6 +191,11 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
   PetscCall(state_hash(solver->grid(), solver->state(), &hash));
   CheckpointNumbers numbers = numbers_of(*solver, position, hash);
   PetscCall(gather_numbers(*solver, &numbers));
+  if (solver->keeps_rigid_loads()) {
+    std::vector<RigidLoad> loads;
+    PetscCall(solver->rigid_loads(&loads));
+    numbers.reals["rigid_loads"] = numbers_of(loads);
+  }
   PetscCall(
       write_checkpoint(solver->grid(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
   PetscFunctionReturn(0);
@@ -188,7 +217,9 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(require_range(grid, path, find_absurd_count("forgotten", forgotten)));
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
-  const CheckpointNumbers expected = numbers_of(*solver, *position, 0);
+  CheckpointNumbers expected = numbers_of(*solver, *position, 0);
+  if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of a version before 0.3.0
+    expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);

@@ -26,6 +26,8 @@ public:
   /// Collective.
   PetscErrorCode place(double time, double surface_time);
   const RigidFaces &faces() const { return faces_; }
+  /// Of bodies that rest, RigidFaces::gaps from the owned solid fractions of all phases; after place(). Collective.
+  PetscErrorCode measure_gaps(const std::vector<Phase> &phases);
   /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
   PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
   bool travels(const Phase &phase) const;

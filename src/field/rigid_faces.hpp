@@ -63,6 +63,13 @@ struct RigidMass {
   Real3 torque(const RigidMotion &motion, double time, double density) const;
 };
 
+/// What a body that rests has more volume than the faces inside it, each with a cell's worth: of every component, and
+/// the same times the arm from its centre.
+struct RigidGap {
+  Real3 volume{};
+  std::array<Real3, 3> first{};
+};
+
 /// A body, or one of its images across periodic sides.
 struct RigidBody {
   int index = 0;   ///< among all rigid bodies
@@ -98,6 +105,7 @@ public:
   std::vector<RigidMotion> motions;
   std::vector<RigidBody> bodies;
   std::vector<RigidMass> masses;  ///< by the index of the body
+  std::vector<RigidGap> gaps;     ///< likewise; empty where bodies travel
   std::vector<Real3> ahead;       ///< of every motion: from the time of the surfaces to that of the faces, in cells
   int count = 0;                  ///< of bodies, images not counted
   bool moves = false, travels = false;
@@ -110,6 +118,8 @@ public:
     return {c.cuts.data() + c.first_cut[at], c.cuts.data() + c.first_cut[at + 1], c.runs.data() + c.first_run[at],
             c.runs.data() + c.first_run[at + 1], c.all[at] != 0};
   }
+  /// All cut faces of component a, those of ghost rows too.
+  const std::vector<Cut> &cuts(int a) const { return components_[a].cuts; }
   /// Component a of the velocity of a body at a face, at the times of the factors of its motion.
   double velocity(int a, const RigidBody &body, const Real3 &place, const Real3 &spacing, double of_velocity,
                   double of_rotation) const;

@@ -169,11 +169,14 @@ void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over
   scope.flops(cut_faces * 5);
 }
 
-RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached)
-    : faces_(faces), viscosity_(viscosity) {
+RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached, double weight,
+                       RigidMeans *means)
+    : faces_(faces), viscosity_(viscosity), weight_(weight), means_(means) {
   for (const RigidMotion &motion : faces.motions)
     moved_.push_back({motion.of_velocity.at(reached) - motion.of_velocity.at(time),
                       motion.of_rotation.at(reached) - motion.of_rotation.at(time)});
+  for (std::size_t m = 0; means && m < moved_.size(); ++m)
+    for (int of = 0; of < 2; ++of) means->factors[m][of] += weight * moved_[m][of];
 }
 
 void RigidStage::hold(const RigidFaces::Row &row, int dimension, int a, int begin, int end, const kernels::RklStage &c,
@@ -194,6 +197,7 @@ void RigidStage::hold(const RigidFaces::Row &row, int dimension, int a, int begi
     if (slope) sum += c.slope * slope[i];
     sum += c.viscous * viscosity_ * cut->share * cut->laplacian(now + i, stride, dimension, wall);
     held->push_back(sum);
+    if (means_) means_->velocity[a][cut - faces_.cuts(a).data()] += weight_ * now[i];
   }
 }
 

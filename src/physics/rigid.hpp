@@ -40,12 +40,19 @@ void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over
 void open_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
 /// Owned faces inside bodies get 0.
 void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
+/// What cut faces see within a step on average: their own velocity, and how fast the surfaces of every motion are.
+struct RigidMeans {
+  std::array<std::vector<double>, 3> velocity;  ///< of every component, by the place among RigidFaces::cuts()
+  std::vector<std::array<double, 2>> factors;   ///< of every motion: of its velocity, of its rotation
+};
+
 /// The cut faces of a row in one stage of RKL2. The regular stage writes over what their own reads: hold() computes
 /// them before it, release() puts them where they belong after it.
 class RigidStage {
 public:
   /// Increments of the factors of all motions from `time` to `reached`, when W_j-1 holds. c.viscous times `viscosity`.
-  RigidStage(const RigidFaces &faces, double viscosity, double time, double reached);
+  /// `means` (may be null) get `weight` times what has changed since `time`.
+  RigidStage(const RigidFaces &faces, double viscosity, double time, double reached, double weight, RigidMeans *means);
   void hold(const RigidFaces::Row &row, int dimension, int a, int begin, int end, const kernels::RklStage &c,
             const double *now, const std::array<std::ptrdiff_t, 3> &stride, const double *rate, const double *slope,
             const double *before, std::vector<double> *held) const;
@@ -53,7 +60,8 @@ public:
 
 private:
   const RigidFaces &faces_;
-  double viscosity_;
+  double viscosity_, weight_;
+  RigidMeans *means_;
   std::vector<std::array<double, 2>> moved_;  ///< of every motion
 };
 

@@ -3,6 +3,8 @@
 
 #include "kernels/super_time_stepping.hpp"
 
+#include <vector>
+
 namespace eulastic {
 
 /// b_j of RKL2; b_0 = b_1 = b_2 = 1/3.
@@ -26,6 +28,20 @@ inline kernels::RklStage rkl_stage_coefficients(int j, int stages, double dt, do
   const double mu_tilde = mu * w, gamma_tilde = -(1 - rkl_weight(j - 1)) * mu_tilde;
   return {mu, nu, mu_tilde * dt * viscosity, (mu_tilde + gamma_tilde) * dt,
           mu_tilde * dt * rkl_stage_time(j - 1, stages) * dt};
+}
+
+/// Weights of W_j-1, which stage j reads, in the mean of W over the step that the viscous term takes momentum with:
+/// W_s = dt (M_0 + nu lap sum weight_j W_j-1). Index j, 2 ... stages.
+inline std::vector<double> rkl_mean_weights(int stages) {
+  std::vector<double> weights(stages + 1), part_of_last(stages + 1);
+  part_of_last[stages] = 1;
+  for (int j = stages; j > 1; --j) {
+    const kernels::RklStage c = rkl_stage_coefficients(j, stages, 1, 1);
+    weights[j] = c.viscous * part_of_last[j];
+    part_of_last[j - 1] += c.mu * part_of_last[j];
+    part_of_last[j - 2] += c.nu * part_of_last[j];
+  }
+  return weights;
 }
 
 }  // namespace eulastic

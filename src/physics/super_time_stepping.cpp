@@ -268,7 +268,7 @@ void set_sides(const BoxSides &box, double start, double now, int s, Pass *pass)
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star, const RigidFaces *rigid) {
+                               FieldBlock &velocity_star, const RigidFaces *rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = grid.inverse_squares();
@@ -290,6 +290,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     }
   pass.first = rkl_first_step(stages, dt);
   pass.half = -0.5 * dt;  // the force at the start
+  const std::vector<double> weights = rigid ? rkl_mean_weights(stages) : std::vector<double>();
   int j = 2;
   do {
     const int left = stages - j + 1, passes = (left + depth - 1) / depth;  // of equal depth
@@ -298,7 +299,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     pass.ends = pass.depth == left;
     std::vector<RigidStage> rigid_stages;
     for (int s = 0; s < pass.depth; ++s) {
-      if (rigid) rigid_stages.emplace_back(*rigid, 1, time, time_of(j + s - 1));
+      if (rigid) rigid_stages.emplace_back(*rigid, 1, time, time_of(j + s - 1), weights[j + s], means);
       pass.stage[s] = rkl_stage_coefficients(j + s, stages, dt, kinematic_viscosity);
       set_sides(box, time, time_of(j + s - 1), s, &pass);
     }

@@ -9,6 +9,8 @@
 
 namespace eulastic {
 
+struct RigidMeans;
+
 /// Stages for dt where a plain explicit step bears dt_explicit: the least odd s >= 3 with
 /// dt <= dt_explicit (s^2 + s - 2)/4. (An even s leaves the stiffest mode undamped.)
 int rkl_stages(double dt, double dt_explicit);
@@ -23,10 +25,12 @@ struct SuperTimeStepping {
 /// v* = v + W_s, where W' = nu lap W + M_0 + (t - dt/2) M_1 over dt, W = 0 at the start and U(t) - U(time) on moving
 /// walls. Without M_1 the jump of the elastic force at an interface, which the viscous one balances at every moment,
 /// would leave an error of order dt^1.5. M_1 vanishes where no phase is stressed. One stage is plain explicit Euler
-/// and needs no `before`. `rigid` may be null; `rate` and slope have seen its surfaces.
+/// and needs no `before`. `rigid` may be null; `rate` and slope have seen its surfaces. `means` (may be null) begin
+/// with what is at `time` and become those that the viscous term has acted with.
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star, const RigidFaces *rigid = nullptr);
+                               FieldBlock &velocity_star, const RigidFaces *rigid = nullptr,
+                               RigidMeans *means = nullptr);
 
 }  // namespace eulastic

@@ -199,7 +199,7 @@ PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, do
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
-                               const RigidFaces *rigid, double viscosity_beside_rigid) {
+                               const RigidFaces *rigid, double viscosity_beside_rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const double first = rkl_first_step(stages, dt);
@@ -213,6 +213,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     first_row(row, -0.5 * dt, slope ? (*slope)[a].row(row.j, row.k) : nullptr, first, work.rate[a].row(row.j, row.k),
               work.now[a].row(row.j, row.k));
   });
+  const std::vector<double> weights = rigid ? rkl_mean_weights(stages) : std::vector<double>();
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
@@ -226,7 +227,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                            rkl_stage_coefficients(j, stages, dt, 1),
                            j == 2};
     std::unique_ptr<RigidStage> beside;
-    if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached);
+    if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached, weights[j], means);
     for_velocity_rows(grid, [&](int a, const Faces &row) {
       if (row.j < grid.owned()[1] && row.k < grid.owned()[2]) prefetch_ahead(grid, viscosity, stage, a, row.j, row.k);
       const RigidFaces::Row faces = rigid ? rigid->row(a, row.j, row.k) : RigidFaces::Row{};

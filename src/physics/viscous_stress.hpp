@@ -16,7 +16,8 @@ PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, do
 PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
                                LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
-                               const RigidFaces *rigid = nullptr, double viscosity_beside_rigid = 0);
+                               const RigidFaces *rigid = nullptr, double viscosity_beside_rigid = 0,
+                               RigidMeans *means = nullptr);
 
 /// p -= factor nu D*, in one ghost layer too: the rotational update where nu is that of the place.
 PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,

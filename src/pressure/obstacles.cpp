@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eulastic {
 namespace {
 
 constexpr double round_off = 1e-12;  // of the first residual: further on directions are noise
+constexpr double least_open = 0.03;  // mean openness that D* is divided by
 constexpr int patience = 12;         // iterations without progress: round-off
 
 template <int Dim>
@@ -181,6 +183,23 @@ PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next,
     }
     ++at;
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ObstacleSolver::spread(FieldBlock &divergence) const {
+  PetscFunctionBeginUser;
+  const int faces = 2 * grid_->dimension();
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    double *D = divergence[0].row(row.j, row.k);
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
+      const double *open = cells_[c].open;
+      D[cells_[c].i] /= std::max(least_open, std::accumulate(open, open + faces, 0.0) / faces);
+    }
+    ++at;
+  }
+  PetscCall(exchange_->update(divergence, 1));
+  fill_ghosts_of_increment(*grid_, divergence[0], 1);
   PetscFunctionReturn(0);
 }
 

@@ -28,6 +28,9 @@ public:
   /// Cells whose faces are all closed get what the pressure around them is, two layers deep: nothing corrects it there,
   /// and where a body moves away it is what the fluid begins with. All of a ghost layer. Collective.
   PetscErrorCode extend(FieldBlock &pressure) const;
+  /// D* of cells beside bodies becomes that of a whole cell, for the rotational update of p: divided by how far its
+  /// faces are open on average. All of a ghost layer. Collective.
+  PetscErrorCode spread(FieldBlock &divergence) const;
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }

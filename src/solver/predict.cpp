@@ -21,7 +21,9 @@ PetscErrorCode Solver::predict(double dt) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
   }
+  if (rigid_impulse_) rigid_impulse_->begin(now_.time, step.force_time, now_.velocity);
   PetscCall(spec_.explicit_predictor() ? predict_explicitly(fluid, step) : predict_in_stages(fluid, step));
+  if (rigid_impulse_) rigid_impulse_->add_prediction(dt, now_.velocity, velocity_star_);
   if (rigid_) impose_rigid_motion(*grid_, rigid_->faces(), now_.time + dt, velocity_star_);
   PetscFunctionReturn(0);
 }
@@ -81,13 +83,14 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
   if (slope_) viscous.slope = slope_.part(0, dim);
   int stages = 1;
+  RigidMeans *means = rigid_impulse_ ? rigid_impulse_->means() : nullptr;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
   if (viscosity_)
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, viscosity_, now_.time, dt, stages, now_.velocity,
-                              viscous, velocity_star_, rigid(), nu));
+                              viscous, velocity_star_, rigid(), nu, means));
   else
     PetscCall(super_time_step(*grid_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                              now_.phases, now_.velocity, viscous, velocity_star_, rigid()));
+                              now_.phases, now_.velocity, viscous, velocity_star_, rigid(), means));
   stages_ += stages;
   PetscFunctionReturn(0);
 }

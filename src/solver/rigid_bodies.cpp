@@ -55,10 +55,38 @@ void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, 
   impose_rigid_motion(*grid_, rigid_->faces(), time, velocity);
 }
 
+// From the state alone, until a step says more.
+PetscErrorCode Solver::start_rigid_loads() {
+  PetscFunctionBeginUser;
+  if (!rigid_ || rigid_->travel()) PetscFunctionReturn(0);
+  PetscCall(rigid_->measure_gaps(now_.phases));
+  rigid_impulse_ = std::make_unique<RigidImpulse>(*grid_, rigid_->faces(), spec_.fluid);
+  rigid_impulse_->begin(now_.time, now_.time, now_.velocity);
+  rigid_impulse_->set_pressure(now_.pressure);
+  PetscFunctionReturn(0);
+}
+
+void Solver::set_rigid_loads(std::vector<RigidLoad> loads) {
+  rigid_loads_ = std::move(loads);
+  rigid_loads_step_ = now_.step;
+}
+
 PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   loads->clear();
   if (!rigid_) PetscFunctionReturn(0);
+  if (rigid_->travel()) {
+    PetscCall(travelling_loads(loads));
+    PetscFunctionReturn(0);
+  }
+  if (rigid_loads_step_ != now_.step) PetscCall(rigid_impulse_->measure(now_.time, now_.velocity, &rigid_loads_));
+  rigid_loads_step_ = now_.step;
+  *loads = rigid_loads_;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::travelling_loads(std::vector<RigidLoad> *loads) {
+  PetscFunctionBeginUser;
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
   Fluid fluid = spec_.fluid;
@@ -68,21 +96,15 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscCall(viscosity_now(&viscosity));
   if (viscosity) fluid.viscosity = 0;
   const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
-  const bool travel = rigid_->travel();
-  FieldBlock none, no_pressure;
-  if (travel) {
-    no_pressure = FieldBlock(*grid_, 1);
-    PetscCall(rigid_->place(now_.time, now_.time));
-  }
-  const FieldBlock &pressure = travel ? no_pressure : now_.pressure;
+  FieldBlock none, no_pressure(*grid_, 1);
+  PetscCall(rigid_->place(now_.time, now_.time));
   WorkSpace::Lease rate;
   PetscCall(work_->take("loads on rigid bodies", grid_->dimension(), &rate));
-  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, pressure, *phases, none, rate.fields()));
+  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, no_pressure, *phases, none, rate.fields()));
   add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
   if (viscosity) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
-  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, pressure,
+  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, no_pressure,
                                 rate.fields(), force, loads));
-  if (!travel) PetscFunctionReturn(0);
   // Pressure is that of another time, when the bodies were elsewhere.
   const double time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
   Fluid alone = spec_.fluid;

@@ -71,6 +71,7 @@ PetscErrorCode Solver::prepare() {
   if (volume_crosses(spec_.sides)) PetscCall(start_flow());
   if (loads_) PetscCall(find_responses());
   if (rigid_ && !rigid_->touching().empty()) crowded_ = rigid_->touching();
+  PetscCall(start_rigid_loads());
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const int dim = grid_->dimension();
@@ -140,6 +141,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
+  PetscCall(start_rigid_loads());
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*grid_, phase));
@@ -257,12 +259,16 @@ PetscErrorCode Solver::project(double dt) {
   fill_ghosts_of_increment(*grid_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
+  if (obstacles_ && spec_.staggered()) PetscCall(obstacles_->spread(divergence));
+  if (rigid_impulse_) rigid_impulse_->set_pressure(now_.pressure);
+  if (rigid_impulse_ && !pressure_solver_->formula()) rigid_impulse_->add_increment(increment.fields());
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
     PetscCall(
         correct_velocity(*grid_, density, dt, rotate.uniform, *formula, divergence, velocity_star_, now_.pressure));
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
+  if (rigid_impulse_ && (viscosity_ || pressure_solver_->formula())) rigid_impulse_->set_pressure(now_.pressure);
   respect_rigid(now_.time + dt, dt, increment.fields(), velocity_star_);
   if (loads_) PetscCall(settle_loads(dt, divergence, increment.fields()));
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_.fields, rotate.local, divergence, now_.pressure));

@@ -12,7 +12,7 @@
 #include "physics/limits.hpp"
 #include "physics/membrane.hpp"
 #include "physics/momentum.hpp"
-#include "physics/rigid.hpp"
+#include "physics/rigid_impulse.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
@@ -76,8 +76,12 @@ public:
   const RigidFaces *rigid() const { return rigid_ ? &rigid_->faces() : nullptr; }
   /// Sides with profiles that know the bodies; before prepare().
   void set_profiles(const BoxSides &sides) { spec_.sides = sides; }
-  /// What the fluid exerts on every rigid body, in the order of the bodies; costs as much as the rate of momentum.
+  /// What the fluid has exerted on every rigid body in the last step, in the order of the bodies; before the first one,
+  /// what the state says. Where bodies travel it costs as much as the rate of momentum.
   PetscErrorCode rigid_loads(std::vector<RigidLoad> *loads);
+  /// Whether loads cannot be told from the state; then they are set before resume().
+  bool keeps_rigid_loads() const { return rigid_impulse_ != nullptr; }
+  void set_rigid_loads(std::vector<RigidLoad> loads);
   /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the
   /// step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
@@ -149,6 +153,8 @@ private:
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
   /// middle.
   PetscErrorCode move_rigid(double time, double dt);
+  PetscErrorCode start_rigid_loads();
+  PetscErrorCode travelling_loads(std::vector<RigidLoad> *loads);
   /// phi and labels of phases of rigid bodies that travel.
   PetscErrorCode fill_rigid(double time, std::vector<Phase> *phases);
   /// After correct_velocity(): cut faces have their part of the increment, those inside rigid bodies their velocity.
@@ -195,8 +201,11 @@ private:
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies
-  ObstacleSolver *obstacles_ = nullptr;              ///< pressure_solver_, if it sees them
-  std::vector<Phase> phases_now_;                    ///< copies for phases_now(), the first one's B an idle_tensor()
+  std::unique_ptr<RigidImpulse> rigid_impulse_;      ///< null where nothing is rigid, or something travels
+  std::vector<RigidLoad> rigid_loads_;               ///< of a step, if rigid_impulse_
+  std::int64_t rigid_loads_step_ = -1;
+  ObstacleSolver *obstacles_ = nullptr;  ///< pressure_solver_, if it sees them
+  std::vector<Phase> phases_now_;        ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
   double looks_back_ = 0;                ///< before the end of the step
   bool as_they_are_ = false;             ///< phases_now(), see look_behind()

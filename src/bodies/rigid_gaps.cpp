@@ -1,0 +1,85 @@
+// RigidBodies: the volume between the surface of bodies that rest and the faces inside them.
+#include "bodies/rigid.hpp"
+#include "field/exact_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+
+// Every cell gives half of its solid fraction to each of its two faces of a component. A fluid face has it in excess of
+// what counts as inside; a face inside lacks what the cell has of fluid. Where bodies overlap only one of them counts.
+PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
+  PetscFunctionBeginUser;
+  if (!exist() || travel()) PetscFunctionReturn(0);
+  constexpr int per_component = 4, per_body = 3 * per_component;
+  const int dimension = grid_.dimension(), cells = grid_.owned()[0];
+  ExactSums sums(per_body * faces_.count);
+  const auto add = [&](int image, int a, Real3 place, double part, bool nearest) {
+    const int index = faces_.bodies[image].index;
+    const PlacedBody *body = sources_[index].body.get();
+    const Real3 &centre = faces_.bodies[image].centre;
+    sums.add(per_body * index + per_component * a, part);
+    for (int d = 0; d < dimension; ++d) {
+      double arm = place[d] - centre[d];
+      if (nearest && body && body->ends(d) && !grid_.is_wall(d))
+        arm -= grid_.cells()[d] * std::round(arm / grid_.cells()[d]);
+      sums.add(per_body * index + per_component * a + 1 + d, part * arm * grid_.spacing()[d]);
+    }
+  };
+  const auto index_of = [&](const Phase &phase, int label) {
+    for (std::size_t index = 0; index < sources_.size(); ++index) {
+      const Species &species = species_[faces_.bodies[images * index].motion];
+      if (species.spec.name != phase.species) continue;
+      return static_cast<int>(index) + label - species.first_label;  // bodies of a species follow each other
+    }
+    return -1;
+  };
+  std::vector<int> beside[2];
+  for (std::vector<int> &bodies : beside) bodies.resize(cells);
+  for (const Segment &row : grid_.rows())
+    for (int a = 0; a < dimension; ++a) {
+      for (const int high : {0, 1}) {
+        std::fill(beside[high].begin(), beside[high].end(), -1);
+        const int shift = a == 0 && high;
+        const RigidFaces::Row faces = faces_.row(a, row.j + (a == 1 && high), row.k + (a == 2 && high));
+        for (const RigidFaces::Run *run = faces.runs; run != faces.runs_end; ++run)
+          for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, cells); ++i)
+            beside[high][i] = run->body;
+      }
+      for (int i = 0; i < cells; ++i) {
+        double solid = 0;
+        for (const Phase &phase : phases)
+          if (phase.material.is_rigid()) solid += phase.fraction[0](i, row.j, row.k);
+        const double fluid = 1 - std::min(1.0, solid);
+        if (solid == 0 && beside[0][i] < 0 && beside[1][i] < 0) continue;
+        for (const int high : {0, 1}) {
+          Int3 face{i, row.j, row.k};
+          face[a] += high;
+          const Real3 place = place_of_face(grid_, a, face[0], face[1], face[2]);
+          if (beside[high][i] >= 0) {
+            if (fluid > 0) add(beside[high][i], a, place, -0.5 * fluid, false);
+            continue;
+          }
+          for (const Phase &phase : phases) {
+            const double part = phase.material.is_rigid() ? phase.fraction[0](i, row.j, row.k) : 0;
+            const int index = part > 0 && phase.label ? index_of(phase, int(phase.label[0](i, row.j, row.k))) : -1;
+            if (index >= 0 && index < faces_.count)
+              add(image_of(index, {0, 0, 0}), a, place, 0.5 * part * std::min(1.0, 1 / solid), true);
+          }
+        }
+      }
+    }
+  std::vector<double> total(per_body * faces_.count);
+  PetscCall(sums.reduce(grid_.comm(), total.data()));
+  faces_.gaps.assign(faces_.count, {});
+  for (int index = 0; index < faces_.count; ++index)
+    for (int a = 0; a < 3; ++a) {
+      const double *found = &total[per_body * index + per_component * a];
+      faces_.gaps[index].volume[a] = found[0] * grid_.cell_volume();
+      for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * grid_.cell_volume();
+    }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,56 @@
+// What a step exchanges with rigid bodies that stay where they are: their loads are the momentum that the fluid lacks
+// after it (docs/method.md, section 19).
+#pragma once
+
+#include "physics/rigid.hpp"
+
+#include <array>
+#include <vector>
+
+namespace eulastic {
+
+class ExactSums;
+
+class RigidImpulse {
+public:
+  /// `faces` of bodies that do not travel; must outlive it.
+  RigidImpulse(const Grid &grid, const RigidFaces &faces, const Fluid &fluid);
+
+  /// Begins a step: the velocity is that of `time`, body forces are those of `force_time`.
+  void begin(double time, double force_time, const FieldBlock &velocity);
+  /// Where viscous stages add what they change.
+  RigidMeans *means() { return &means_; }
+  /// After the stages: what cut faces lack because only a share of their rate moves them.
+  void add_prediction(double dt, const FieldBlock &velocity, const FieldBlock &velocity_star);
+  /// The pressure that acts in the step, less what increments add to it; owned cells are read.
+  void set_pressure(const FieldBlock &pressure);
+  /// An increment that corrects the velocity; one ghost layer.
+  void add_increment(const FieldBlock &increment);
+  /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. `velocity` is that of
+  /// `time`, when power is measured. Exact sums: the same bits on any ranks. Collective.
+  PetscErrorCode measure(double time, const FieldBlock &velocity, std::vector<RigidLoad> *loads) const;
+  std::size_t bytes() const;
+
+private:
+  /// A cell with different bodies on its faces across direction d; -1: fluid.
+  struct Contact {
+    int d, i, j, k, low, high;
+  };
+  RigidMeans means_of(double time, const FieldBlock &velocity) const;
+  void add_pressure(const Contact &contact, double pressure, ExactSums *sums) const;
+  void add_cut(const RigidMeans &means, int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const;
+  void add(int body, int a, const Real3 &place, double push, ExactSums *sums) const;
+  PetscErrorCode sum(const RigidMeans &means, std::vector<double> *total) const;
+  std::size_t index(int a, const RigidFaces::Cut &cut) const { return &cut - faces_.cuts(a).data(); }
+
+  const Grid &grid_;
+  const RigidFaces &faces_;
+  Fluid fluid_;
+  Real3 force_{};  // per mass
+  RigidMeans means_;
+  std::array<std::vector<double>, 3> lacks_;  // by the place among cuts: dv/dt that cut faces did not get
+  std::vector<Contact> contacts_;
+  std::vector<double> pressure_;  // of every contact
+};
+
+}  // namespace eulastic
