@@ -48,6 +48,8 @@ struct Between {
     (*this)(surface.area_energy, other.area_energy);
     (*this)(surface.bending_energy, other.bending_energy);
     (*this)(surface.turning_rate, other.turning_rate);
+    (*this)(surface.area_strain, other.area_strain);
+    (*this)(surface.largest_stretch, other.largest_stretch);
   }
   void operator()(EnergyRates &rates, const EnergyRates &other) const {
     (*this)(rates.force_power, other.force_power);

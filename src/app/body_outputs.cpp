@@ -1,8 +1,10 @@
 // Outputs: what is said of bodies.
 #include "app/outputs.hpp"
+#include "app/red_cell.hpp"
 #include "physics/limits.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 namespace eulastic {
@@ -33,6 +35,65 @@ PetscErrorCode Outputs::measure_drift(Measured *measured) {
     if (body.label == m.drifting_body) place = body.centroid;
   PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, grid_->comm()));
   PetscFunctionReturn(0);
+}
+
+// The same.
+PetscErrorCode Outputs::measure_strains(Measured *measured) {
+  Measured &m = *measured;
+  Largest largest[2];  // stretch; area of a red cell. MPI_DOUBLE_INT; of equal ones the first
+  const auto see = [](double value, int label, Largest *of) {
+    if (of->label == 0 || value > of->value) *of = {value, label};
+  };
+  PetscFunctionBeginUser;
+  if (solver_->bodies().bodies() == 0) PetscFunctionReturn(0);
+  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+    const BodyMeasure &body = m.bodies[b];
+    const SpeciesSpec &spec = config_.species[body.species];
+    see(largest_stretch(m.bodies, m.surfaces, b), body.label, &largest[0]);
+    if (spec.law == Law::red_cell && b < m.surfaces.size()) see(m.surfaces[b].area_strain, body.label, &largest[1]);
+  }
+  for (Largest &l : largest)
+    if (l.label == 0) l = {-HUGE_VAL, INT_MAX};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE_INT, MPI_MAXLOC, grid_->comm()));
+  for (Largest &l : largest)
+    if (l.label == INT_MAX) l = {};
+  m.stretch = largest[0];
+  m.red_cell_area = largest[1];
+  PetscFunctionReturn(0);
+}
+
+// Of body b of `bodies`; of membranes that along the surface.
+double Outputs::largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
+                                std::size_t b) const {
+  if (config_.species[bodies[b].species].is_membrane()) return b < surfaces.size() ? surfaces[b].largest_stretch : 1;
+  return std::sqrt(stretch_squared(bodies[b].trace_max, grid_->dimension()));
+}
+
+std::string Outputs::strain_warning() {
+  constexpr double stretched = 2;
+  const Measured &m = row_.measured;
+  const auto once = [&](const Largest &of, double limit, bool *said) {
+    const bool now = !*said && of.value > limit;
+    *said = *said || now;
+    return now;
+  };
+  char text[300];
+  if (once(m.red_cell_area, red_cell_bursts, &area_warned_)) {
+    std::snprintf(
+        text, sizeof text,
+        "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane bursts; a "
+        "weaker flow, or a larger -NAME_area_modulus",
+        m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
+    return text;
+  }
+  if (once(m.stretch, stretched, &stretch_warned_)) {
+    std::snprintf(text, sizeof text,
+                  "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; more "
+                  "-grid_cells, and look at the verdict at the end",
+                  m.time, m.stretch.label, m.stretch.value, stretched);
+    return text;
+  }
+  return {};
 }
 
 PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
@@ -68,7 +129,7 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
     record.taylor_deformation = body.taylor_deformation;
     record.inclination = body.inclination;
     record.elastic_energy = body.elastic_energy;
-    record.largest_stretch = std::sqrt(stretch_squared(body.trace_max, grid_->dimension()));
+    record.largest_stretch = largest_stretch(bodies, surfaces, b);
     record.rest_deformation = body.rest_deformation;
     if (config_.species[body.species].law == Law::rigid && rigid < measured.loads.size()) {
       record.force = measured.loads[rigid].force;
@@ -97,9 +158,9 @@ PetscErrorCode Outputs::list_bodies(Summary *summary) const {
   PetscFunctionBeginUser;
   const MPI_Comm comm = grid_->comm();
   const int all = solver_->bodies().bodies();
-  PetscCall(gather_bodies(comm, all, Summary::most_bodies, measured_.bodies, &bodies));
-  if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, measured_.surfaces, &surfaces));
-  summary->bodies = records(measured_, bodies, surfaces);
+  PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.bodies, &bodies));
+  if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.surfaces, &surfaces));
+  summary->bodies = records(now_.measured, bodies, surfaces);
   PetscFunctionReturn(0);
 }
 

@@ -76,7 +76,6 @@ PetscErrorCode Checkpoints::write(RunPosition position, Stop *stop) {
   PetscCall(guards_->check(*solver_, outputs_->measured(), stop));
   if (*stop) PetscFunctionReturn(0);
   PetscCall(outputs_->sync(&position.outputs));
-  position.energy = guards_->energy();
   PetscCallMPI(MPI_Bcast(&position.wall_seconds, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
   PetscCallMPI(MPI_Bcast(&position.wall_seconds_total, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
   PetscCall(save_state(solver_, position, options_, directory_ + "/" + checkpoint_name(static_cast<long>(state.step))));

@@ -97,7 +97,7 @@ struct GuardControl {
   double divergence = 0.2;     ///< rms(div v) h/U
   double mach = 1;             ///< U/beta of artificial compressibility
   double volume_drift = 0.2;   ///< relative, of any body
-  double energy_growth = 0.3;  ///< of kinetic + elastic energy without forcing, per energy at the start
+  double energy_growth = 0.3;  ///< energy that the run makes itself, per energy held and supplied meanwhile
   double memory = 1;           ///< needed by the ranks of a node, per memory it has
 };
 

@@ -28,14 +28,6 @@ std::string where(const State &state, const Real3 &place) {
 // NaN is beyond every limit.
 bool beyond(double value, double limit) { return limit > 0 && !(value <= limit); }
 
-// Of the elastic energy: tr B - 3 is a difference of numbers of order 1.
-double round_off(const Solver &solver) {
-  double modulus = 0, volume = 1;
-  for (const Phase &phase : solver.state().phases) modulus = std::max(modulus, phase.material.shear_modulus);
-  for (int d = 0; d < solver.grid().dimension(); ++d) volume *= solver.grid().spec().length[d];
-  return 1e-12 * modulus * volume;
-}
-
 // For extremes that met such a value.
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
@@ -58,10 +50,6 @@ Guards::Guards(const Config &config) : control_(config.guard) {
   pressure_advice_ = pressure == PressureKind::acm   ? "raise -acm_sweeps_max, lower -acm_tolerance or -time_step"
                      : pressure == PressureKind::ksp ? "lower -pressure_ksp_rtol or -time_step"
                                                      : "lower -time_step";
-  for (double f : config.fluid.body_force.force) forced_ = forced_ || f != 0;
-  forced_ = forced_ || wall_speed(config.sides) != 0 || volume_crosses(config.sides);
-  for (const SpeciesSpec &spec : config.species)
-    forced_ = forced_ || spec.motion.moves() || spec.body_force.acts() || spec.stretch_force.force > 0;
 }
 
 PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const {
@@ -91,18 +79,10 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop) {
+PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop) const {
   PetscFunctionBeginUser;
   const State &state = solver.state();
-  const double energy = m.flow.kinetic_energy + m.flow.elastic_energy + m.surface.energy;
-  if (energy_.first < 0) {
-    energy_.first = energy_.lowest = std::max(energy, 0.0);
-    PetscFunctionReturn(0);
-  }
   if (state.step == 0) PetscFunctionReturn(0);
-  energy_.lowest = std::min(energy_.lowest, energy);
-  const double scale = energy_.first + round_off(solver);
-  const double growth = energy_.first > 0 && !forced_ ? (energy - energy_.lowest) / scale : 0;
   // Flow that has come to rest has no scale: no smaller one than a Courant number of 1e-6, as in the solver.
   const Real3 &h = solver.grid().spacing();
   const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.grid().dimension()) / state.dt;
@@ -110,11 +90,12 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   std::string what;
   Real3 place{};
   auto find = place_of_speed;
-  if (beyond(growth, control_.energy_growth)) {
+  if (beyond(m.energy_made, control_.energy_growth)) {
     what = text(
-        "kinetic + elastic energy %.4g has grown without forcing, by %.3g of the %.4g at the start, above "
-        "-guard_energy_growth %g; lower -time_step (%.3g now)",
-        energy, growth, energy_.first, control_.energy_growth, state.dt);
+        "the run has made energy of its own, %.3g of what it held and was supplied with meanwhile, above "
+        "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
+        "apart",
+        m.energy_made, control_.energy_growth, state.dt);
   } else if (beyond(divergence, control_.divergence)) {
     what = text("rms(div v) h/U = %.3g is above -guard_divergence %g; %s (%.3g now)", divergence, control_.divergence,
                 pressure_advice_.c_str(), state.dt);

@@ -19,6 +19,12 @@ struct Stop {
   explicit operator bool() const { return !reason.empty(); }
 };
 
+/// The largest value of all bodies, and the label of the body that has it; 0 if there is none.
+struct Largest {
+  double value = 0;
+  int label = 0;
+};
+
 /// A state as measured for series.csv.
 struct Measured {
   double time = -1;  ///< of the state; negative: not yet
@@ -32,13 +38,10 @@ struct Measured {
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
   int drifting_body = 0;      ///< its label
   Real3 drifting_place{};
-  double mach = 0;            ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
-};
-
-/// What -guard_energy_growth compares with; of all runs that led here.
-struct GuardedEnergy {
-  double first = -1;  ///< negative: not measured yet
-  double lowest = 0;
+  double energy_made = 0;  ///< EnergyBudget::made_share()
+  Largest stretch;         ///< of all bodies
+  Largest red_cell_area;   ///< of red cells: growth of the area since rest
+  double mach = 0;         ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 
 class Guards {
@@ -49,16 +52,12 @@ public:
   PetscErrorCode before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const;
   /// Collective. Velocity and B of any state, and whether bodies near each other are separate.
   PetscErrorCode check_finite(const Solver &solver, Stop *stop) const;
-  /// Collective. A measured state. The first one is what energy is compared with; it passes.
-  PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop);
-  const GuardedEnergy &energy() const { return energy_; }
-  void resume(const GuardedEnergy &energy) { energy_ = energy; }
+  /// Collective. A measured state; that of the start passes.
+  PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop) const;
 
 private:
   GuardControl control_;
   std::string pressure_advice_;
-  bool forced_ = false;
-  GuardedEnergy energy_;
 };
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 #include "app/outputs.hpp"
 
 #include "app/series_columns.hpp"
+#include "app/verdict.hpp"
 #include "base/events.hpp"
 
 #include <algorithm>
@@ -21,6 +22,9 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   membranes_ = std::any_of(config.species.begin(), config.species.end(),
                            [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   energy_ = position.energy;
+  energy_.allow_return(config.method.pressure == PressureKind::acm && config.method.acm_of_the_paper());
+  const double apart = std::max(config.output.series_interval, config.time.step);
+  rows_resolve_forcing_ = 4 * apart <= solver->limits({}).forcing;
   mach_max_ = position.mach_max;
 }
 
@@ -57,18 +61,27 @@ void Outputs::moved_to(const std::string &directory) {
 
 PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
-  Measured &m = measured_;
+  Measured &m = now_.measured;
   if (m.time == solver_->state().time) PetscFunctionReturn(0);
-  PetscCall(look(&m));
+  PetscCall(look(&now_));
   if (solver_->bodies().first_volumes().empty()) {
     std::vector<double> volumes;
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
     solver_->bodies().set_first_volumes(std::move(volumes));
   }
   PetscCall(measure_drift(&m));
+  PetscCall(measure_strains(&m));
   if (solver_->state().step > 0)
     mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
+  m.energy_made = rows_resolve_forcing_ ? budget_now().made_share() : 0;
   PetscFunctionReturn(0);
+}
+
+// Only rows of series.csv advance the budget of the run.
+EnergyBudget Outputs::budget_now() const {
+  EnergyBudget budget = energy_;
+  budget.advance(now_.measured.time, now_.energy);
+  return budget;
 }
 
 PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times) {
@@ -157,39 +170,43 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   }
   summary.phases = static_cast<long>(state.phases.size());
   summary.strain_forgotten = static_cast<long>(state.forgotten);
-  summary.divergence_rms = measured_.flow.divergence_rms;
-  summary.divergence_max = measured_.flow.divergence_max;
+  const Measured &measured = now_.measured;
+  summary.divergence_rms = measured.flow.divergence_rms;
+  summary.divergence_max = measured.flow.divergence_max;
   summary.mach_max = mach_max_;
-  summary.volume_drift = measured_.volume_drift;
-  summary.kinetic_energy = measured_.flow.kinetic_energy;
-  summary.elastic_energy = measured_.flow.elastic_energy;
-  Row row;
-  PetscCall(look_at_energy(measured_, &row));
-  const EnergyState &energy = row.energy;
-  EnergyBudget budget = energy_;  // only lines of series.csv advance that of the run
-  budget.advance(state.time, energy);
+  summary.volume_drift = measured.volume_drift;
+  summary.kinetic_energy = measured.flow.kinetic_energy;
+  summary.elastic_energy = measured.flow.elastic_energy;
+  const EnergyState &energy = now_.energy;
+  const EnergyBudget budget = budget_now();
   summary.viscous_dissipation = energy.dissipation;
   summary.force_power = energy.rates.force_power;
   summary.wall_power = energy.rates.wall_power;
   summary.side_power = energy.rates.side_power;
-  for (const SideFlow &side : row.sides) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
+  for (const SideFlow &side : now_.sides) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
   summary.elastic_power = energy.rates.elastic_power;
   summary.energy_supplied = budget.supplied();
   summary.energy_dissipated = budget.dissipated();
   summary.energy_lost = budget.lost();
   summary.energy_lost_elastic = budget.lost_elastic();
   summary.energy_lost_extended = budget.lost_extended();
+  summary.energy_made_share = budget.made_share_max();
   summary.surface_energy = energy.surface;
   summary.surface_power = energy.surface_power;
-  summary.bulk_velocity = measured_.flow.bulk_velocity[0];
+  summary.bulk_velocity = measured.flow.bulk_velocity[0];
   PetscCall(list_bodies(&summary));
-  double counted[2] = {0, 0};  // bytes of fields, points where B is evolved
+  double counted[3] = {0, 0, 0};  // bytes of fields, points where B is evolved, markers of membranes
   counted[0] = double(solver_->bytes());
   for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 2, MPI_DOUBLE, MPI_SUM, grid_->comm()));
+  counted[2] = double(state.markers.size());
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, grid_->comm()));
   summary.bytes_per_cell = counted[0] / grid_->cell_count();
   summary.active_fraction = counted[1] / grid_->cell_count();
   PetscCall(state_hash(*grid_, state, &summary.state_hash));
+  const double evolved = (counted[1] + counted[2]) * double(state.step);
+  const Evidence evidence{budget, rows_resolve_forcing_, measured, double(state.forgotten), evolved};
+  verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};
+  summary.verdicts = verdicts_;
   PetscCall(eulastic::write_summary(grid_->comm(), directory_ + "/summary.json", summary));
   PetscFunctionReturn(0);
 }

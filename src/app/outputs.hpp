@@ -46,18 +46,24 @@ public:
   /// In the middle of the next step, of dt: the row that waits becomes what lies between that and the last middle; the
   /// next write_due() writes it.
   PetscErrorCode see_middle(double dt);
+  /// Later in that step, with its pressure and the velocity of its start: the same of what passes the sides.
+  PetscErrorCode see_pressure(double dt);
   /// Writes the row that waits if there is no next step.
   PetscErrorCode write_waiting();
   /// The last row, once; null if there is no new one.
   const Measured *take_row();
+  /// One line, once per run, if a red cell or any body is strained much in the last row, or nothing.
+  std::string strain_warning();
   /// Measures the state, if that has not been done.
   PetscErrorCode measure();
   /// As of the last measure().
-  const Measured &measured() const { return measured_; }
+  const Measured &measured() const { return now_.measured; }
   /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing. Collective, after measure().
   PetscErrorCode unresolved_bodies(std::string *line) const;
   /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
   PetscErrorCode write_summary(Summary summary);
+  /// Those of the summary that was written last.
+  const std::vector<Summary::Verdict> &verdicts() const { return verdicts_; }
 
 private:
   int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
@@ -67,6 +73,9 @@ private:
                                   const std::vector<SurfaceMeasure> &surfaces) const;
   PetscErrorCode list_bodies(Summary *summary) const;
   PetscErrorCode measure_drift(Measured *measured);
+  PetscErrorCode measure_strains(Measured *measured);
+  double largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
+                         std::size_t b) const;
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
   /// A state and what series.csv has of it beside.
@@ -80,9 +89,11 @@ private:
   PetscErrorCode look(Measured *measured);
   PetscErrorCode look_at_energy(const Measured &measured, Row *row);
   PetscErrorCode look(Row *row);
+  void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
   PetscErrorCode write_row();
   PetscErrorCode write_row_now();
+  EnergyBudget budget_now() const;
 
   Config config_;
   double probes_time_ = -1;  ///< until which those of a run that goes on stay
@@ -95,11 +106,14 @@ private:
   std::unique_ptr<BodiesFile> bodies_file_;
   std::unique_ptr<SnapshotOutput> snapshots_;
   Due series_due_, snapshot_due_;
-  Measured measured_;
+  Row now_;  ///< as of the last measure()
   Row row_;  ///< the last one, or the one that waits, as it was in the middle of the last step
   bool waits_ = false, seen_ = false, is_new_ = false;
   double series_time_before_ = -1;  ///< of the row before the one that waits
   EnergyBudget energy_;
+  bool rows_resolve_forcing_ = true;  ///< rows of series.csv are close enough for what swings
+  bool area_warned_ = false, stretch_warned_ = false;
+  std::vector<Summary::Verdict> verdicts_;
   long bodies_rows_ = 0, snapshots_before_ = 0;
   double mach_max_ = 0;
 };

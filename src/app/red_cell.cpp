@@ -30,14 +30,16 @@ std::vector<std::string> red_cell_lines(const Config &config) {
   return lines;
 }
 
-std::vector<std::string> coarse_surface_warnings(const Config &config) {
+namespace {
+
+std::vector<std::string> coarse_surfaces(const Config &config, bool of_membranes) {
   constexpr double apart = 3, radius_of_drop = 6, round_off = 1 - 1e-9;  // in cells
   std::vector<std::string> warnings;
   const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   double spacing = 0;
   for (int d = 0; d < dimension; ++d) spacing = std::max(spacing, config.grid.length[d] / config.grid.cells[d]);
   for (const SpeciesSpec &spec : config.species) {
-    if (!spec.is_membrane() && !(spec.surface_tension > 0)) continue;
+    if (spec.is_membrane() ? !of_membranes : !(spec.surface_tension > 0)) continue;
     const auto &axes = spec.semi_axes;
     double thickness = 2 * spec.radius;
     if (spec.shape == Shape::ellipsoid) thickness = 2 * *std::min_element(axes.begin(), axes.begin() + dimension);
@@ -61,5 +63,11 @@ std::vector<std::string> coarse_surface_warnings(const Config &config) {
   }
   return warnings;
 }
+
+}  // namespace
+
+std::vector<std::string> coarse_surface_warnings(const Config &config) { return coarse_surfaces(config, true); }
+
+std::vector<std::string> coarse_drop_warnings(const Config &config) { return coarse_surfaces(config, false); }
 
 }  // namespace eulastic

@@ -22,10 +22,12 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const FieldBlock *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const bool again = m.time == state.time;  // with the same velocity and pressure
-  if (!again || viscosity)
+  if (!again || viscosity) {
     PetscCall(measure_flow(
         *grid_, state.velocity,
         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
+    PetscCall(solver_->add_rigid_dissipation(&m.flow.viscous_dissipation));
+  }
   PetscCall(measure_phases(*grid_, *phases, &m.flow));
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
@@ -67,10 +69,34 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
                                &row->sides));
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
+  set_energy_scales(&energy);
   row->dt = state.dt;
   row->step = double(state.step);
   row->bodies = solver_->bodies().bodies();
   PetscFunctionReturn(0);
+}
+
+// Elastic energy is made of differences of numbers of order 1. Where forces are balanced by a pressure, what is not is
+// a part of what they give a fluid at rest in a step. Their power is at most |f| sqrt(2 rho K V), by Cauchy and
+// Schwarz.
+void Outputs::set_energy_scales(EnergyState *energy) const {
+  double modulus = 0, volume = 1, shortest = HUGE_VAL;
+  for (int d = 0; d < grid_->dimension(); ++d) {
+    volume *= grid_->spec().length[d];
+    shortest = std::min(shortest, grid_->spacing()[d]);
+  }
+  const State &state = solver_->state();
+  const auto size = [](const Real3 &f) { return std::hypot(f[0], f[1], f[2]); };
+  double force = size(config_.fluid.body_force.force);
+  for (const SpeciesSpec &spec : config_.species) force += size(spec.body_force.force);
+  for (const Phase &phase : state.phases) {
+    const Material &material = phase.material;
+    const double surface = std::max(material.surface_tension, material.membrane.largest_modulus());
+    modulus = std::max({modulus, material.shear_modulus, surface / shortest});
+  }
+  const double mass = config_.fluid.density * volume, speed = force * state.dt;
+  energy->unknown = 1e-12 * modulus * volume + 0.5 * mass * speed * speed;
+  energy->force_range = force * std::sqrt(2 * mass * energy->kinetic);
 }
 
 PetscErrorCode Outputs::look(Row *row) {
@@ -107,9 +133,30 @@ PetscErrorCode Outputs::see_middle(double dt) {
   go_between(next.measured, share, &row_.measured);
   go_between(next.energy, share, &row_.energy);
   PetscCall(measure_drift(&row_.measured));
+  PetscCall(measure_strains(&row_.measured));
   mach_max_ = std::max(mach_max_, row_.measured.mach);
   waits_ = false;
   seen_ = true;
+  PetscFunctionReturn(0);
+}
+
+// The pressure lives half a step beside the velocity, as phases do.
+PetscErrorCode Outputs::see_pressure(double dt) {
+  PetscFunctionBeginUser;
+  if (row_.sides.empty()) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  const State &state = solver_->state();
+  const double share = row_.dt / (row_.dt + dt);
+  std::vector<SideFlow> next;
+  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, config_.fluid.density, state.velocity,
+                               state.pressure, &next));
+  row_.energy.rates.side_power = 0;
+  for (std::size_t s = 0; s < next.size(); ++s) {
+    SideFlow &side = row_.sides[s];
+    side.pressure += share * (next[s].pressure - side.pressure);
+    side.power += share * (next[s].power - side.power);
+    row_.energy.rates.side_power += side.power;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -127,11 +174,8 @@ PetscErrorCode Outputs::write_waiting() {
 
 PetscErrorCode Outputs::write_row_now() {
   PetscFunctionBeginUser;
-  Row row;
   PetscCall(measure());
-  row.measured = measured_;
-  PetscCall(look_at_energy(measured_, &row));
-  row_ = std::move(row);
+  row_ = now_;
   PetscCall(write_row());
   PetscFunctionReturn(0);
 }
@@ -140,10 +184,11 @@ PetscErrorCode Outputs::write_row() {
   PetscFunctionBeginUser;
   waits_ = seen_ = false;
   is_new_ = true;
-  const Measured &measured = row_.measured;
+  Measured &measured = row_.measured;
   const FlowMeasures &flow = measured.flow;
   const EnergyRates &rates = row_.energy.rates;
   energy_.advance(measured.time, row_.energy);
+  measured.energy_made = rows_resolve_forcing_ ? energy_.made_share() : 0;
   double solid = 0;
   for (const double volume : flow.phase_volume) solid += volume;
   std::vector<double> row{measured.time,

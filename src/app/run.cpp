@@ -11,6 +11,7 @@
 #include "app/scene_warnings.hpp"
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
+#include "app/verdict.hpp"
 #include "base/events.hpp"
 #include "base/one_line.hpp"
 #include "base/progress.hpp"
@@ -92,7 +93,10 @@ PetscErrorCode check_state(Run *run) {
 // What a row of series.csv has shown.
 PetscErrorCode check_measured(Run *run) {
   PetscFunctionBeginUser;
-  if (const Measured *row = run->outputs.take_row()) PetscCall(run->guards.check(run->solver, *row, &run->stop));
+  const Measured *row = run->outputs.take_row();
+  if (row == nullptr) PetscFunctionReturn(0);
+  print_warning(run->solver.grid().comm(), run->outputs.strain_warning());
+  PetscCall(run->guards.check(run->solver, *row, &run->stop));
   PetscFunctionReturn(0);
 }
 
@@ -168,19 +172,20 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     if (run->stop) break;
     step_begin = MPI_Wtime();
     double looked = 0;
-    Solver::Look look;
-    if (run->outputs.row_waits())
-      look = [&] {
+    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Solver::Look {
+      if (!run->outputs.row_waits()) return {};
+      return [&, see] {
         const double begin = MPI_Wtime();
         PetscFunctionBeginUser;
-        PetscCall(run->outputs.see_middle(dt));
-        looked = MPI_Wtime() - begin;
+        PetscCall((run->outputs.*see)(dt));
+        looked += MPI_Wtime() - begin;
         PetscFunctionReturn(0);
       };
+    };
     {
       StageScope stage(Stage::step);
       PetscCall(control->forget_unresolved(&solver, &warning));
-      PetscCall(solver.step(dt, look));
+      PetscCall(solver.step(dt, timed(&Outputs::see_middle), timed(&Outputs::see_pressure)));
     }
     print_warning(solver.grid().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin - looked;
@@ -198,8 +203,9 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position, &run->stop));
   const bool whole = run->exit_reason == "steps" || run->exit_reason == "time_end";
   if (!run->stop && whole) PetscCall(check_state(run));
-  if (run->stop) run->exit_reason = run->stop.reason;
   if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
+  if (!run->stop) PetscCall(check_measured(run));
+  if (run->stop) run->exit_reason = run->stop.reason;
   if (!run->directory.pending()) PetscCall(run->outputs.write_waiting());
   progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
   PetscFunctionReturn(0);
@@ -263,7 +269,6 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, grid, &run->solver, run->position.outputs);
-  run->guards.resume(run->position.energy);
   if (!run->in_place) PetscCall(open_outputs(run));
   PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
   (void)run->outputs.take_row();
@@ -280,13 +285,15 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   PetscFunctionReturn(0);
 }
 
-// The last line of a run that was accepted.
+// The last lines of a run that was accepted.
 PetscErrorCode say_last_word(const Run &run) {
   PetscFunctionBeginUser;
   const State &state = run.solver.state();
   const MPI_Comm comm = run.solver.grid().comm();
   const std::string line = last_word(
       run.parsed, {run.exit_reason, state.time, state.step, run.solver.grid().ranks(), run.checkpoints.newest()});
+  for (const Summary::Verdict &verdict : run.outputs.verdicts())
+    PetscCall(PetscPrintf(comm, "eulastic: %s\n", verdict_line(verdict).c_str()));
   PetscCall(PetscPrintf(comm, "%s\n", line.c_str()));
   PetscFunctionReturn(0);
 }

@@ -56,7 +56,7 @@ CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position, std::u
   reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
   reals["output_times"] = {o.series_time, o.snapshot_time, o.profile_time};
   reals["energy_budget"] = o.energy.numbers();
-  reals["guarded_energy"] = {position.energy.first, position.energy.lowest};
+  reals["energy_made"] = o.energy.made_numbers();
   reals["mach_max"] = {o.mach_max};
   integers["step"] = {static_cast<long>(s.step)};
   integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
@@ -117,7 +117,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.snapshot_time = reals["output_times"][1];
   o.profile_time = reals["output_times"][2];
   o.energy.set_numbers(reals["energy_budget"]);
-  position->energy = {reals["guarded_energy"][0], reals["guarded_energy"][1]};
+  if (reals.count("energy_made") > 0) o.energy.set_made_numbers(reals["energy_made"]);
   o.mach_max = reals["mach_max"][0];
   if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
   if (s.pressure_before) s.pressure_interval = reals["pressure_interval"][0];
@@ -220,6 +220,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   CheckpointNumbers expected = numbers_of(*solver, *position, 0);
   if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of a version before 0.3.0
     expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
+  if (!file->has("energy_made")) expected.reals.erase("energy_made");  // of version 0.2.0 and before
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);

@@ -11,7 +11,6 @@ struct RunPosition {
   double dt = 0;                                    ///< of the time step control
   double wall_seconds = 0, wall_seconds_total = 0;  ///< of all runs that led here
   OutputsPosition outputs;
-  GuardedEnergy energy;
 };
 
 /// Collective.

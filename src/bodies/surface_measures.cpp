@@ -14,7 +14,7 @@ namespace {
 
 // Sums of one body: the weight delta h, its first and second moments in cells, momentum and v x, energies.
 constexpr int weight = 0, first_moment = 1, second_moment = 4, momentum = 10, moment_of_velocity = 13, energies = 22;
-constexpr int area = 25, all_sums = 26;
+constexpr int area = 25, weight_at_rest = 26, all_sums = 27;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 using Matrix = std::array<Real3, 3>;
@@ -100,12 +100,15 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
   PetscCall(reduce_maxima(grid.comm(), found, &most));
   const Scales scale(most);
   BodySums sums(references.size(), all_sums);
+  std::vector<double> stretch(references.size(), 1.0), largest_stretch;
   for (const SurfaceSample &s : samples) {
     const int b = owners.slot(s.label - 1);
     if (b < 0) continue;
     const Real3 x = offset(grid, references[b], s.place);
     const double w = s.delta * face;
     sums.add(b, weight, w);
+    sums.add(b, weight_at_rest, s.rest * face);
+    stretch[b] = std::max(stretch[b], s.stretch);
     for (int d = 0; d < dim; ++d) {
       const double v = scaled(s.velocity[d], scale.speed);
       sums.add(b, first_moment + d, w * x[d]);
@@ -131,11 +134,19 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
   }
   PetscCall(sums.reduce(owners));
   const int owned = owners.owned().size();
+  largest_stretch.assign(owned, 1.0);
+  PetscCall(owners.reduce(1, MPI_MAX, stretch, &largest_stretch));
   result->assign(owned, {});
-  for (int b = 0; b < owned; ++b)
-    (*result)[b] = {sums.value(b, area) * unit, sums.value(b, energies) * scale.shear,
-                    sums.value(b, energies + 1) * scale.area, sums.value(b, energies + 2) * scale.bending,
-                    turning_rate(sums, b, h, dim, scale.speed)};
+  for (int b = 0; b < owned; ++b) {
+    const double at_rest = sums.value(b, weight_at_rest);
+    (*result)[b] = {sums.value(b, area) * unit,
+                    sums.value(b, energies) * scale.shear,
+                    sums.value(b, energies + 1) * scale.area,
+                    sums.value(b, energies + 2) * scale.bending,
+                    turning_rate(sums, b, h, dim, scale.speed),
+                    at_rest > 0 ? sums.value(b, weight) / at_rest - 1 : 0,
+                    largest_stretch[b]};
+  }
   PetscFunctionReturn(0);
 }
 

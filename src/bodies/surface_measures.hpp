@@ -14,6 +14,8 @@ struct SurfaceMeasure {
   /// flow that is nearest to that of the surface; 0 where that only strains. Of tank-treading and tumbling alike,
   /// whatever the shape.
   double turning_rate = 0;
+  double area_strain = 0;      ///< mean, since the rest: area over that at rest, both from the strain, less 1
+  double largest_stretch = 1;  ///< principal stretch along the surface, at cells beside it
 };
 
 /// Of the bodies that this rank owns; `references`: cells near the bodies that are here (BodyTracker::connect). One

@@ -1,6 +1,7 @@
 #include "diagnostics/energy_budget.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 
@@ -9,10 +10,46 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   const std::array<double, works> rate{r.force_power + r.wall_power + r.side_power, state.dissipation,
                                        r.elastic_power + state.surface_power, r.extended_power};
   last_ = {state.kinetic, state.elastic + state.surface, r.extended_energy};
-  if (time_ < 0) first_ = last_;
-  for (int w = 0; w < works && time_ >= 0; ++w) work_[w] += 0.5 * (time - time_) * (rate_[w] + rate[w]);
+  const double exchanged =
+      std::max(std::fabs(r.force_power), state.force_range) + std::fabs(r.wall_power) + std::fabs(r.side_power);
+  const bool begins = time_ < 0;
+  if (begins) {
+    first_ = last_;
+  } else {
+    const double half = 0.5 * (time - time_);
+    for (int w = 0; w < works; ++w) work_[w] += half * (rate_[w] + rate[w]);
+    // A monotonic rate is between its two values: its integral is that of the trapezoid within half their difference.
+    made_.uncertain += half * (std::fabs(rate[0] - rate_[0]) + std::fabs(rate[1] - rate_[1]));
+    made_.handled += half * (exchanged_ + exchanged);
+  }
   rate_ = rate;
+  exchanged_ = exchanged;
   time_ = time;
+  see_made(state.unknown);
+  if (!started_) since_.fill(made_);
+  started_ = !begins;
+  compare_made();
+}
+
+void EnergyBudget::see_made(double unknown) {
+  made_.made = -lost();
+  made_.held = std::max(last_[0] + last_[1], 0.0) + unknown;
+}
+
+// A share x was made since a row s if M = made - uncertain - x handled has grown by more than x times what was held at
+// s: of all rows so far that is largest for the one with the least M + x held.
+void EnergyBudget::compare_made() {
+  made_share_ = 0;
+  for (std::size_t n = 0; n < shares.size(); ++n) {
+    const double x = shares[n];
+    const auto beyond = [x](const Made &m) { return (m.made - m.uncertain) - x * m.handled + x * m.held; };
+    Made &since = since_[n];
+    if (!may_return_ && beyond(made_) < beyond(since)) since = made_;
+    const double made = (made_.made - since.made) - (made_.uncertain - since.uncertain);
+    const double of = since.held + (made_.handled - since.handled);
+    if (made > 0 && of > 0) made_share_ = std::max(made_share_, made / of);
+  }
+  made_share_max_ = std::max(made_share_max_, made_share_);
 }
 
 double EnergyBudget::lost() const { return (work_[0] - work_[1]) - ((last_[0] - first_[0]) + (last_[1] - first_[1])); }
@@ -33,6 +70,26 @@ void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
   time_ = *next++;
   for (auto *part : {&rate_, &work_}) std::copy_n(next, works, part->begin()), next += works;
   for (auto *part : {&first_, &last_}) std::copy_n(next, energies, part->begin()), next += energies;
+  exchanged_ = std::fabs(rate_[0]);
+  see_made(0);
+  since_.fill(made_);
+  started_ = time_ >= 0;
+}
+
+std::vector<double> EnergyBudget::made_numbers() const {
+  std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_};
+  for (const Made &m : {made_, since_[0], since_[1]}) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
+  return all;
+}
+
+void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
+  auto next = numbers.begin();
+  made_share_ = *next++;
+  made_share_max_ = *next++;
+  started_ = *next++ != 0;
+  exchanged_ = *next++;
+  for (Made *m : {&made_, &since_[0], &since_[1]})
+    for (double *value : {&m->made, &m->uncertain, &m->handled, &m->held}) *value = *next++;
 }
 
 }  // namespace eulastic

@@ -101,23 +101,46 @@ private:
     Int3 begin{}, end = grid_.owned();
     begin[d] = high ? end[d] - 1 : 0;
     end[d] = begin[d] + 1;
-    if (grid_.touches_low(c)) begin[c] = 1;  // a face on another wall does not move
+    // A face on another wall does not move: no shear of the fluid, but solids have the stress of the edge, whose
+    // control volume is half of that of others.
+    for (const bool corner_high : {false, true}) {
+      if (!grid_.touches(c, corner_high) || grid_.is_open(c, corner_high)) continue;
+      Int3 first = begin, last = end;
+      first[c] = corner_high ? grid_.owned()[c] : 0;
+      last[c] = first[c] + 1;
+      for_cells(first, last,
+                [&](const Int3 &cell) { sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, cell)); });
+    }
+    if (grid_.touches_low(c)) begin[c] = 1;
+    for_cells(begin, end, [&](const Int3 &cell) { sums->add(wall_power, speed * traction(d, high, c, cell)); });
+  }
+
+  template <class Visit>
+  static void for_cells(const Int3 &begin, const Int3 &end, const Visit &visit) {
     for (int k = begin[2]; k < end[2]; ++k)
       for (int j = begin[1]; j < end[1]; ++j)
-        for (int i = begin[0]; i < end[0]; ++i) sums->add(wall_power, speed * traction(d, high, c, {i, j, k}));
+        for (int i = begin[0]; i < end[0]; ++i) visit(Int3{i, j, k});
+  }
+
+  static Int3 edge_of(int d, bool high, Int3 cell) {
+    cell[d] += high ? 1 : 0;
+    return cell;
   }
 
   /// Of the wall on what is inside, along c, per volume of the cell beside it.
   double traction(int d, bool high, int c, const Int3 &cell) const {
     const ConstView q = velocity_[c];
     const double *inside = &q(cell[0], cell[1], cell[2]), *ghost = inside + (high ? q.stride(d) : -q.stride(d));
-    Int3 edge = cell;
-    edge[d] += high ? 1 : 0;
-    double elastic = 0;
+    const double h = grid_.spacing()[d], viscous = viscosity_.at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
+    return viscous / h + elastic_traction(d, high, c, cell);
+  }
+
+  double elastic_traction(int d, bool high, int c, const Int3 &cell) const {
+    const Int3 edge = edge_of(d, high, cell);
+    double sum = 0;
     for (const Phase &phase : phases_)
-      if (phase.material.elastic()) elastic += edge_stress(grid_.dimension(), phase, c, d, edge[0], edge[1], edge[2]);
-    const double viscous = viscosity_.at(c, d, edge) * (*ghost - *inside) / grid_.spacing()[d];
-    return (viscous + (high ? elastic : -elastic)) / grid_.spacing()[d];
+      if (phase.material.elastic()) sum += edge_stress(grid_.dimension(), phase, c, d, edge[0], edge[1], edge[2]);
+    return (high ? sum : -sum) / grid_.spacing()[d];
   }
 
   const Grid &grid_;

@@ -10,6 +10,8 @@ struct SurfaceSample {
   int label;
   Int3 place;      ///< local
   double delta;    ///< of the surface, 1/length
+  double rest;     ///< the same of what the surface was at rest
+  double stretch;  ///< larger principal stretch along the surface
   Real3 velocity;  ///< at its centre
   double shear_energy, area_energy, bending_energy;
 };

@@ -40,6 +40,9 @@ std::string summary_text(const Summary &s) {
   std::vector<Json> files;
   for (const Summary::FileRecord &file : s.files)
     files.push_back(Json().add("option", file.option).add("path", file.path).add("content", file.content));
+  std::vector<Json> verdicts;
+  for (const Summary::Verdict &v : s.verdicts)
+    verdicts.push_back(Json().add("of", v.of).add("verdict", v.verdict).add("why", v.why));
   const double updates = double(s.cells) * double(s.steps);
   return Json()
       .add("version", std::string(EULASTIC_VERSION))
@@ -79,11 +82,13 @@ std::string summary_text(const Summary &s) {
       .add("energy_lost", s.energy_lost)
       .add("energy_lost_elastic", s.energy_lost_elastic)
       .add("energy_lost_extended", s.energy_lost_extended)
+      .add("energy_made_share", s.energy_made_share)
       .add("surface_energy", s.surface_energy)
       .add("surface_power", s.surface_power)
       .add("side_power", s.side_power)
       .add("files", files)
       .add("sides", sides)
+      .add("verdicts", verdicts)
       .add("bulk_velocity", s.bulk_velocity)
       .add("state_hash", checksum_text(s.state_hash))
       .add("bodies", bodies)

@@ -25,6 +25,7 @@ struct Summary {
   double kinetic_energy = 0, elastic_energy = 0, bulk_velocity = 0;
   double viscous_dissipation = 0, force_power = 0, wall_power = 0, elastic_power = 0;  ///< rates at the end
   double energy_supplied = 0, energy_dissipated = 0, energy_lost = 0, energy_lost_elastic = 0, energy_lost_extended = 0;
+  double energy_made_share = 0;
   double surface_energy = 0, surface_power = 0, side_power = 0;
   std::uint64_t state_hash = 0;
   struct FileRecord {
@@ -36,6 +37,10 @@ struct Summary {
     double flow_rate, pressure;
   };
   std::vector<SideRecord> sides;  ///< that volume crosses
+  struct Verdict {
+    std::string of, verdict, why;
+  };
+  std::vector<Verdict> verdicts;  ///< on the results: fine, look, or do not trust
   static constexpr int most_bodies = 500;
   std::vector<BodyRecord> bodies;  ///< the first of them
 };

@@ -209,6 +209,12 @@ EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStr
   return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
 }
 
+/// The larger one of the two principal stretches along the surface.
+EULASTIC_INLINE double larger_stretch(const SurfaceStrain &s) noexcept {
+  const double square = s.trace * s.trace - 4 * s.area_squared;
+  return __builtin_sqrt(0.5 * (s.trace + __builtin_sqrt(square > 0 ? square : 0)));
+}
+
 /// The part of the energy that the change of area alone would take, stretched alike in all directions of the surface.
 EULASTIC_INLINE double area_energy(const Membrane &m, const SurfaceStrain &s) noexcept {
   const double J = __builtin_sqrt(s.area_squared);

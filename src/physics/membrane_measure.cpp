@@ -13,6 +13,7 @@ namespace {
 // Per volume of a cell.
 struct Energies {
   double shear, area;
+  double rest, stretch;  ///< of SurfaceSample
   double total() const { return shear + area; }
 };
 template <int Dim>
@@ -20,7 +21,7 @@ Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
   const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
   const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
   const double area = kernels::area_energy(phase.material.membrane, strain), weight = cell.delta / state.area;
-  return {weight * (state.energy - area), weight * area};
+  return {weight * (state.energy - area), weight * area, weight, kernels::larger_stretch(strain)};
 }
 
 // Of the surface that curvatures are those of: a filter moves both, and what it does to the area makes up for the
@@ -74,8 +75,9 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
     const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
     sum[0].add(stored, energies.total() + bending[c]);
     if (!label.empty())
-      samples->push_back({label[c], cell.place, cell.delta, centre_velocity(velocity, cell.at), energies.shear * volume,
-                          energies.area * volume, bending[c] * volume});
+      samples->push_back({label[c], cell.place, cell.delta, energies.rest, energies.stretch,
+                          centre_velocity(velocity, cell.at), energies.shear * volume, energies.area * volume,
+                          bending[c] * volume});
   }
   double total[sums];
   PetscCall(reduce_parts(grid_->comm(), sum, total));

@@ -79,4 +79,9 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
                                    bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
 
+/// What viscosity dissipates at cut faces, where (28) takes the place of the Laplacian, beyond what the compact
+/// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body. Collective.
+PetscErrorCode measure_rigid_dissipation(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+                                         const FieldBlock &velocity, double *dissipation);
+
 }  // namespace eulastic

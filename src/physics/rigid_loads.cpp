@@ -9,16 +9,6 @@
 namespace eulastic {
 namespace {
 
-// -1 on the low side of the box that is normal to a, 1 on the high one, else 0.
-int side_of_face(const Grid &grid, int a, int i, int j, int k) {
-  if (!grid.is_wall(a)) return 0;
-  const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
-  return at == 0 ? -1 : at == grid.cells()[a] ? 1 : 0;
-}
-
-// In cells: a face on an open side has half of one, on others the side gives the velocity.
-double volume_of_face(const Grid &grid, int a, int side) { return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0; }
-
 // Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
 double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstView u) {
   double sum = 0;

@@ -38,6 +38,18 @@ double for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &vi
   return cut_faces;
 }
 
+// -1 on the low side of the box that is normal to a, 1 on the high one, else 0.
+inline int side_of_face(const Grid &grid, int a, int i, int j, int k) {
+  if (!grid.is_wall(a)) return 0;
+  const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
+  return at == 0 ? -1 : at == grid.cells()[a] ? 1 : 0;
+}
+
+// In cells: a face on an open side has half of one, on others the side gives the velocity.
+inline double volume_of_face(const Grid &grid, int a, int side) {
+  return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0;
+}
+
 inline bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }

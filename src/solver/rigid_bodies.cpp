@@ -128,4 +128,16 @@ PetscErrorCode Solver::travelling_loads(std::vector<RigidLoad> *loads) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode Solver::add_rigid_dissipation(double *dissipation) {
+  PetscFunctionBeginUser;
+  if (!rigid_) PetscFunctionReturn(0);
+  if (rigid_->travel()) PetscCall(rigid_->place(now_.time, now_.time));
+  double beside_surfaces = 0;
+  PetscCall(
+      measure_rigid_dissipation(*grid_, rigid_->faces(), spec_.fluid, now_.time, now_.velocity, &beside_surfaces));
+  *dissipation += beside_surfaces;
+  PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
+  PetscFunctionReturn(0);
+}
+
 }  // namespace eulastic

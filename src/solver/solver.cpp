@@ -195,7 +195,7 @@ std::size_t Solver::bytes() const {
   return sum;
 }
 
-PetscErrorCode Solver::step(double dt, const Look &in_middle) {
+PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_pressure) {
   PetscFunctionBeginUser;
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   if (in_middle) PetscCall(look_behind(in_middle));
@@ -212,6 +212,11 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle) {
   }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));  // (8)-(13)
+  if (with_pressure) {
+    now_.velocity.swap(velocity_star_);
+    PetscCall(with_pressure());
+    now_.velocity.swap(velocity_star_);
+  }
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
   if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
   PetscCall(follow_bodies(dt));

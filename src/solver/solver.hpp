@@ -82,6 +82,9 @@ public:
   /// Whether loads cannot be told from the state; then they are set before resume().
   bool keeps_rigid_loads() const { return rigid_impulse_ != nullptr; }
   void set_rigid_loads(std::vector<RigidLoad> loads);
+  /// Adds to a dissipation by viscosity, as compact differences between faces have it, what surfaces of rigid bodies
+  /// change in it. Collective.
+  PetscErrorCode add_rigid_dissipation(double *dissipation);
   /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the
   /// step.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
@@ -90,8 +93,9 @@ public:
   using Look = std::function<PetscErrorCode()>;
   /// Advances by dt. `in_middle` is called with the velocity of the start and, with the staggered integrator, phases of
   /// the middle; weighed by the lengths of this step and the last, what it sees and what look_behind() has seen give
-  /// what belongs to the time of that velocity, to second order.
-  PetscErrorCode step(double dt, const Look &in_middle = {});
+  /// what belongs to the time of that velocity, to second order. `with_pressure` is called later, with the velocity of
+  /// the start and the pressure of the middle: the same holds for what depends on these alone.
+  PetscErrorCode step(double dt, const Look &in_middle = {}, const Look &with_pressure = {});
   /// Calls look() with phases_now() half a step behind, as they are; state and time are not touched. Only where
   /// is_behind().
   PetscErrorCode look_behind(const Look &look);

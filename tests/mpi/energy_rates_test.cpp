@@ -137,6 +137,18 @@ TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
   }
 }
 
+// Solids in the corners of moving walls.
+TEST(EnergyRates, WallsPayForSolidsInTheirCorners) {
+  for (const bool flat : {false, true}) {
+    Box box(run_communicator(), flat, {true, true, true});
+    box.move_walls({0.7, -0.4, flat ? 0 : 0.3});
+    box.add_phase(Material{0.6}, 4);
+    const Measures m = measure(box, 0.2);
+    EXPECT_NEAR(box.power_of_forces(0.2), m.rates.wall_power - m.flow.viscous_dissipation - m.rates.elastic_power,
+                1e-12 * m.flow.viscous_dissipation);
+  }
+}
+
 TEST(EnergyRates, SameBitsAsOnOneRank) {
   for (const bool flat : {false, true}) {
     Measures m[2];
@@ -171,6 +183,63 @@ TEST(EnergyBudget, IsExactForRatesThatAreLinearInTime) {
   EXPECT_NEAR(resumed.lost(), 4 - 1 - 2 - 0.4, 1e-14);
   EXPECT_NEAR(resumed.lost_elastic(), 0.6 - 0.4, 1e-14);
   EXPECT_NEAR(resumed.lost_extended(), 0.2 - 0.08, 1e-14);
+}
+
+// One unit of energy is held, one per time is supplied.
+EnergyState driven(double dissipation) {
+  EnergyState s;
+  s.kinetic = 1;
+  s.rates.force_power = 1;
+  s.dissipation = dissipation;
+  return s;
+}
+
+TEST(EnergyBudget, FindsTheRowSinceWhichARunMakesEnergy) {
+  EnergyBudget budget;
+  for (int n = 0; n <= 100; ++n) budget.advance(n, driven(0.9));  // a tenth is lost
+  EXPECT_NEAR(budget.lost(), 10, 1e-12);
+  EXPECT_EQ(budget.made_share(), 0);
+  EnergyBudget resumed;
+  resumed.set_numbers(budget.numbers());
+  resumed.set_made_numbers(budget.made_numbers());
+  // Between two rows the dissipation goes up, where it is not known within 0.3: then 0.5 are made per time.
+  for (int n = 1; n <= 10; ++n) resumed.advance(100 + n, driven(1.5));
+  EXPECT_NEAR(resumed.lost(), 10 - 0.2 - 4.5, 1e-12);
+  EXPECT_NEAR(resumed.made_share(), (4.7 - 0.3) / (1 + 10), 1e-12);
+  EXPECT_EQ(resumed.made_share_max(), resumed.made_share());
+  for (int n = 11; n <= 100; ++n) resumed.advance(100 + n, driven(0.9));
+  EXPECT_LT(resumed.made_share(), 0.05);
+  EXPECT_NEAR(resumed.made_share_max(), 4.4 / 11, 0.02);
+  EXPECT_NEAR(resumed.handled(), 1 + 200, 1e-12);
+}
+
+TEST(EnergyBudget, MakesNothingAtOnceAndNothingThatWasLent) {
+  for (const bool lent : {false, true}) {
+    EnergyBudget budget;
+    budget.allow_return(lent);
+    const double held[] = {1, 3, 1, 3};  // a start at once; then two are lost and come back
+    for (int n = 0; n < 4; ++n) {
+      EnergyState s;
+      s.kinetic = held[n];
+      budget.advance(n, s);
+      if (n < 3) EXPECT_EQ(budget.made_share_max(), 0);
+    }
+    EXPECT_EQ(budget.made_share_max(), lent ? 0 : 2);
+  }
+}
+
+// What swings between rows may have any mean.
+TEST(EnergyBudget, MakesNothingThatRowsDoNotKnow) {
+  EnergyBudget budget;
+  for (int n = 0; n <= 50; ++n) {
+    EnergyState s = driven(0);
+    s.rates.force_power = n % 2 == 0 ? 0 : 2;
+    s.kinetic = 1 + 1.4 * n;
+    budget.advance(n, s);
+  }
+  EXPECT_NEAR(budget.lost(), -0.4 * 50, 1e-12);
+  EXPECT_NEAR(budget.uncertain(), 50, 1e-12);
+  EXPECT_EQ(budget.made_share_max(), 0);
 }
 
 }  // namespace

@@ -112,6 +112,7 @@ TEST(Summary, HasEveryKey) {
   summary.divergence_max = std::nan("");
   summary.files = {{"vessel_voxels", "my \"best\" vessel.stl", "0123456789abcdef"}};
   summary.sides = {{"xmin", 2.5, 0.25}};
+  summary.verdicts = {{"energy", "look", "why"}};
   summary.bodies = {{1, "rbc", {1, 2, 3}, {4, 5, 6}, 7, 0.5, -45}, {2, "rbc", {}, {}, 0, 0, 0}};
   ASSERT_EQ(write_summary(PETSC_COMM_SELF, base / "summary.json", summary), 0);
   const JsonReader json(text_of(base / "summary.json"));
@@ -153,6 +154,7 @@ TEST(Summary, HasEveryKey) {
                                           "energy_lost",
                                           "energy_lost_elastic",
                                           "energy_lost_extended",
+                                          "energy_made_share",
                                           "surface_energy",
                                           "surface_power",
                                           "side_power",
@@ -164,6 +166,10 @@ TEST(Summary, HasEveryKey) {
                                           "sides.0.side",
                                           "sides.0.flow_rate",
                                           "sides.0.pressure",
+                                          "verdicts",
+                                          "verdicts.0.of",
+                                          "verdicts.0.verdict",
+                                          "verdicts.0.why",
                                           "bulk_velocity",
                                           "state_hash",
                                           "bodies",
