@@ -6,6 +6,7 @@
 #include "field/phase.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace eulastic {
 
@@ -18,15 +19,23 @@ struct CellTensor {
 };
 
 /// sigma_ab on the low edge of cell (i, j, k) normal to the directions a and b. One ghost layer of phi and B.
-inline double edge_stress(int dimension, const Phase &phase, int a, int b, int i, int j, int k) {
+inline double edge_stress(const Grid &grid, const Phase &phase, int a, int b, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
   const CellTensor B(phase.tensor.field, i, j, k);
   const double *fraction = &phi(i, j, k);
-  return with_law(phase.material, [&](const auto &law) {
-    return dimension == 2 ? law.shear_stress(fraction, kernels::tensor_at<2>(B.component, stride, a, b), 0)
-                          : law.shear_stress(fraction, kernels::tensor_at<3>(B.component, stride, a, b), 0);
-  });
+  const Real3 &h = grid.spacing();
+  const int c = 3 - a - b;
+  const kernels::Directions d{stride[a], stride[b], stride[c], 1 / h[a], 1 / h[b], 1 / h[c]};
+  const auto stress = [&](auto dimension) {
+    constexpr int dim = decltype(dimension)::value;
+    const double part = with_viscosity(
+        phase.tensor.rule, [&](const auto &viscosity) { return viscosity.template part<dim>(fraction, d); });
+    return part * with_law(phase.material, [&](const auto &law) {
+             return law.shear_stress(fraction, kernels::tensor_at<dim>(B.component, stride, a, b), 0);
+           });
+  };
+  return grid.dimension() == 2 ? stress(std::integral_constant<int, 2>{}) : stress(std::integral_constant<int, 3>{});
 }
 
 /// sigma_aa at the centre of cell (i, j, k), without its mean over the directions. B of its edges too.
@@ -65,7 +74,7 @@ struct WholeStress {
     double sum = viscosity.at(a, b, cell) * ((ua[0] - ua[-u.stride(b)]) / h[b] + (ub[0] - ub[-w.stride(a)]) / h[a]);
     for (const Phase &phase : phases)
       if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
-        sum += edge_stress(viscosity.grid.dimension(), phase, a, b, cell[0], cell[1], cell[2]);
+        sum += edge_stress(viscosity.grid, phase, a, b, cell[0], cell[1], cell[2]);
     return sum;
   }
 };

@@ -18,13 +18,15 @@ struct Row {
   int begin, end;
   std::ptrdiff_t stride[3];
   const Material &material;
+  const EvolveRule &rule;
 
   Row(const Phase &phase, const Segment &row)
       : phi(phase.fraction[0].row(row.j, row.k)),
         B(phase.tensor.field, 0, row.j, row.k),
         begin(row.i_begin),
         end(row.i_end),
-        material(phase.material) {
+        material(phase.material),
+        rule(phase.tensor.rule) {
     for (int d = 0; d < 3; ++d) stride[d] = phase.fraction[0].stride(d);
   }
 };
@@ -51,8 +53,9 @@ EULASTIC_CLONES void energy_2d(const Row &row, double *out) { energy_row<2>(row,
 EULASTIC_CLONES void energy_3d(const Row &row, double *out) { energy_row<3>(row, out); }
 
 // phi sigma_e : grad v, by runs of vectors that hold any solid.
-template <int Dim, class Law>
-EULASTIC_INLINE void power_row(const Row &row, const double *inverse, const Law &law, double *out) {
+template <int Dim, class Law, class Viscosity>
+EULASTIC_INLINE void power_row(const Row &row, const double *inverse, const Law &law, const Viscosity &viscosity,
+                               double *out) {
   constexpr int width = 8;
   std::fill(out + row.begin, out + row.end, 0.0);
   int run = row.begin;  // where the one begins that has come so far
@@ -63,17 +66,25 @@ EULASTIC_INLINE void power_row(const Row &row, const double *inverse, const Law 
     for (int i = begin; i < end; ++i) any |= row.phi[i] != 0;
     if (any && end < row.end) continue;
     times_fraction(row.phi, run, any ? end : begin, out, [&](int i) EULASTIC_BODY {
-      return kernels::stress_power<Dim>(row.B.component, row.v, i, row.stride, inverse, law);
+      return kernels::stress_power<Dim>(row.phi, row.B.component, row.v, i, row.stride, inverse, law, viscosity);
     });
     run = end;
   }
 }
 
+template <int Dim>
+EULASTIC_INLINE void power_of_law(const Row &row, const double *inverse, double *out) {
+  with_law(row.material, [&](const auto &law) EULASTIC_BODY {
+    with_viscosity(row.rule,
+                   [&](const auto &viscosity) EULASTIC_BODY { power_row<Dim>(row, inverse, law, viscosity, out); });
+  });
+}
+
 EULASTIC_CLONES void power_2d(const Row &row, const double *inverse, double *out) {
-  with_law(row.material, [&](const auto &law) EULASTIC_BODY { power_row<2>(row, inverse, law, out); });
+  power_of_law<2>(row, inverse, out);
 }
 EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out) {
-  with_law(row.material, [&](const auto &law) EULASTIC_BODY { power_row<3>(row, inverse, law, out); });
+  power_of_law<3>(row, inverse, out);
 }
 
 void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
@@ -139,7 +150,7 @@ private:
     const Int3 edge = edge_of(d, high, cell);
     double sum = 0;
     for (const Phase &phase : phases_)
-      if (phase.material.elastic()) sum += edge_stress(grid_.dimension(), phase, c, d, edge[0], edge[1], edge[2]);
+      if (phase.material.elastic()) sum += edge_stress(grid_, phase, c, d, edge[0], edge[1], edge[2]);
     return (high ? sum : -sum) / grid_.spacing()[d];
   }
 

@@ -46,7 +46,7 @@ public:
     add(c, stress, [&](const Int3 &cell) {
       Int3 edge = cell;
       edge[d_] += high_ ? 1 : 0;
-      const double traction = edge_stress(grid_.dimension(), phase, c, d_, edge[0], edge[1], edge[2]);
+      const double traction = edge_stress(grid_, phase, c, d_, edge[0], edge[1], edge[2]);
       return high_ ? -traction : traction;
     });
   }

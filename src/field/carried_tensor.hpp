@@ -3,6 +3,7 @@
 
 #include "field/field_block.hpp"
 #include "grid/active_segments.hpp"
+#include "kernels/solid_shear.hpp"
 
 #include <string>
 
@@ -28,7 +29,15 @@ struct EvolveRule {
   int layers = 0;               ///< how far it is extended outside, in points
   int reach = 2;                ///< how far from such solid faces feel stress, that of a step before included
   bool linear = false;          ///< extended linearly, else as a constant
+  double viscosity_excess = 0;  ///< mu_s/mu_f - 1, where the edge stress goes with the viscosity; docs/method.md, (29b)
 };
+
+/// use(viscosity) with what the kernels of the elastic stress ask of the viscosities of solid and fluid.
+template <class Use>
+EULASTIC_INLINE auto with_viscosity(const EvolveRule &rule, const Use &use) {
+  if (rule.viscosity_excess != 0) return use(kernels::OwnViscosity{rule.viscosity_excess});
+  return use(kernels::SameViscosity{});
+}
 
 /// B of a solid, its off-diagonals on edges, or B_s of a membrane, all of it at centres.
 struct CarriedTensor {

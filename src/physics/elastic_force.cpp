@@ -29,9 +29,9 @@ void prefetch_beside(const Phase &phase, const Segment &s) {
   }
 }
 
-template <int Dim, bool WithSlope, class Law>
-EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &law, const Rows &rows,
-                               FieldBlock &force, const ForceSlope &slope) {
+template <int Dim, bool WithSlope, class Law, class Viscosity>
+EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &law, const Viscosity &viscosity,
+                               const Rows &rows, FieldBlock &force, const ForceSlope &slope) {
   const ConstView phi = phase.fraction[0];
   const Real3 &h = grid.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
@@ -46,7 +46,7 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
       }
       double *sum = force[a].origin, *change = WithSlope ? (*slope.field)[a].origin : nullptr;
       const double factor = slope.factor;
-      kernels::elastic_force<Dim>(batch, phi, B, stride, inverse, a, law,
+      kernels::elastic_force<Dim>(batch, phi, B, stride, inverse, a, law, viscosity,
                                   [=](std::ptrdiff_t o, double f) EULASTIC_BODY {
                                     sum[o] += f;
                                     if (WithSlope) change[o] = kernels::fma(factor, f, change[o]);
@@ -67,10 +67,12 @@ template <int Dim>
 EULASTIC_INLINE void add_force_of_law(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
                                       FieldBlock &force, const ForceSlope &slope) {
   with_law(phase.material, [&](const auto &law) EULASTIC_BODY {
-    if (slope.field)
-      add_force<Dim, true>(grid, phase, law.scaled(scale), rows, force, slope);
-    else
-      add_force<Dim, false>(grid, phase, law.scaled(scale), rows, force, slope);
+    with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
+      if (slope.field)
+        add_force<Dim, true>(grid, phase, law.scaled(scale), viscosity, rows, force, slope);
+      else
+        add_force<Dim, false>(grid, phase, law.scaled(scale), viscosity, rows, force, slope);
+    });
   });
 }
 

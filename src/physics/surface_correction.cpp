@@ -20,7 +20,7 @@ constexpr double least_determinant = 0.75;  // F does not go below
 struct Terms {
   std::ptrdiff_t stride[3];
   const double *B[6], *phi, *gradient[3], *rate;
-  double G, stiffening, mu, wave, kink, fading;  // 1/k = mu/G + wave/sqrt(G)
+  double G, stiffening, mu, more, wave, kink, fading;  // 1/k = (mu + more (1 - phi))/G + wave/sqrt(G)
 
   Terms(const Grid &grid, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured) {
     const int dimension = grid.dimension();
@@ -40,6 +40,7 @@ struct Terms {
       stiffening = law.stiffening();
     });
     mu = step.fluid.viscosity;
+    more = phase.tensor.rule.viscosity_excess * mu;
     wave = 0.0625 * shortest * std::sqrt(rho);
     kink = step.dt * (mu > across ? across / mu : 1);
     fading = forgetting * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
@@ -112,8 +113,8 @@ EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
       gradient.z = centred_at<A, B>(t, t.gradient[2] + p);
     }
     const double excess = (T.xx - 1) + (T.yy - 1) + (T.zz - 1), G = kernels::fma(t.stiffening, excess, t.G);
-    const double limited = kernels::fma(t.wave, __builtin_sqrt(G > 0 ? G : 0), t.mu), k = G > 0 ? G / limited : 0;
-    const double missing = 1 - centred_at<A, B>(t, t.phi + p);
+    const double missing = 1 - centred_at<A, B>(t, t.phi + p), mu = kernels::fma(t.more, missing, t.mu);
+    const double limited = kernels::fma(t.wave, __builtin_sqrt(G > 0 ? G : 0), mu), k = G > 0 ? G / limited : 0;
     const kernels::SymmetricTensor K = kernels::relax_traction(T, kernels::unit(gradient), missing * t.kink * k);
     const double keep = kernels::decay(t.fading * centred_at<A, B>(t, t.rate + p));
     const auto faded = [=](bool here, double now, double mean)

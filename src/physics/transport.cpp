@@ -38,17 +38,18 @@ constexpr int position(int x, int y) {
 
 // One component at the points of a batch: advection, then stretching and the stage. One loop for both would need more
 // registers than there are: a fifth slower.
-template <int Dim>
-EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &phase, const FieldBlock &B, int a, int b,
-                                       kernels::Batch &batch, const double *const *carried, double *rate,
-                                       FieldBlock &out) {
+template <int Dim, class Viscosity>
+EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
+                                       const FieldBlock &B, int a, int b, kernels::Batch &batch,
+                                       const double *const *carried, double *rate, FieldBlock &out) {
   const int f = position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
   const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
   const ConstView phi = phase.fraction[0];
   const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
                               t.inverse[a],  t.inverse[other],  t.inverse[third]};
-  const double *va = (*t.velocity)[a].origin, *vb = (*t.velocity)[b].origin, *solid = phi.origin;
+  const double *va = (*t.velocity)[a].origin, *vb = (*t.velocity)[other].origin, *vc = (*t.velocity)[third].origin;
+  const double *solid = phi.origin;
   const double *aa = B[a].origin, *bb = B[b].origin, *now = B[f].origin, *ab = B[position<Dim>(a, other)].origin;
   const double *bc = B[position<Dim>(b, third)].origin, *ac = B[position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
@@ -68,14 +69,15 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Phase &pha
     if (second_of_heun) moved = 0.5 * (next[o] + moved);
     next[o] = share < threshold ? exterior : moved < least && moved >= lowest ? least : moved;
   };
+  const auto shear = [=](std::ptrdiff_t o) EULASTIC_BODY { return viscosity.template shear<Dim>(va + o, vb + o, vc + o, solid + o); };
   if (a == b)
     kernels::for_points(batch, phi, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
-      const double half = kernels::half_diagonal_stretch<Dim>(aa + o, ab + o, ac + o, va + o, d);
+      const double half = kernels::half_diagonal_stretch<Dim>(aa + o, ab + o, ac + o, shear(o), d);
       stage(o, kernels::fma(2, half, rate[i]), solid[o], 1, 0);
     });
   else
     kernels::for_points(batch, phi, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
-      const double rise = kernels::shear_stretch<Dim>(aa + o, bb + o, ab + o, bc + o, ac + o, va + o, vb + o, d);
+      const double rise = kernels::shear_stretch<Dim>(aa + o, bb + o, ab + o, bc + o, ac + o, shear(o), d);
       stage(o, rate[i] + rise, kernels::average4(solid + o, -d.a, -d.b), 0, -std::numeric_limits<double>::max());
     });
 }
@@ -100,9 +102,10 @@ struct Location {
 };
 
 // All components of one location at the points of a batch.
-template <int Dim>
-EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                   const Location &location, kernels::Batch &batch, FieldBlock &out) {
+template <int Dim, class Viscosity>
+EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
+                                   const FieldBlock &B, const Location &location, kernels::Batch &batch,
+                                   FieldBlock &out) {
   alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
   const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
   for (int e = 0; e < Dim; ++e) {
@@ -111,17 +114,17 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Phase &phase, 
     kernels::carry_velocity(batch, face, e, location.at, Dim, velocity[e]);
   }
   if (location.centre())
-    for (int c = 0; c < Dim; ++c) advance_component<Dim>(t, phase, B, c, c, batch, carried, rate, out);
+    for (int c = 0; c < Dim; ++c) advance_component<Dim>(t, viscosity, phase, B, c, c, batch, carried, rate, out);
   else
-    advance_component<Dim>(t, phase, B, location.a, location.b, batch, carried, rate, out);
+    advance_component<Dim>(t, viscosity, phase, B, location.a, location.b, batch, carried, rate, out);
 }
 
 // The components of one location on rows of plane k, but for the vectors that are `left` for later. Adds the points
 // that evolve to `evolved`.
-template <int Dim>
-EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, const FieldBlock &B,
-                                  const Location &location, int j_begin, int j_end, int k, FieldBlock &out,
-                                  kernels::Batch &left, std::ptrdiff_t &evolved) {
+template <int Dim, class Viscosity>
+EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
+                                  const FieldBlock &B, const Location &location, int j_begin, int j_end, int k,
+                                  FieldBlock &out, kernels::Batch &left, std::ptrdiff_t &evolved) {
   constexpr int reach = Grid::stencil_width;
   const int a = location.a, b = location.b;
   const bool centre = location.centre();
@@ -132,7 +135,7 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Phase &phase, c
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
   const auto advance = [&](kernels::Batch &batch)
-                           EULASTIC_BODY { advance_batch<Dim>(t, phase, B, location, batch, out); };
+                           EULASTIC_BODY { advance_batch<Dim>(t, viscosity, phase, B, location, batch, out); };
   if (k >= t.grid->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.tensor.evolving.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
@@ -193,9 +196,9 @@ struct Evolved {
   std::ptrdiff_t centres = 0, edges = 0;  // points, each of all its components
 };
 
-template <int Dim>
-EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &part, const Phase &phase,
-                                       const FieldBlock &B, FieldBlock &out) {
+template <int Dim, class Viscosity>
+EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Viscosity &viscosity, const RowPart &part,
+                                       const Phase &phase, const FieldBlock &B, FieldBlock &out) {
   constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
   kernels::Batch left[count];  // filled through all planes
@@ -206,19 +209,23 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const RowPart &p
   for (int j = part.j_begin; j < j_end; j += block)
     for (int k = part.k_begin; k < k_end; ++k)
       for (int l = 0; l < count; ++l)
-        advance_rows<Dim>(t, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
+        advance_rows<Dim>(t, viscosity, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
                           l == 0 ? sum.centres : sum.edges);
-  for (int l = 0; l < count; ++l) advance_batch<Dim>(t, phase, B, locations[l], left[l], out);
+  for (int l = 0; l < count; ++l) advance_batch<Dim>(t, viscosity, phase, B, locations[l], left[l], out);
   return sum;
 }
 
 EULASTIC_CLONES Evolved tensor_2d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
                                   FieldBlock &out) {
-  return advance_tensor<2>(t, part, phase, B, out);
+  return with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
+    return advance_tensor<2>(t, viscosity, part, phase, B, out);
+  });
 }
 EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
                                   FieldBlock &out) {
-  return advance_tensor<3>(t, part, phase, B, out);
+  return with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
+    return advance_tensor<3>(t, viscosity, part, phase, B, out);
+  });
 }
 
 }  // namespace

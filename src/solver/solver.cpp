@@ -164,6 +164,7 @@ EvolveRule Solver::evolve_rule(const Material &material) const {
   const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
   if (!spec_.staggered() && !edges) rule.reach = 1;
   if (!reset && spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
+  if (!reset && material.viscosity > 0) rule.viscosity_excess = material.viscosity / spec_.fluid.viscosity - 1;
   return rule;
 }
 

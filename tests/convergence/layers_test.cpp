@@ -15,11 +15,11 @@ constexpr double pi = 3.14159265358979323846;
 
 // u = Im{uh e^{i omega t}}, B_xy = Im{uh'/(i omega) e^{i omega t}} (S1 of the references, rho = V = 1).
 struct Layers {
-  double mu, G, omega, solid;  // thickness of the solid, box height 1
+  double mu, G, omega, solid, solid_mu;  // `solid`: thickness of the solid, box height 1
   Complex ks, kf, a, b, c;
-  Layers(double viscosity, double modulus, double frequency, double thickness)
-      : mu(viscosity), G(modulus), omega(frequency), solid(thickness) {
-    const Complex i(0, 1), ms = mu + G / (i * omega);
+  Layers(double viscosity, double modulus, double frequency, double thickness, double contrast = 1)
+      : mu(viscosity), G(modulus), omega(frequency), solid(thickness), solid_mu(contrast * viscosity) {
+    const Complex i(0, 1), ms = solid_mu + G / (i * omega);
     ks = std::sqrt(i * omega / ms);
     kf = std::sqrt(i * omega / mu);
     const double fluid = 1 - solid;
@@ -57,6 +57,7 @@ std::vector<double> layer_velocity(const Layers &layers, int cells, int steps, d
   Phase &phase = scene.add_phase(
       layers.G,
       [&](double, double y, double) { return std::min(1.0, std::max(0.0, (layers.solid - (y - h / 2)) / h)); }, true);
+  if (layers.solid_mu != layers.mu) phase.material.viscosity = layers.solid_mu;
   const Staggering edge{true, true, false};
   set(scene.grid, phase.tensor.field[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
   set(scene.grid, phase.tensor.field[0], at_centre,
@@ -105,6 +106,20 @@ void expect_order(double thickness, double least, const char *name) {
 
 TEST(Layers, FastConvergesOnAFace) { expect_order(0.5, 1.9, "on a face"); }
 TEST(Layers, FastConvergesOffTheFaces) { expect_order(0.5 + 1. / 48, 1.5, "off the faces"); }
+
+// The solid has a viscosity of its own.
+TEST(Layers, FastConvergesWithTwoViscosities) {
+  for (const double contrast : {0.1, 5.0}) {
+    const Layers layers(1, 5, pi, 0.5, contrast);
+    double e[3];
+    for (int n = 0; n < 3; ++n) e[n] = layer_error(layers, 16 << n, 256 << n, 2, fast_smac());
+    std::printf("  S1, mu_s/mu_f = %g, 16, 32, 64: %.3e %.3e %.3e, orders %.2f %.2f\n", contrast, e[0], e[1], e[2],
+                order(e[0], e[1]), order(e[1], e[2]));
+    EXPECT_LT(e[2], 5e-4);
+    EXPECT_GT(order(e[0], e[1]), 1.9);
+    EXPECT_GT(order(e[1], e[2]), 1.9);
+  }
+}
 
 TEST(Layers, FastIsSecondOrderInTime) {
   const Layers layers(1, 5, pi, 0.5);

@@ -88,7 +88,7 @@ EULASTIC_CLONES void elastic(Block &b) {
   const double *B[6];
   for (int c = 0; c < 6; ++c) B[c] = b.fields[4 + c].origin;
   for (const Segment &s : b.rows)
-    kernels::elastic_force<3>(s, b.fields[3], B, stride, b.inverse, 0, kernels::NeoHookean{1},
+    kernels::elastic_force<3>(s, b.fields[3], B, stride, b.inverse, 0, kernels::NeoHookean{1}, kernels::SameViscosity{},
                               [to = b.fields[0].row(0, 0)](std::ptrdiff_t o, double f) EULASTIC_BODY { to[o] += f; });
 }
 
@@ -96,10 +96,12 @@ EULASTIC_CLONES void stretch_diagonal(Block &b) {
   for (const Segment &s : b.rows) {
     const auto row = [&](int f) { return b.fields[f].row(s.j, s.k); };
     const double *xx = row(4), *xy = row(9), *xz = row(8), *u = row(0);
+    const kernels::SameViscosity viscosity;
     double *rate = b.rate.data();
 #pragma omp simd
     for (int i = 0; i < s.i_end; ++i)
-      rate[i] += kernels::half_diagonal_stretch<3>(xx + i, xy + i, xz + i, u + i, b.directions);
+      rate[i] += kernels::half_diagonal_stretch<3>(xx + i, xy + i, xz + i,
+                                                   viscosity.shear<3>(u + i, nullptr, nullptr, nullptr), b.directions);
   }
 }
 
@@ -107,10 +109,13 @@ EULASTIC_CLONES void stretch_shear(Block &b) {
   for (const Segment &s : b.rows) {
     const auto row = [&](int f) { return b.fields[f].row(s.j, s.k); };
     const double *xx = row(4), *yy = row(5), *xy = row(9), *yz = row(7), *xz = row(8), *u = row(0), *v = row(1);
+    const double *w = row(2);
+    const kernels::SameViscosity viscosity;
     double *rate = b.rate.data();
 #pragma omp simd
     for (int i = 0; i < s.i_end; ++i)
-      rate[i] += kernels::shear_stretch<3>(xx + i, yy + i, xy + i, yz + i, xz + i, u + i, v + i, b.directions);
+      rate[i] += kernels::shear_stretch<3>(xx + i, yy + i, xy + i, yz + i, xz + i,
+                                           viscosity.shear<3>(u + i, v + i, w + i, nullptr), b.directions);
   }
 }
 

@@ -106,11 +106,13 @@ EULASTIC_CLONES void stretch(const Fields &t, const RowPart &part, RowScratch &s
       const double *bc = t.tensor[3 + a].origin, *ac = t.tensor[3 + b].origin;
       const double *va = t.velocity[a].origin, *vb = t.velocity[b].origin;
       kernels::for_points(row, v0, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
-        rate[i] = 2 * kernels::half_diagonal_stretch<3>(aa + o, ab + o, ac + o, va + o, d);
+        rate[i] = 2 * kernels::half_diagonal_stretch<3>(aa + o, ab + o, ac + o,
+                                                        kernels::MixtureShear{{va + o, nullptr, nullptr}}, d);
       });
       benchmark::DoNotOptimize(rate);
       kernels::for_points(row, v0, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
-        rate[i] = kernels::shear_stretch<3>(aa + o, bb + o, ab + o, bc + o, ac + o, va + o, vb + o, d);
+        rate[i] = kernels::shear_stretch<3>(aa + o, bb + o, ab + o, bc + o, ac + o,
+                                            kernels::MixtureShear{{va + o, vb + o, nullptr}}, d);
       });
       benchmark::DoNotOptimize(rate);
     }

@@ -126,10 +126,12 @@ void trace_rate(const Grid &grid, const FieldBlock &B, const FieldBlock &v, Fiel
       const kernels::Directions d{v[0].stride(a), v[0].stride(b), v[0].stride(c), inverse(a), inverse(b), inverse(c)};
       const auto row = [&s](ConstView q) { return q.row(s.j, s.k); };
       const double *aa = row(B[a]), *va = row(v[a]);
-      for (int i = s.i_begin; i < s.i_end; ++i)
-        out[i] += 2 * (dim == 2 ? kernels::half_diagonal_stretch<2>(aa + i, row(B[2]) + i, nullptr, va + i, d)
+      for (int i = s.i_begin; i < s.i_end; ++i) {
+        const kernels::MixtureShear shear{{va + i, nullptr, nullptr}};
+        out[i] += 2 * (dim == 2 ? kernels::half_diagonal_stretch<2>(aa + i, row(B[2]) + i, nullptr, shear, d)
                                 : kernels::half_diagonal_stretch<3>(aa + i, row(B[at(a, b)]) + i, row(B[at(a, c)]) + i,
-                                                                    va + i, d));
+                                                                    shear, d));
+      }
     }
 }
 

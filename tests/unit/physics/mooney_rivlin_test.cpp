@@ -72,7 +72,7 @@ Matrix random_tensor(Random &random, bool flat) {
 double computed_stress(const Solid &solid, int a, int b) {
   const Phase &phase = solid.phases[0];
   const int dim = solid.grid.dimension(), k = dim == 3 ? 2 : 0;
-  if (a != b) return edge_stress(dim, phase, a, b, 5, 3, k);
+  if (a != b) return edge_stress(solid.grid, phase, a, b, 5, 3, k);
   const CellTensor B(phase.tensor.field, 5, 3, k);
   const ConstView q = phase.tensor.field[0];
   const std::ptrdiff_t stride[3] = {q.stride(0), q.stride(1), q.stride(2)};
@@ -219,8 +219,9 @@ TEST(MooneyRivlin, ForceIsOfSecondOrder) {
 }
 
 // d(B)/dt by stretching alone.
-template <int Dim>
-void stretch(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
+template <int Dim, class Viscosity>
+void stretch(const Grid &grid, const Phase &phase, const Viscosity &viscosity, const FieldBlock &v, FieldBlock &rate) {
+  const FieldBlock &B = phase.tensor.field;
   const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
   for (const Segment &s : grid.rows())
     for (int a = 0; a < Dim; ++a)
@@ -232,10 +233,13 @@ void stretch(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBl
         double *out = rate[at(a, b)].row(s.j, s.k);
         const auto row = [&s](ConstView q) { return q.row(s.j, s.k); };
         const double *aa = row(B[a]), *bb = row(B[b]), *ab = row(B[at(a, other)]), *bc = row(B[at(b, third)]);
-        const double *ac = row(B[at(a, third)]), *va = row(v[a]), *vb = row(v[b]);
-        for (int i = s.i_begin; i < s.i_end; ++i)
-          out[i] += a == b ? 2 * kernels::half_diagonal_stretch<Dim>(aa + i, ab + i, ac + i, va + i, d)
-                           : kernels::shear_stretch<Dim>(aa + i, bb + i, ab + i, bc + i, ac + i, va + i, vb + i, d);
+        const double *ac = row(B[at(a, third)]), *va = row(v[a]), *vb = row(v[other]), *vc = row(v[third]);
+        const double *phi = row(phase.fraction[0]);
+        for (int i = s.i_begin; i < s.i_end; ++i) {
+          const auto shear = viscosity.template shear<Dim>(va + i, vb + i, vc + i, phi + i);
+          out[i] += a == b ? 2 * kernels::half_diagonal_stretch<Dim>(aa + i, ab + i, ac + i, shear, d)
+                           : kernels::shear_stretch<Dim>(aa + i, bb + i, ab + i, bc + i, ac + i, shear, d);
+        }
       }
 }
 
@@ -254,13 +258,15 @@ struct Exchange {
 };
 
 // Random B; phi random or uniform; v solenoidal. The energy is quadratic in B: a central difference is its rate.
-Exchange exchange_of(bool flat, const Material &material, bool uniform) {
+// `contrast`: viscosity of the solid over the fluid's.
+Exchange exchange_of(bool flat, const Material &material, bool uniform, double contrast) {
   Solid solid(flat, 0, 30);
   const Grid &grid = solid.grid;
   Phase &phase = solid.phases[0];
   phase.material = material;
+  phase.tensor.rule.viscosity_excess = contrast - 1;
   Random random(31);
-  randomise(grid, phase.fraction, random, 1.5);
+  randomise(grid, phase.fraction, random, contrast == 1 ? 1.5 : 0.5);
   if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
   randomise(grid, phase.tensor.field, random, 0.4);
   randomise_solenoidal(grid, solid.velocity, random);
@@ -275,7 +281,12 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform) {
   EnergyNumbers numbers;
   EXPECT_EQ(measure_energy_rates(grid, solid.velocity, solid.phases, numbers, &rates), 0);
   e.stress = rates.elastic_power;
-  (flat ? stretch<2> : stretch<3>)(grid, phase.tensor.field, solid.velocity, rate);
+  with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
+    if (flat)
+      stretch<2>(grid, phase, viscosity, solid.velocity, rate);
+    else
+      stretch<3>(grid, phase, viscosity, solid.velocity, rate);
+  });
   GhostExchange exchange(grid);
   EXPECT_EQ(exchange.update(rate, 1), 0);
   FieldBlock before;
@@ -293,14 +304,69 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform) {
 TEST(ElasticExchange, PowerOfForceAndStressAndRateOfEnergy) {
   for (const bool flat : {false, true})
     for (const Material &material : {Material{0.9}, test::mooney_rivlin(0.7, 0, 0.3), rubber})
-      for (const bool uniform : {false, true}) {
-        const Exchange e = exchange_of(flat, material, uniform);
-        EXPECT_GT(std::fabs(e.energy), 0.01);
-        EXPECT_NEAR(e.force, -e.stress, 1e-13) << flat << uniform;
-        if (uniform || material.c2 == 0) {
-          EXPECT_NEAR(e.energy, e.stress, 1e-12) << flat << uniform;
+      for (const bool uniform : {false, true})
+        for (const double contrast : {1.0, 0.1, 5.0}) {
+          const Exchange e = exchange_of(flat, material, uniform, contrast);
+          EXPECT_GT(std::fabs(e.energy), 0.01);
+          EXPECT_NEAR(e.force, -e.stress, 1e-13) << flat << uniform << contrast;
+          if (uniform || material.c2 == 0) {
+            EXPECT_NEAR(e.energy, e.stress, 1e-12) << flat << uniform << contrast;
+          }
         }
-      }
+}
+
+// A solid and a fluid in layers under uniform shear, B_xy = 0.3 as far as the solid goes: the stress of an edge that
+// both share is that of the layers, what is left of it without elasticity the viscosity's. Where the surface lies at 45
+// degrees the stress that the edge has is along it: both have the same strain there.
+TEST(ElasticExchange, StressOfLayersOfTwoViscosities) {
+  const double modulus = 0.7, fluid = 0.4, strain = 0.3, rate = 0.9;
+  for (const double contrast : {0.1, 1.0, 5.0})
+    for (const double share : {0.125, 0.5, 0.875}) {
+      Solid solid(true, 0, 1);
+      Phase &phase = solid.phases[0];
+      phase.material = Material{modulus};
+      phase.tensor.rule.viscosity_excess = contrast - 1;
+      fill_uniform(solid, {Real3{1 + strain * strain, strain, 0}, Real3{strain, 1, 0}, Real3{0, 0, 1}});
+      const Real3 &h = solid.grid.spacing();
+      const auto surface_along = [&](double x, double y) {
+        fill_everywhere(solid.grid, phase.fraction[0], at_centre,
+                        [&](const Point &p) { return share + 0.1 * (x * (p[0] - 5 * h[0]) + y * (p[1] - 3 * h[1])); });
+      };
+      surface_along(0, 1);
+      // Both layers have the same stress, and their rates of shear add up to that of the edge.
+      const double body = contrast * fluid, viscosity = 1 / (share / body + (1 - share) / fluid);
+      const double stress = (rate + share * modulus * strain / body) * viscosity;
+      EXPECT_NEAR(computed_stress(solid, 0, 1), stress - viscosity * rate, 1e-14) << contrast << " " << share;
+      surface_along(1, 1);
+      EXPECT_NEAR(computed_stress(solid, 0, 1), share * modulus * strain, 1e-14) << contrast << " " << share;
+    }
+}
+
+// A rigid rotation turns B as it is, whatever the viscosities are.
+TEST(ElasticExchange, RotationIsThatOfTheMixture) {
+  for (const bool flat : {false, true}) {
+    Solid solid(flat, 0, 20);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) solid.v[a].g[b] = a == b ? 0 : a < b ? solid.v[a].g[b] : -solid.v[b].g[a];
+    solid.fill();
+    Phase &phase = solid.phases[0];
+    Random random(8);
+    randomise(solid.grid, phase.fraction, random, 0.5);
+    FieldBlock rate[2];
+    for (const bool own : {false, true}) {
+      phase.tensor.rule.viscosity_excess = own ? 4 : 0;
+      rate[own] = FieldBlock(solid.grid, phase.tensor.field.count());
+      with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
+        if (flat)
+          stretch<2>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
+        else
+          stretch<3>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
+      });
+    }
+    for (int c = 0; c < rate[0].count(); ++c)
+      for (const Segment &s : solid.grid.rows())
+        for (int i = 0; i < s.i_end; ++i) EXPECT_NEAR(rate[0][c](i, s.j, s.k), rate[1][c](i, s.j, s.k), 1e-12);
+  }
 }
 
 // rho c^2 of a wave along n that moves along m is the second derivative of W for F -> (1 + e m n) F.
