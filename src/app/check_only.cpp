@@ -1,6 +1,7 @@
 #include "app/check_only.hpp"
 
 #include "app/flow_scale.hpp"
+#include "app/lumens.hpp"
 #include "app/memory.hpp"
 #include "physics/limits.hpp"
 #include "physics/super_time_stepping.hpp"
@@ -239,6 +240,7 @@ std::string check_report(const Config &config, int ranks) {
   Report report;
   check.grid(report, ranks);
   check.bodies(report);
+  for (const std::string &line : side_lines(config)) report.text += line + "\n";
   check.flow(report);
   check.time_step(report, ranks);
   return report.text;

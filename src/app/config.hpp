@@ -54,6 +54,16 @@ struct OpeningSpec {
   bool from_file() const { return profile != "uniform" && profile != "developed"; }
 };
 
+/// What rigid bodies leave open of a side that volume crosses, at t = 0. A lumen is a piece of it that hangs together;
+/// its width is that of its widest place, of the shorter of the two chords along the grid.
+struct OpenPart {
+  double share = 1;  ///< of the area of the side
+  double area = 0;   ///< in 2-D a length
+  int lumens = 0;    ///< 0 also where bodies come from -initial_state
+  double width = 0;  ///< of the widest lumen; infinite where no wall is
+  double cells = 0;  ///< across the narrowest one
+};
+
 struct TimeControl {
   double end = 0;
   double step = 0;     ///< 0 = automatic
@@ -106,6 +116,7 @@ struct Config {
   BoundaryControl boundary;
   std::array<std::array<OpeningSpec, 2>, 3> openings;
   BoxSides sides;  ///< and grid.boundary: after parsing, as `boundary` and `openings` say
+  std::array<std::array<OpenPart, 2>, 3> open_parts;  ///< by validate()
   Fluid fluid;
   InitialFlow initial;
   std::string initial_state;  ///< HDF5 file; empty = none

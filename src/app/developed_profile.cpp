@@ -197,14 +197,6 @@ PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const Rigi
       // A flow rate is that of the whole side, a velocity the mean over its open part.
       double part = 1;
       if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(grid, phases, d, high, &part));
-      if (part != 1 && !grid.any_open()) {
-        const std::string side_name = std::string(1, "xyz"[d]) + (high ? "max" : "min");
-        *wrong = "-inflow_" + side_name +
-                 "_velocity: rigid bodies cover a part of the side, and what comes in elsewhere must "
-                 "balance it, as no side is open; accepted: -inflow_" +
-                 side_name + "_flow_rate";
-        PetscFunctionReturn(0);
-      }
       for (double &value : profile) value *= part * double(profile.size()) / sum;
       side.profile = std::make_shared<const SideProfile>(std::move(profile));
     }

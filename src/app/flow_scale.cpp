@@ -1,5 +1,6 @@
 #include "app/flow_scale.hpp"
 
+#include "app/lumens.hpp"
 #include "bodies/shapes.hpp"
 #include "field/open_sides.hpp"
 
@@ -22,6 +23,14 @@ bool is_vessel_of_file(const Config &config, std::size_t s) {
   const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   return spec.shape == Shape::voxels &&
          (spec.voxels.invert || count_bodies(config, s).total() > 0.5 * box_volume(config, dimension));
+}
+
+// The largest velocity of a profile, whose mean is 1.
+double largest_of_mean(const Side &side) {
+  if (!side.profile || side.profile->empty()) return 1;
+  double most = 0;
+  for (const double shape : *side.profile) most = std::max(most, std::fabs(shape));
+  return most;
 }
 
 class Estimate {
@@ -130,18 +139,22 @@ private:
     return std::min(speed, developed);
   }
 
-  // What comes in fills what walls leave of a side; developed it is at most twice as fast in the middle, with the shear
-  // rate 8 U/D at the wall.
+  // What comes in fills what rigid bodies leave of a side, and what elastic walls leave of the box; developed it is at
+  // most twice as fast in the middle, with the shear rate 8 U/D at the wall.
   void driven_by_inflow() {
     const double box = box_volume(config_, dimension_);
     double free = 1;
     for (std::size_t s = 0; s < config_.species.size(); ++s)
-      if (is_wall_species(config_, s)) free -= count_bodies(config_, s).total() / box;
-    for (int d = 0; d < dimension_ && free > 0; ++d) {
-      const double speed = 2 * inflow_speed(config_.sides)[d] / free;
-      scale_.speed[d] = std::max(scale_.speed[d], speed);
-      rate_ = std::max(rate_, 4 * speed / scale_.length);
-    }
+      if (is_wall_species(config_, s) && config_.species[s].law != Law::rigid)
+        free -= count_bodies(config_, s).total() / box;
+    for (int d = 0; d < dimension_ && free > 0; ++d)
+      for (const int high : {0, 1}) {
+        if (config_.sides[d][high].kind != SideKind::inflow) continue;
+        const double shape = largest_of_mean(config_.sides[d][high]);
+        const double speed = 2 * shape * largest_inflow(config_, d, high) / free;
+        scale_.speed[d] = std::max(scale_.speed[d], speed);
+        rate_ = std::max(rate_, 4 * speed / scale_.length);
+      }
   }
 
   void driven_by_bodies() {

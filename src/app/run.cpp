@@ -3,6 +3,7 @@
 #include "app/balance.hpp"
 #include "app/checkpoints.hpp"
 #include "app/last_word.hpp"
+#include "app/lumens.hpp"
 #include "app/memory.hpp"
 #include "app/overlap_warning.hpp"
 #include "app/petsc_options.hpp"
@@ -264,7 +265,8 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   if (!refusal->empty()) PetscFunctionReturn(0);
   for (const std::string &warning : parsed.warnings) print_warning(grid.comm(), warning);
   PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
-  for (const std::string &line : red_cell_lines(config)) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
+  for (const auto &lines : {red_cell_lines(config), side_lines(config)})
+    for (const std::string &line : lines) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
   if (!balanced.empty()) PetscCall(PetscPrintf(grid.comm(), "%s\n", balanced.c_str()));
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);

@@ -1,5 +1,6 @@
 #include "app/scene_warnings.hpp"
 
+#include "app/lumens.hpp"
 #include "app/red_cell.hpp"
 #include "physics/exterior.hpp"
 #include "physics/viscosity.hpp"
@@ -54,6 +55,7 @@ std::vector<std::string> scene_warnings(const Config &config) {
   std::vector<std::string> warnings = coarse_surface_warnings(config);
   add_attachment_warnings(config, &warnings);
   add_lag_warnings(config, &warnings);
+  for (std::string &warning : lumen_warnings(config)) warnings.push_back(std::move(warning));
   return warnings;
 }
 

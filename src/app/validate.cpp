@@ -1,5 +1,6 @@
 #include "app/validate.hpp"
 
+#include "app/open_parts.hpp"
 #include "app/option_values.hpp"
 #include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
@@ -342,6 +343,7 @@ std::string validate(Config *whole) {
         !wrong.empty())
       return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
+  if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
   return check_paths(config);
 }
 

@@ -10,6 +10,7 @@ import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
+from many_runs import Plan  # noqa: E402
 from scene_case import BINARY, SceneCase  # noqa: E402
 
 # Two ways in, one of them a pulse, two ways out, and walls that hold the fluid: in 2-D and in 3-D.
@@ -207,6 +208,30 @@ class OpenSides(SceneCase):
         for name, area in (("developed", numpy.pi * .81 ** 2), ("uniform", numpy.pi * .81 ** 2), ("box", 2.4 ** 2)):
             self.assertAlmostEqual(runs[name].series.flow_rate_xmin[-1] / (.3 * area), 1, delta=1e-3, msg=name)
         self.assertEqual(runs["ranks"].summary["state_hash"], runs["developed"].summary["state_hash"])
+
+    def test_lumens_are_told_alike_before_and_at_the_start(self):
+        """On any ranks, of the voxels of a vessel as of its shape; what is doubtful is warned of."""
+        y, z = (numpy.arange(24) + .5) / 10 - 1.2, (numpy.arange(24) + .5)[:, None] / 10 - 1.2
+        with h5py.File(self.room / "wall.h5", "w") as file:
+            file["wall"] = numpy.repeat((numpy.hypot(y, z) > .3)[:, :, None], 12, axis=2).astype("u1")
+        scene = ("-grid_cells 12,24,24 -grid_length 1.2,2.4,2.4 -boundary_xmin inflow -boundary_xmax outflow -fluid_viscosity 1e-5 "
+                 f"-inflow_xmin_flow_rate .4 -time_end 1e-6 -species pipe -pipe_law rigid -pipe_shape voxels "
+                 f"-pipe_voxels {self.room}/wall.h5").split()
+        area, across = .01 * (numpy.hypot(y, z) < .3).sum(), (abs(y) < .3).sum()
+        plan = Plan(self.room)
+        for ranks in (1, 3):
+            plan.add(f"run{ranks}", *scene, ranks=ranks)
+            plan.add(f"check{ranks}", *scene, "-check_only", ranks=ranks, output=False)
+        said = {}
+        for name, outcome in plan.execute().items():
+            self.assertEqual(outcome.code, 0, outcome.err)
+            said[name] = ([line for line in outcome.out.splitlines() if line.startswith("side ")],
+                          sorted(line.split("warning: ")[1] for line in (outcome.out + outcome.err).splitlines() if "warning: " in line))
+        self.assertEqual(len({str(lines) for lines in said.values()}), 1, said)
+        sides, warnings = said["run1"]
+        self.assertIn(f"side xmin: inflow, open area {area:.4g} of 5.76, lumen {across / 10:.4g} wide, {across} cells across; mean velocity "
+                      f"{.4 / area:.4g}, flow rate 0.4 into the box, Reynolds number of the lumen {.4 / area * across * 1e4:.3g}", sides)
+        self.assertEqual([w.split(":")[0] for w in warnings], ["-boundary_xmax"] * 2 + ["-boundary_xmin"] * 2)
 
     def test_inlet_that_a_rigid_body_covers(self):
         done = subprocess.run([BINARY, *("-grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 "

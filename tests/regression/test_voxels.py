@@ -283,13 +283,15 @@ class Voxels(WithRoom):
                 (bad, ["[7, 9, 11] is 1.5", "0 ... 1"], {}), (-good, ["is -0.5"], {}), (nan, ["[1, 2, 3] is nan"], {}),
                 (good[0, 0], ["1 dimensions"], {}), (good[None], ["4 dimensions"], {}),
                 (numpy.zeros((0, 3, 3)), ["no values"], {}), (good.astype("c16"), ["floats"], {}),
-                (numpy.zeros(SHAPE), ["nothing solid"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
+                (numpy.zeros(SHAPE), ["nothing solid"], {}), (numpy.ones(SHAPE), ["fills all of the box"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
                 (good, ["spacing"], {"spacing": [.1, 0, .1]}), (good, ["spacing"], {"spacing": "three"}),
                 (good, ["origin"], {"origin": [0, 0, numpy.inf]}),
                 (good, ["outside the box"], {"origin": [5., 0, 0], "spacing": [.1, .1, .1]}),
                 (good, ["origin without a spacing"], {"origin": [0., 0, 0]})]:
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.hdf5(values, **at), says=["-part_voxels: v.h5", *says])
+        for values, says in ((0, "nothing solid"), (1, "fills all of the box")):
+            self.refused(*RUN, *BODY, self.hdf5(numpy.full(SHAPE, values)), "-check_only", says=["-part_voxels: v.h5", says])
         self.refused(*RUN, *BODY, "v.h5:other", says=["no dataset other", "mask"])
         self.refused(*RUN, *BODY, "no.h5:mask", says=["no.h5 is not a file"])
         self.refused(*RUN, *BODY, "v.h5", "-part_placement", "lattice", says=["-part_placement", "voxels"])

@@ -1,5 +1,6 @@
 // -check_only: derived numbers against hand values.
 #include "app/check_only.hpp"
+#include "app/scene_warnings.hpp"
 #include "support/command_line.hpp"
 
 using namespace eulastic;
@@ -85,6 +86,80 @@ TEST(CheckOnly, FlowThroughOpenSides) {
   const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -pressure_xmin_value 8");
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
     EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
+}
+
+// A tube of diameter 1.6: pi .64 = 2.0106 of 5.76, .3 of it, .3 1.6/1. Two channels of .5 and .2 at 16 cells per
+// length.
+TEST(CheckOnly, LumensOfSides) {
+  const auto says = [](const std::string &options) {
+    const ParseResult result = parse_line("-time_end 1 -boundary_xmin inflow -inflow_xmin_velocity .3 " + options);
+    EXPECT_EQ(result.error, "");
+    std::string text = check_report(result.config, 1);
+    for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
+    return text;
+  };
+  const auto has = [](const std::string &text, const std::string &line) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
+  };
+  const std::string tube = says(
+      "-grid_cells 12,48,48 -grid_length .6,2.4,2.4 -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_law "
+      "rigid -v_radius .8 -v_centre 0,1.25,1.15 -fluid_viscosity 1");
+  has(tube,
+      "\nside xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
+      "0.6032 into the box, Reynolds number of the lumen 0.48\n");
+  has(tube,
+      "\nside xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow rate "
+      "-0.6032 into the box, Reynolds number of the lumen 0.48\n");
+  has(tube, "\nvelocity scale (estimate): 0.6\n");  // in the middle of a developed flow
+  EXPECT_EQ(tube.find("boundary_x"), std::string::npos) << tube;
+  const std::string two = says(
+      "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax pressure -species v -v_shape slab -v_axis y -v_interval "
+      ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -inflow_xmin_frequency 1");
+  has(two,
+      "\nside xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
+      "velocity up to 0.3, flow rate up to 0.21 into the box, Reynolds number of the lumen up to 1.5e+04\n");
+  for (const char *side : {"-boundary_xmin: ", "-boundary_xmax: "})
+    for (const char *what : {"only 3.2 cells across the lumen", "Reynolds number 1.5e+04 of the lumen"})
+      has(two, std::string(side) + what);
+  // Planes of symmetry and periodic directions are no walls; where the flow leaves twice it is not known how.
+  const std::string mirrored =
+      says("-grid_cells 16,7,6 -boundary_ymin wall -boundary_ymax symmetry -boundary_xmax outflow");
+  has(mirrored, "\nside xmin: inflow, open area 1 of 1, lumen 2 wide, 14 cells across; mean velocity 0.3, ");
+  const std::string open = says("-grid_cells 16,8,6 -boundary_xmax outflow");
+  has(open, "\nside xmin: inflow, open area 1 of 1, no walls; mean velocity 0.3, flow rate 0.3 into the box\n");
+  const std::string forked =
+      says("-grid_cells 16,16,1 -boundary_ymin wall -boundary_ymax pressure -boundary_xmax outflow");
+  has(forked,
+      "\nside xmax: outflow, open length 1 of 1, lumen 2 wide, 32 cells across; the flow through it is unknown\n");
+  const std::string nothing = says(
+      "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_radius .5 "
+      "-v_law rigid");
+  has(nothing, "-v_radius: the lumen is as wide as the box");
+}
+
+TEST(CheckOnly, WhatCannotFlowIsRefused) {
+  const std::string box = "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow ",
+                    slab = "-species v -v_shape slab -v_law rigid ", flow = "-inflow_xmin_velocity 1 ";
+  const auto refused = [](const std::string &options, const std::string &start) {
+    for (const char *check : {"", " -check_only"})
+      EXPECT_EQ(parse_line(options + check).error.rfind(start, 0), 0u) << options << parse_line(options).error;
+  };
+  refused(box + flow + slab + "-v_axis x -v_interval 0,.2",
+          "-boundary_xmin: inflow, but rigid bodies cover what would come in; accepted: ");
+  refused(box + flow + slab + "-v_axis x -v_interval .8,1",
+          "-boundary_xmax: rigid bodies cover all sides through which");
+  refused(box + flow + slab + "-v_axis y -v_interval 0,1",
+          "-v_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0,1");
+  refused(
+      "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -inflow_xmin_velocity 1 "
+      "-inflow_xmax_velocity -1 " +
+          slab + "-v_axis y -v_interval 0,.2",
+      "-inflow_xmin_velocity: rigid bodies cover a part of the side, and ");
+  std::string numbers;  // where the profile is not 0 the side is closed
+  for (int cell = 0; cell < 16; ++cell) numbers += cell < 4 ? "1\n" : "0\n";
+  const TemporaryFile profile(numbers);
+  refused(box + "-inflow_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
+          "-boundary_xmin: inflow, but rigid bodies cover");
 }
 
 // Obstacles hold back the flow, bodies shear it: by how much does not follow from the options.
