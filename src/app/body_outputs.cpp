@@ -37,7 +37,7 @@ PetscErrorCode Outputs::measure_drift(Measured *measured) {
   PetscFunctionReturn(0);
 }
 
-// The same.
+// The largest strains of all bodies, those of other ranks too.
 PetscErrorCode Outputs::measure_strains(Measured *measured) {
   Measured &m = *measured;
   Largest largest[2];  // stretch; area of a red cell. MPI_DOUBLE_INT; of equal ones the first
@@ -71,7 +71,7 @@ double Outputs::largest_stretch(const std::vector<BodyMeasure> &bodies, const st
 
 std::string Outputs::strain_warning() {
   constexpr double stretched = 2;
-  const Measured &m = row_.measured;
+  const Measured &m = written_;
   const auto once = [&](const Largest &of, double limit, bool *said) {
     const bool now = !*said && of.value > limit;
     *said = *said || now;

@@ -106,8 +106,9 @@ private:
   std::unique_ptr<BodiesFile> bodies_file_;
   std::unique_ptr<SnapshotOutput> snapshots_;
   Due series_due_, snapshot_due_;
-  Row now_;  ///< as of the last measure()
-  Row row_;  ///< the last one, or the one that waits, as it was in the middle of the last step
+  Row now_;           ///< as of the last measure()
+  Row row_;           ///< the one that waits, as it was in the middle of the last step, or is written
+  Measured written_;  ///< of the last row
   bool waits_ = false, seen_ = false, is_new_ = false;
   double series_time_before_ = -1;  ///< of the row before the one that waits
   EnergyBudget energy_;

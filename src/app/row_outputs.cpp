@@ -227,13 +227,14 @@ PetscErrorCode Outputs::write_row() {
         bodies_file_->add(measured.time, {row_.bodies, name}, records(measured, measured.bodies, measured.surfaces)));
     ++bodies_rows_;
   }
+  written_ = std::move(measured);  // the next row may wait already when this one is taken
   PetscFunctionReturn(0);
 }
 
 const Measured *Outputs::take_row() {
   const bool fresh = is_new_;
   is_new_ = false;
-  return fresh ? &row_.measured : nullptr;
+  return fresh ? &written_ : nullptr;
 }
 
 }  // namespace eulastic

@@ -26,7 +26,9 @@ public:
         all->add(first + pressure_sum, p);
         all->add(first + faces_sum, 1);
       }
-      all->add(first + power_sum, inward * (p + 0.5 * density_ * speed_squared));
+      // What comes in through an outflow side has no more energy than fluid at rest outside.
+      const double backflow = side.kind == SideKind::outflow && inward > 0 ? 0.5 * density_ * along * along : 0;
+      all->add(first + power_sum, inward * ((p - backflow) + 0.5 * density_ * speed_squared));
     });
   }
 

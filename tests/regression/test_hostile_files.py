@@ -47,7 +47,7 @@ class Numbers(Restart):
         for name, index, value in (("time", 0, nan), ("time", 0, -1.), ("time", 0, inf), ("time_step", 0, nan), ("time_step", 0, 1e300),
                                    ("time_step", 0, -1e-3), ("time_step", 1, inf), ("time_step", 1, -1.), ("step", 0, -4),
                                    ("step", 0, 1 << 62), ("output_rows", 0, -1), ("output_rows", 2, 1 << 60), ("flow_scales", 0, nan),
-                                   ("energy_budget", 1, inf), ("guarded_energy", 0, nan), ("mach_max", 0, -1.), ("wall_seconds", 0, -1.),
+                                   ("energy_budget", 1, inf), ("energy_made", 0, nan), ("mach_max", 0, -1.), ("wall_seconds", 0, -1.),
                                    ("stages_and_sweeps", 0, -5), ("output_times", 0, nan)):
             self.refuse_changed(case, path, name, index, value)
         self.refuse_changed(case, path, "bodies.references", 0, 1 << 40, says="cell of a body")
