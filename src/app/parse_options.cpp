@@ -200,6 +200,7 @@ std::string read_sources_once(std::vector<Source> *sources, Config *config, std:
     spec.centre_given = reader.given(spec.name + "_centre");
     const Real3 &length = config->grid.length;
     if (!spec.centre_given) spec.centre = {length[0] / 2, length[1] / 2, length[2] / 2};
+    if (spec.is_membrane() && !reader.given(spec.name + "_gap")) spec.gap = config->grid.longest_spacing();
   }
   return {};
 }

@@ -218,7 +218,9 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
                 "species of tubes or voxels that the bodies are in; out of the solid of voxels they keep anyway");
   inside.accepted = "the name of a species of tubes or voxels";
   inside.default_note = "the only tube, or none";
-  rows.real("gap", spec.gap, not_negative, "length", "least distance between bodies; half of it to walls");
+  rows.real("gap", spec.gap, not_negative, "length",
+            "least distance between bodies; half of it to walls, of membranes a cell at least")
+      .default_note = "0; of membranes the spacing of the grid";
   for_placement(3, {Placement::random});
   add_orientation(rows, spec);
   Option &seed = rows.integer("seed", spec.seed, {0, false}, "another seed is another scene");

@@ -6,8 +6,13 @@
 namespace eulastic {
 
 Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
-               const SolidBodies &solids, const GridSpec &grid)
-    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), vessel_(vessel), solids_(solids), high_(grid.length) {
+               const SolidBodies &solids, const GridSpec &grid, double margin)
+    : grid_(grid),
+      dimension_(grid.cells[2] == 1 ? 2 : 3),
+      vessel_(vessel),
+      solids_(solids),
+      margin_(margin * (1 - 1e-9)),  // round-off of what lies on the boundary
+      high_(grid.length) {
   cylinder_shapes_.reserve(species.size());  // bodies point into it
   for (int d = 0; d < dimension_; ++d) volume_ *= grid.length[d];
   volume_ -= solids.volume;
@@ -27,15 +32,16 @@ Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places
     }
   }
   for (int d = 0; d < dimension_; ++d) {
-    low_[d] = std::max(low_[d], solids.free[d][0]);
-    high_[d] = std::min(high_[d], grid.length[d] - solids.free[d][1]);
+    const double beside = grid.boundary[d] == Boundary::wall ? margin : 0;
+    low_[d] = std::max(low_[d], solids.free[d][0]) + beside;
+    high_[d] = std::min(high_[d], grid.length[d] - solids.free[d][1]) - beside;
   }
   if (!vessel) return;
   volume_ = lumen_volume(*vessel, grid) - solids.volume;
   for (int d = 0; d < dimension_; ++d) {
     if (d == vessel->axis) continue;
-    low_[d] = std::max(low_[d], vessel->centre[d] - vessel->radius);
-    high_[d] = std::min(high_[d], vessel->centre[d] + vessel->radius);
+    low_[d] = std::max(low_[d], vessel->centre[d] - vessel->radius + margin);
+    high_[d] = std::min(high_[d], vessel->centre[d] + vessel->radius - margin);
   }
 }
 
@@ -43,7 +49,7 @@ bool Region::holds(const PlacedConvex &body) const {
   const double outer = body.body->outer_radius();
   for (int d = 0; d < dimension_; ++d) {
     const double x = body.centre[d], length = grid_.length[d];
-    const double low = solids_.free[d][0], high = length - solids_.free[d][1];
+    const double low = solids_.free[d][0] + margin_, high = length - solids_.free[d][1] - margin_;
     const bool wall = grid_.boundary[d] == Boundary::wall;
     if (wall ? x - outer >= low && x + outer <= high : 2 * outer <= length) continue;
     const double half = body.half_width(d);
@@ -59,7 +65,7 @@ bool Region::holds(const PlacedConvex &body) const {
 bool Region::in_lumen(const PlacedConvex &body) const {
   constexpr int directions = 64;
   const double along = body.centre[vessel_->axis] - vessel_->centre[vessel_->axis];
-  double radius = lumen_radius(*vessel_, std::max(0.0, std::abs(along) - body.half_width(vessel_->axis)));
+  double radius = lumen_radius(*vessel_, std::max(0.0, std::abs(along) - body.half_width(vessel_->axis))) - margin_;
   const int a = (vessel_->axis + 1) % 3, b = (vessel_->axis + 2) % 3;
   Real3 r{};
   for (int d : {a, b})
@@ -85,7 +91,7 @@ bool Region::in_lumen(const PlacedConvex &body) const {
 bool Region::clear_of_slabs(const PlacedConvex &body) const {
   for (const SpeciesSpec *slab : slabs_) {
     const int d = slab->axis;
-    const double half = body.half_width(d);
+    const double half = body.half_width(d) + margin_;
     for (int image = -1; image <= 1; ++image) {
       if (image != 0 && grid_.boundary[d] == Boundary::wall) continue;
       const double x = body.centre[d] + image * grid_.length[d];

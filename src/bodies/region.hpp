@@ -12,9 +12,9 @@ namespace eulastic {
 class Region {
 public:
   /// All slabs of `species` and the cylinders among those with `places`. `vessel`: one of the tubes, or null. All must
-  /// stay.
+  /// stay. `margin`: what bodies keep free beside sides of the box, slabs and the lumen's wall.
   Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
-         const SolidBodies &solids, const GridSpec &grid);
+         const SolidBodies &solids, const GridSpec &grid, double margin);
 
   /// Volume (area in 2-D) of the lumen, or of the box less slabs; less bodies from files.
   double volume() const { return volume_; }
@@ -34,6 +34,7 @@ private:
   int dimension_;
   const SpeciesSpec *vessel_;
   const SolidBodies &solids_;
+  double margin_;
   Real3 low_{}, high_{};
   double volume_ = 1;
   std::vector<const SpeciesSpec *> slabs_;

@@ -194,7 +194,8 @@ std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t whi
     vessel = &other;
   }
   if (!vessel && !found) return "-" + spec.name + "_inside: " + spec.inside + " is not a species of tubes or voxels";
-  const Region region(species, earlier, vessel, solids, grid);
+  const double margin = spec.is_membrane() ? std::max(grid.longest_spacing() - spec.gap / 2, 0.0) : 0;
+  const Region region(species, earlier, vessel, solids, grid, margin);
   const double body = shape_volume(spec, dimension);
   const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
   if (!(wanted <= most_bodies)) return too_many(spec, most_bodies, most_bodies, body, region.volume());

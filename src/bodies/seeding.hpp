@@ -10,8 +10,9 @@
 namespace eulastic {
 
 /// Places species[which], clear of walls, slabs, tubes, cylinders, `solids` and of the bodies of `earlier` (those of
-/// the species before, all known). Depends on nothing but the arguments: every rank finds the same. Returns an empty
-/// string, or one sentence on what is wrong; where they do not fit, with the largest number that does.
+/// the species before, all known); membranes by a cell at least, which the film beside walls takes. Depends on nothing
+/// but the arguments: every rank finds the same. Returns an empty string, or one sentence on what is wrong; where they
+/// do not fit, with the largest number that does.
 std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
                         const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places);
 

@@ -118,6 +118,12 @@ void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View 
   for (const auto [d, high] : grid.sides()) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
+void fill_wall_ghosts_of_bodies(const Grid &grid, const BoxSides &sides, View field, int width,
+                                const OccupiedRows *rows) {
+  for (const auto [d, high] : grid.sides())
+    reflect(grid, field, d, high, false, {is_solid(sides[d][high].kind) ? 0.0 : 1.0, 0.0}, width, rows);
+}
+
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);

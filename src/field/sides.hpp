@@ -28,6 +28,8 @@ struct WallMotion {
 enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
 /// Whether the pressure is given there, so that volume may cross it either way.
 constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
+/// Whether it ends the fluid for bodies: nothing of them is behind it, and they do not come out.
+constexpr bool is_solid(SideKind kind) { return kind == SideKind::wall || kind == SideKind::inflow; }
 constexpr bool volume_crosses(SideKind kind) { return is_open(kind) || kind == SideKind::inflow; }
 
 /// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
@@ -67,6 +69,9 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
 /// not where `rows`, if it is given, is idle before the side.
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
+/// The same at centres, but 0 behind solid sides: for fractions of bodies that end there.
+void fill_wall_ghosts_of_bodies(const Grid &grid, const BoxSides &sides, View field, int width,
+                                const OccupiedRows *rows = nullptr);
 /// All components of a left Cauchy-Green block.
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows = nullptr);

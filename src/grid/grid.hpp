@@ -7,6 +7,7 @@
 #include "base/petsc.hpp"
 #include "grid/segment.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -34,6 +35,12 @@ struct GridSpec {
   /// First cell of each rank along every direction, and N at the end, in place of the even split; empty: that
   std::array<std::vector<int>, 3> starts;
   int ghosts = 5;  ///< layers in memory: WENO5 reads three, B outside bodies takes five
+
+  double longest_spacing() const {
+    double longest = 0;
+    for (int d = 0; d < (cells[2] == 1 ? 2 : 3); ++d) longest = std::max(longest, length[d] / cells[d]);
+    return longest;
+  }
 };
 
 /// Ghosted memory of one field on one rank. Rows start on a 64-byte line: their low ghosts sit at the end of the

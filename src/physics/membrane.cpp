@@ -107,6 +107,14 @@ bool MembraneTransport::marks(const std::vector<Phase> &phases) {
   });
 }
 
+PetscErrorCode MembraneTransport::find_walls(const std::vector<const Phase *> &rigid) {
+  PetscFunctionBeginUser;
+  WorkSpace::Lease scratch;
+  PetscCall(work_->take("walls beside membranes", WallFilm::work_fields, &scratch));
+  film_.find(*sides_, rigid, scratch.fields());
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscFunctionBeginUser;
   force_known_ = false;

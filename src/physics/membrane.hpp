@@ -11,6 +11,7 @@
 #include "physics/surface_markers.hpp"
 #include "physics/surface_tension.hpp"
 #include "physics/transport.hpp"
+#include "physics/wall_film.hpp"
 
 #include <functional>
 
@@ -26,20 +27,24 @@ public:
   /// Of the work space, during each call.
   static constexpr int work_fields = SurfaceCells::work_fields + 6;
 
-  /// `drifts`: as of SurfaceTension, for bending.
-  MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
+  /// `sides`: of the box, which must outlive this; `drifts`: as of SurfaceTension, for bending.
+  MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const BoxSides &sides, bool drifts)
       : grid_(&grid),
         work_(&work),
         exchange_(&exchange),
-        surface_(grid, exchange),
+        sides_(&sides),
+        surface_(grid, exchange, sides),
         bending_(grid, exchange),
         markers_(grid),
+        film_(grid),
         drifts_(drifts),
         force_(grid, grid.dimension()) {}
   static bool exists(const std::vector<Phase> &phases);
   static bool marks(const std::vector<Phase> &phases);  ///< whether any has markers
   std::size_t bytes() const { return force_.bytes(); }
 
+  /// Where walls are: solid sides of the box, and `rigid` bodies, which do not travel; before any force.
+  PetscErrorCode find_walls(const std::vector<const Phase *> &rigid);
   /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch. Five
   /// ghosts of phi, here and below.
   PetscErrorCode start(Phase *phase);
@@ -91,9 +96,11 @@ private:
   const Grid *grid_;
   WorkSpace *work_;
   GhostExchange *exchange_;
+  const BoxSides *sides_;
   SurfaceCells surface_;     ///< of the phase that is worked on
   MembraneBending bending_;  ///< the same
   SurfaceMarkers markers_;
+  WallFilm film_;
   bool drifts_;
   long unresolved_ = 0;
   FieldBlock force_;   ///< at faces, if it is known

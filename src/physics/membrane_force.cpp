@@ -147,6 +147,7 @@ PetscErrorCode MembraneTransport::gather_force(const Phase &phase, ConstView smo
     add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
     if (bending) net->add_row(part, a, added);
   }));
+  film_.add_force(phase, force_);
   PetscFunctionReturn(0);
 }
 

@@ -65,6 +65,7 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
       },
       &bending));
   VerbScope scope(Verb::sums);
+  film_.add_energy(phase, velocity, power, stored, &sum[0]);
   for (std::size_t c = 0; c < bending.size(); ++c)
     if (bending[c] > 0) bending[c] *= smoothed_delta(*grid_, smooth, surface_.all()[c].at);
   std::vector<int> label;

@@ -117,12 +117,33 @@ Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const 
   return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
-// psi, levels and steps.
+// Whether the first filter reads behind one.
+bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
+  for (const auto [d, high] : grid_->sides())
+    if (is_solid((*sides_)[d][high].kind))
+      for (const Segment &row : grid_->cells_at(d, high, smooth_reach))
+        if (!phase.rows.idle(row.j, row.k) &&
+            OccupiedRows::any(phase.fraction[0].row(row.j, row.k), row.i_begin, row.i_end))
+          return true;
+  return false;
+}
+
+// psi, levels and steps. A body ends at a solid side, where phi goes on as if it did not: its surface is seen there
+// too.
 PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts;
+  const int dim = grid_->dimension(), ghosts = grid_->spec().ghosts, deep = dim == 3 ? ghosts : 0;
   const Int3 &n = grid_->owned();
-  const ConstView phi = phase.fraction[0];
+  ConstView phi = phase.fraction[0];
+  if (is_beside_solid_side(phase)) {
+    const View copy = fields[sharp];
+    for (int k = -deep; k < n[2] + deep; ++k)
+      for (int j = -ghosts; j < n[1] + ghosts; ++j)
+        if (cleared_around(*grid_, phase.rows, j, k))
+          std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
+    fill_wall_ghosts_of_bodies(*grid_, *sides_, copy, ghosts, &phase.rows);
+    phi = copy;
+  }
   const auto fill = [&](int field, const auto &row) {
     PetscFunctionBeginUser;
     clear_around(*grid_, phase.rows, ghosts, fields[field]);
@@ -137,7 +158,7 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) 
     });
     FieldBlock filled = fields.part(field, 1);
     PetscCall(exchange_->update(filled, ghosts, &phase.rows));
-    fill_wall_ghosts_even(*grid_, at_centre, fields[field], ghosts, &phase.rows);
+    fill_wall_ghosts_of_bodies(*grid_, *sides_, fields[field], ghosts, &phase.rows);
     PetscFunctionReturn(0);
   };
   PetscCall(fill(smoothed, [&](int j, int k, int begin, int end, RowScratch &scratch) {
@@ -148,7 +169,7 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) 
     smooth_row(dim, once, j, k, begin, end, scratch.row(0), scratch.row(1));
     level_row(once.row(j, k), scratch.row(1), begin, end, fields[level].row(j, k));
   }));
-  const int deep = dim == 3 ? ghosts : 0, rows = n[1] + 2 * ghosts, planes = n[2] + 2 * deep;
+  const int rows = n[1] + 2 * ghosts, planes = n[2] + 2 * deep;
   const int parts = row_parts(*grid_);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(std::size_t(rows) * planes, part, parts);

@@ -4,6 +4,7 @@
 
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -25,7 +26,9 @@ public:
     bool owned;
   };
 
-  SurfaceCells(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
+  /// `sides`: of the box; they must outlive this.
+  SurfaceCells(const Grid &grid, GhostExchange &exchange, const BoxSides &sides)
+      : grid_(&grid), exchange_(&exchange), sides_(&sides) {}
   /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
   /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
@@ -48,6 +51,7 @@ public:
 
 private:
   Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
+  bool is_beside_solid_side(const Phase &phase) const;
   PetscErrorCode find_level(const Phase &phase, FieldBlock &fields);
   void find_nearest(const Phase &phase, ConstView levels);
   void find_layers(const Phase &phase);
@@ -56,6 +60,7 @@ private:
 
   const Grid *grid_;
   GhostExchange *exchange_;
+  const BoxSides *sides_;
   std::vector<Cell> cells_;
   std::array<std::size_t, layers + 2> first_{};  ///< of every layer
   std::vector<int> number_;                      ///< of the cells, -1: none; by offset from the memory's start

@@ -86,7 +86,7 @@ PetscErrorCode Solver::prepare() {
   if (SurfaceTension::exists(now_.phases))
     surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
-    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_, drifts());
+    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_, spec_.sides, drifts());
   PetscCall(work_->reserve(
       work_fields(spec_, grid_->dimension(),
                   {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
@@ -103,6 +103,12 @@ PetscErrorCode Solver::prepare() {
     phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
     if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
+  }
+  if (membranes_) {
+    std::vector<const Phase *> rigid;
+    for (const Phase &phase : now_.phases)
+      if (phase.material.is_rigid() && !(rigid_ && rigid_->travels(phase))) rigid.push_back(&phase);
+    PetscCall(membranes_->find_walls(rigid));
   }
   PetscCall(place_markers());
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));

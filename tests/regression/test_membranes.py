@@ -17,6 +17,11 @@ CAPSULE = ("-grid_cells 32,32,32 -grid_length 4,4,4 -fluid_viscosity 1 -species 
 SHEAR = [str(pathlib.Path(__file__).resolve().parents[2] / "options" / "capsule_in_shear.opts"),
          *("-grid_cells 20,24,20 -grid_length 5,6,5 -wall_ymin_velocity -3,0,0 -wall_ymax_velocity 3,0,0 -snapshot_interval 0").split()]
 
+# A red cell that lies on a wall, is pressed against it, and drawn along by the other one: 2-D, 16 cells long.
+LYING = ("-grid_cells 48,32,1 -grid_length 24,16,.5 -boundary_y wall -fluid_viscosity 1.2 -wall_ymax_velocity .2,0,0 -species rbc "
+         "-rbc_law red_cell -rbc_diameter 8 -rbc_axis y -rbc_centre 12,1.32,.25 -rbc_body_force 0,-4e-3,0 -time_end 600 "
+         "-series_interval 10 -snapshot_interval 0").split()
+
 
 class Membranes(SceneCase):
     def test_orientation_turns_the_stretch(self):
@@ -68,6 +73,24 @@ class Membranes(SceneCase):
             self.assertGreater(len(file["membrane_markers"]), 100)
         on = self.run_program("half", *SHEAR, "-time_steps_max", "24", "-restart", half.directory, ranks=3)
         self.assertEqual(on.summary["state_hash"], whole.summary["state_hash"])
+
+    def slides(self, run, body=-1):
+        """Five cells away while the fluid two cells above the wall goes on by 15: it is whole, and makes no energy."""
+        bodies, series = run.bodies, run.series
+        self.assertGreater(bodies.centroid[-1, body, 0] - bodies.centroid[0, body, 0], 5)
+        self.assertLess(bodies.largest_stretch[:, body].max(), 1.6)
+        self.assertLess(abs(bodies.volume[:, body] / bodies.volume[0, body] - 1).max(), 1e-6)
+        self.assertGreater(series.energy_lost_elastic.min(), -0.02)
+        self.assertLess(series.energy_lost_elastic[-1], 0.004 * run.summary["energy_dissipated"])
+
+    def test_one_that_lies_on_a_wall_slides(self):
+        run = self.run_program("lying", *LYING)
+        self.slides(run)
+        with h5py.File(next(run.directory.glob("checkpoint_*.h5"))) as file:
+            markers = file["membrane_markers"][:].reshape(-1, 21)
+        from_wall = markers[:, 4] + 0.5 + markers[:, 7]  # row of the cell, and place in it
+        self.assertGreater(from_wall.min(), 0.4)
+        self.assertGreater(len(markers), 40)
 
 
 if __name__ == "__main__":

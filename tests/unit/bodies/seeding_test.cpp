@@ -252,6 +252,44 @@ TEST(Seeding, StaysClearOfSlabsCylindersAndEarlierBodies) {
   EXPECT_GT(least_level(bodies), 0);
 }
 
+// Red cells as solids lie on the walls; their membranes would begin in a film that the grid does not resolve.
+TEST(Seeding, MembranesKeepACellFromWallsAndHalfOfOneFromTheMiddleBetweenThem) {
+  const std::string red_cells = " -rbc_law red_cell -rbc_diameter 8 -rbc_placement random -rbc_orientation random ";
+  const std::string tube =
+      "-time_end 1 -grid_cells 48,32,32 -grid_length 48,32,32 -boundary_y wall -boundary_z wall "
+      "-species vessel,rbc -vessel_shape tube -vessel_axis x -vessel_radius 13 -vessel_law rigid ";
+  const std::string plates = "-time_end 1 -grid_cells 48,40,32 -grid_length 24,20,16 -boundary_y wall -species ";
+  for (const std::string &line :
+       {plates + "rbc -rbc_hematocrit 0.3" + red_cells,
+        plates +
+            "floor,rbc -floor_shape slab -floor_axis y -floor_interval 0,2.2 -floor_law rigid -rbc_hematocrit .25" +
+            red_cells,
+        tube + "-rbc_hematocrit 0.2" + red_cells, plates + "rbc -rbc_hematocrit 0.25 -rbc_gap 0" + red_cells}) {
+    const ParseResult result = parse_line(line);
+    ASSERT_EQ(result.error, "") << line;
+    const Config &config = result.config;
+    const double h = config.grid.longest_spacing(), round_off = 1e-6;
+    const std::size_t last = config.species.size() - 1;
+    const SpeciesSpec &wall = config.species[0];
+    EXPECT_EQ(config.species[last].gap, line.find("_gap 0") == std::string::npos ? h : 0);
+    double nearest = 1e9;
+    for (const BodyPlace &place : config.places[last].known)
+      for (const Real3 &x : surface_points(config.species[last], place, 3)) {
+        const double floor = wall.shape == Shape::slab ? wall.interval[1] : 0;
+        const double beside = wall.shape == Shape::tube ? wall.radius - std::hypot(x[1] - 16, x[2] - 16)
+                                                        : std::min(x[1] - floor, config.grid.length[1] - x[1]);
+        nearest = std::min(nearest, beside);
+      }
+    EXPECT_GT(nearest, h - round_off) << line;
+    EXPECT_LT(nearest, 3 * h) << line;
+    if (config.species[last].gap == 0) continue;
+    Config bodies = config;  // grown by half the gap they are still apart
+    bodies.species = {config.species[last]};
+    bodies.places = {config.places[last]};
+    EXPECT_GT(least_level(bodies), 0.5 * h) << line;
+  }
+}
+
 TEST(Seeding, TheSeedIsTheScene) {
   const std::string line = box + "-species rbc " + cells + "-rbc_hematocrit 0.15 ";
   const auto one = seeded(line), again = seeded(line), other = seeded(line + "-rbc_seed 2");

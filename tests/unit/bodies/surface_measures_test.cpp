@@ -49,7 +49,8 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
   WorkSpace work(scene.grid);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-  MembraneTransport membrane(scene.grid, exchange, work, false);
+  const BoxSides sides{};
+  MembraneTransport membrane(scene.grid, exchange, work, sides, false);
   EXPECT_EQ(membrane.start(&phase), 0);
   std::vector<SurfaceSample> samples;
   EXPECT_EQ(membrane.measure(phases, scene.velocity, energy, &samples), 0);

@@ -88,7 +88,8 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
   WorkSpace work(scene.grid);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-  MembraneTransport membrane(scene.grid, exchange, work, true);
+  const BoxSides sides{};
+  MembraneTransport membrane(scene.grid, exchange, work, sides, true);
   EXPECT_EQ(membrane.start(&phase), 0);
   FieldBlock force(scene.grid, dim);
   Seen seen{};

@@ -186,7 +186,8 @@ struct Ball : InterfaceScene {
 TEST(SurfaceCells, KnowNormalDistanceAndArea) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    SurfaceCells cells(ball.grid, *ball.exchange);
+    const BoxSides sides{};
+    SurfaceCells cells(ball.grid, *ball.exchange, sides);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     const double h = 1. / Ball::cells;
     double area = 0;
@@ -212,7 +213,8 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
 TEST(SurfaceCells, ExtendWhatIsIsotropic) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    SurfaceCells cells(ball.grid, *ball.exchange);
+    const BoxSides sides{};
+    SurfaceCells cells(ball.grid, *ball.exchange, sides);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     FieldBlock tensor(ball.grid, dim == 2 ? 3 : 6);
     const auto &components = tensor_components(dim);
@@ -243,7 +245,8 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     Ball ball(dim);
     WorkSpace work(ball.grid);
     ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-    MembraneTransport membrane(ball.grid, *ball.exchange, work, false);
+    const BoxSides sides{};
+    MembraneTransport membrane(ball.grid, *ball.exchange, work, sides, false);
     ball.phases[0].material.law = Law::membrane;
     ball.phases[0].material.membrane.shear_modulus = 2;
     FieldBlock velocity(ball.grid, dim);

@@ -20,6 +20,7 @@ struct MarkedBall : InterfaceScene {
   const Real3 centre{0.05, 0.49, 0.505};
   Phase phase;
   std::unique_ptr<GhostExchange> exchange;
+  BoxSides sides;
   std::unique_ptr<SurfaceCells> surface;
   std::unique_ptr<SurfaceMarkers> markers;
   FieldBlock smooth;
@@ -40,7 +41,7 @@ struct MarkedBall : InterfaceScene {
     EXPECT_EQ(exchange->update(phase.fraction, 5), 0);
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     smooth = FieldBlock(grid, SurfaceCells::work_fields);
-    surface = std::make_unique<SurfaceCells>(grid, *exchange);
+    surface = std::make_unique<SurfaceCells>(grid, *exchange, sides);
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(grid);
   }

@@ -1,0 +1,43 @@
+// A film of fluid between membranes and walls: a short-range pressure on the part of a body that comes into the cells
+// beside a wall; docs/method.md, section 18 "Walls".
+#pragma once
+
+#include "field/exact_sum.hpp"
+#include "field/ghost_exchange.hpp"
+#include "field/phase.hpp"
+#include "field/sides.hpp"
+
+namespace eulastic {
+
+class WallFilm {
+public:
+  static constexpr int work_fields = 2;  ///< scratch of find()
+
+  explicit WallFilm(const Grid &grid) : grid_(&grid) {}
+  /// Finds the cells and faces beside walls: solid sides of the box, and rigid bodies of `phases` that do not travel.
+  /// Three ghosts of phi; `scratch`: work_fields fields.
+  void find(const BoxSides &sides, const std::vector<const Phase *> &rigid, FieldBlock &scratch);
+  /// Adds the force of the walls on the bodies of a membrane's phase; one ghost of phi.
+  void add_force(const Phase &phase, FieldBlock &force) const;
+  /// Adds, per cell volume, minus the power of that force and the energy that is stored in it.
+  void add_energy(const Phase &phase, const FieldBlock &velocity, int power, int stored, ExactSums *sums) const;
+
+private:
+  struct Face {
+    int component;
+    std::ptrdiff_t at, near, far;  ///< offsets: the face, the cell nearer to the wall, the other one
+    double towards;                ///< slope of the nearness along the component, 1/length
+  };
+  struct Cell {
+    std::ptrdiff_t at;
+    double nearness;
+  };
+  static double force_on(const Face &face, double pressure, const double *phi);
+  double pressure_of(const Phase &phase) const;
+
+  const Grid *grid_;
+  std::vector<Face> faces_;  ///< owned
+  std::vector<Cell> cells_;  ///< owned
+};
+
+}  // namespace eulastic
