@@ -3,6 +3,8 @@
 #include "app/option_table.hpp"
 #include "base/rank_zero.hpp"
 #include "io/checksum.hpp"
+#include "io/nrrd_header.hpp"
+#include "io/volume_file.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -10,18 +12,30 @@
 namespace eulastic {
 namespace {
 
-std::string hash_file(const std::string &path) {
-  std::error_code error;
-  const std::size_t colon = path.rfind(':');
-  const bool whole = std::filesystem::is_regular_file(path, error) || colon == std::string::npos;  // else FILE:DATASET
-  std::ifstream file(whole ? path : path.substr(0, colon), std::ios::binary);
+// The files that a path stands for: itself, without the dataset of FILE:DATASET, and what a detached NRRD header names.
+std::vector<std::string> files_of(const std::string &path) {
+  VolumeFormat format{};
+  std::string file, dataset;
+  NrrdHeader header;
+  // Whoever loads the file says what is wrong with it.
+  if (find_volume(path, &format, &file, &dataset).empty() && format == VolumeFormat::nrrd)
+    (void)read_nrrd_header(file, &header);
+  if (header.data_file.empty() || header.data_file == file) return {file};
+  return {file, header.data_file};
+}
+
+// Of all bytes of the files, one after the other.
+std::string hash_files(const std::vector<std::string> &files) {
   std::vector<std::uint64_t> words(1 << 16);
   std::uint64_t sum = 0, count = 0;
-  for (std::size_t bytes = 1; bytes > 0; count += words.size()) {
-    std::fill(words.begin(), words.end(), 0);
-    file.read(reinterpret_cast<char *>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
-    bytes = static_cast<std::size_t>(file.gcount());
-    sum += checksum(words.data(), (bytes + sizeof words[0] - 1) / sizeof words[0], count) + mix_bits(bytes);
+  for (const std::string &path : files) {
+    std::ifstream file(path, std::ios::binary);
+    for (std::size_t bytes = 1; bytes > 0; count += words.size()) {
+      std::fill(words.begin(), words.end(), 0);
+      file.read(reinterpret_cast<char *>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
+      bytes = static_cast<std::size_t>(file.gcount());
+      sum += checksum(words.data(), (bytes + sizeof words[0] - 1) / sizeof words[0], count) + mix_bits(bytes);
+    }
   }
   return checksum_text(sum);
 }
@@ -35,7 +49,7 @@ std::vector<InputFile> hash_input_files(const Config &config) {
     if (!option.names_file || !option.text || (option.applies && !option.applies())) continue;
     const std::string path = option.text();
     if (path.empty() || !option.names_file(path)) continue;
-    files.push_back({option.name, path, on_rank_0([&] { return hash_file(path); })});
+    files.push_back({option.name, path, on_rank_0([&] { return hash_files(files_of(path)); })});
   }
   return files;
 }

@@ -285,6 +285,30 @@ class Contents(Kept):
         self.assertEqual(len(hashes), 8)
 
 
+class Detached(Kept):
+    def test_values_beside_a_header_are_a_part_of_the_case(self):
+        """The values that a detached NRRD header names count as those of the header do; its place does not."""
+        mask = numpy.zeros((16, 16), "u1")
+        mask[5:11, 5:11] = 1
+        (self.room / "one").mkdir()
+        (self.room / "one/body.nhdr").write_text("NRRD0004\ntype: uchar\ndimension: 2\nsizes: 16 16\nencoding: raw\nspacings: .0625 .0625\n"
+                                                 "space dimension: 2\nspace origin: (.03125,.03125)\ndata file: values.raw\n")
+        values = self.room / "one/values.raw"
+        values.write_bytes(mask.tobytes())
+        case = [*CASE.replace("-disc_shape sphere\n-disc_radius .25", "-disc_shape voxels").replace("-time_end .1", "").split(), "-disc_voxels"]
+        content = lambda path: re.search(r"# content (\w+)", self.call(*case, path, "-time_end", ".1", "-print_options").stdout)[1]  # noqa: E731
+        first = content("one/body.nhdr")
+        shutil.copytree(self.room / "one", self.room / "two")
+        self.assertEqual(content("two/body.nhdr"), first)
+        self.run_case("run", *case, "one/body.nhdr", "-time_end", ".1", *OFTEN)
+        mask[8, 8] = 0
+        values.write_bytes(mask.tobytes())
+        self.assertNotEqual(content("one/body.nhdr"), first)
+        again = ["-restart", "run", "-time_end", ".11", "-output_dir", "on"]
+        self.refused(*case, "one/body.nhdr", *again, says=["-disc_voxels: cannot change", "one/body.nhdr with the content"])
+        self.run_case("on", *case, "two/body.nhdr", *again[:4])
+
+
 class Watched(Restart):
     def check(self, damage, name, options=()):
         shutil.rmtree(self.room / "run", ignore_errors=True)
