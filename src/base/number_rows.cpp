@@ -46,12 +46,22 @@ bool is_name(std::string_view item) {
          std::string_view("+-.0123456789").find(item[0]) == std::string_view::npos && !read_number(item, &number);
 }
 
+std::string lower(std::string_view text) {
+  std::string all(text);
+  for (char &c : all) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return all;
+}
+
 std::string name_of(std::string_view item) {
   while (!item.empty() && item.front() == '"') item.remove_prefix(1);
   while (!item.empty() && item.back() == '"') item.remove_suffix(1);
-  std::string name(trim(item));
-  for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
+  return lower(trim(item));
+}
+
+// Whether a comment begins with the word `name`.
+bool begins_with(std::string_view comment, const std::string &name) {
+  return lower(comment.substr(0, name.size())) == name &&
+         (comment.size() == name.size() || !std::isalpha(static_cast<unsigned char>(comment[name.size()])));
 }
 
 class RowReader {
@@ -83,6 +93,19 @@ public:
     return visit_(row_);
   }
 
+  /// What is wrong with a line that is a comment; sets the number that it names.
+  std::string read_comment(std::string_view comment, double *named) {
+    if (format_.named.empty() || !begins_with(comment, format_.named)) return {};
+    double value;
+    if (named_ || !read_number(trim(comment.substr(format_.named.size())), &value) || !(value > 0) ||
+        !std::isfinite(value))
+      return quoted(comment) + (named_ ? " comes a second time" : " names no number > 0") + "; accepted: one line # " +
+             format_.named + " T with a number T > 0, or other comments";
+    *named = value;
+    named_ = true;
+    return {};
+  }
+
   /// What is wrong with all lines; sets the line that says so, 0 if none does.
   std::string end(long *line) const {
     *line = 0;
@@ -108,6 +131,7 @@ private:
   const VisitRow &visit_;
   std::vector<double> row_;
   std::size_t rows_ = 0;
+  bool named_ = false;
   long count_line_ = 0;
   double count_ = 0;
 };
@@ -123,11 +147,14 @@ bool read_number(std::string_view word, double *number) {
 
 std::size_t mark_length(std::string_view text) { return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0; }
 
-std::string read_rows(const std::string &path, const std::string &text, const RowFormat &format,
-                      const VisitRow &visit) {
+std::string read_rows(const std::string &path, const std::string &text, const RowFormat &format, const VisitRow &visit,
+                      double *named) {
   RowReader reader(format, visit);
+  const auto name_line = [&](long line, const std::string &wrong) {
+    return path + (line > 0 ? " line " + std::to_string(line) + ": " : " ") + wrong;
+  };
   const auto refuse = [&](long line, const std::string &wrong) {
-    return path + (line > 0 ? " line " + std::to_string(line) + ": " : " ") + wrong + "; accepted: " + format.expected;
+    return name_line(line, wrong) + "; accepted: " + format.expected;
   };
   long number = 0;
   for (std::size_t begin = mark_length(text); begin < text.size();) {
@@ -135,6 +162,10 @@ std::string read_rows(const std::string &path, const std::string &text, const Ro
     std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;
     ++number;
+    line = trim(line);
+    if (named && !line.empty() && line[0] == '#')
+      if (const std::string wrong = reader.read_comment(trim(line.substr(1)), named); !wrong.empty())
+        return name_line(number, wrong);
     line = trim(line.substr(0, line.find('#')));
     if (line.empty()) continue;
     if (const std::string wrong = reader.read_line(line, number); !wrong.empty()) return refuse(number, wrong);

@@ -44,7 +44,7 @@ class Tables(WithRoom):
         for option in ("-inflow_xmin_velocity", "-inflow_xmin_flow_rate"):
             self.refused(*CHANNEL, "-time_end", ".3", option, name,
                          says=[f"{option}: beat.csv goes from time 0 to 0.15, the run from 0 to 0.3; accepted: a table of "
-                               "all the run, -inflow_xmin_period to repeat it, or -inflow_xmin_hold true"])
+                               "all the run, -inflow_xmin_period to repeat it (in the file: # period T), or -inflow_xmin_hold true"])
         self.refused(*CHANNEL, "-time_end", ".3", "-inflow_xmin_velocity", "1", "-pressure_xmax_table", name, "-check_only",
                      says=["-pressure_xmax_table: beat.csv goes from time 0 to 0.15"])
         time, flow = self.inflow("-inflow_xmin_flow_rate", name, "-inflow_xmin_hold", end=.3)
@@ -52,13 +52,43 @@ class Tables(WithRoom):
         time, flow = self.inflow("-inflow_xmin_velocity", name, "-inflow_xmin_period", ".15", end=.4)
         numpy.testing.assert_allclose(flow, numpy.interp(time, *numpy.transpose(BEAT), period=.15), rtol=1e-9)
 
+    def test_a_table_that_says_that_it_repeats(self):
+        plain = self.write("plain.csv", table(BEAT))
+        wanted = self.inflow("-inflow_xmin_velocity", plain, "-inflow_xmin_period", ".15", end=.4)
+        self.assertGreater(len(set(wanted[1])), 10)
+        for text in ("# period 0.15\n" + table(BEAT), table(BEAT, ";", "\r\n") + "  #Period\t.15", "# a beat\n#\n# period 1.5e-1\n" + table(BEAT)):
+            name = self.write("beat.csv", text)
+            numpy.testing.assert_array_equal(self.inflow("-inflow_xmin_velocity", name, end=.4), wanted)
+        numpy.testing.assert_array_equal(self.inflow("-inflow_xmin_velocity", name, "-inflow_xmin_period", ".15", end=.4), wanted)
+        longer = self.inflow("-inflow_xmin_flow_rate", self.write("longer.csv", "# period .2\n" + table(BEAT)), end=.4)
+        numpy.testing.assert_allclose(longer[1], numpy.interp(longer[0], *numpy.transpose(BEAT), period=.2), rtol=1e-9)
+        pressures = [self.run_case(*CHANNEL, "-time_end", ".4", "-inflow_xmin_velocity", "1", "-pressure_xmax_table", *options)
+                     for options in ((name,), (plain, "-pressure_xmax_period", ".15"))]
+        numpy.testing.assert_array_equal(*(run.series.pressure_xmax for run in pressures))
+        # Words after numbers and periodic things are no such line.
+        other = self.write("other.csv", "# periodic flow\n" + table(BEAT, end=" # period 9\n"))
+        self.refused(*CHANNEL, "-time_end", ".4", "-inflow_xmin_velocity", other, says=["-inflow_xmin_velocity: other.csv goes from"])
+
+    def test_periods_that_are_refused(self):
+        for text, options, says in (
+                ("# period: .15\n", "", 'beat.csv line 1: "period: .15" names no number > 0; accepted: one line # period T'),
+                ("# period of the heart\n", "", "-inflow_xmin_velocity: beat.csv line 1: "),
+                ("# period 0\n", "", "beat.csv line 1: "), ("# period nan\n", "", "beat.csv line 1: "),
+                ("# period .15\n#period .15\n", "", 'beat.csv line 2: "period .15" comes a second time'),
+                ("# period .1\n", "", "-inflow_xmin_velocity: the period of beat.csv: 0.1 is shorter than the table"),
+                ("# period .15\n", "-inflow_xmin_period .2", '-inflow_xmin_period: 0.2, but beat.csv says "# period 0.15"'),
+                ("# period .15\n", "-inflow_xmin_hold", '-inflow_xmin_hold: beat.csv says "# period 0.15"')):
+            with self.subTest(text=text, options=options):
+                self.refused(*CHANNEL, "-time_end", ".4", "-inflow_xmin_velocity", self.write("beat.csv", text + table(BEAT)),
+                             *options.split(), says=[says])
+
     def test_no_beat_is_stepped_over(self):
         """A flow so slow that nothing else limits the step: it is that of a cosine of the same period."""
         name = self.write("beat.csv", table([(time, 1e-9 * value) for time, value in BEAT]))
         slow = [*CHANNEL[:CHANNEL.index("-fluid_viscosity")], "-fluid_viscosity", "1e-6", "-time_end", "1", "-check_only"]
         found = [re.search(r"time step \(estimate\): .*", self.start(*slow, "-inflow_xmin_velocity", *options).stdout)[0]
-                 for options in ((name, "-inflow_xmin_period", ".15"), ("1e-9", "-inflow_xmin_frequency", str(numpy.pi / .075)))]
-        self.assertEqual(found, ["time step (estimate): 0.00375 (forcing period)"] * 2)
+                 for options in ((name, "-inflow_xmin_period", ".15"), (self.write("own.csv", "# period .15\n" + (self.room / name).read_text()),), ("1e-9", "-inflow_xmin_frequency", str(numpy.pi / .075)))]
+        self.assertEqual(found, ["time step (estimate): 0.00375 (forcing period)"] * 3)
 
     def test_a_run_goes_on_when_its_table_is_held_or_repeats(self):
         name = self.write("beat.csv", table(BEAT))
