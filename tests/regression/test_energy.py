@@ -48,7 +48,7 @@ class Budget(SceneCase):
         self.assertLess(abs(lost[2] - lost[1]), .3 * abs(lost[1] - lost[0]), lost)
 
     def test_what_comes_back_through_an_outflow_brings_no_energy(self):
-        """The pressure there falls with it. With a pressure of 0 instead .19 were lost."""
+        """The pressure there falls with it. With a pressure of 0 there .25 were lost."""
         swings = [word.replace("pressure", "outflow") for word in PULSE[:-len(EVERY_STEP)]]
         swings[swings.index("30")], swings[swings.index(".1")] = "3", ".02"
         self.assertLess(abs(self.lost("back", *swings, "-time_step", ".01", "-series_interval", ".02", "-time_end",
