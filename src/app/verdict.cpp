@@ -11,7 +11,7 @@ namespace {
 constexpr const char *fine = "fine", *look = "look", *do_not_trust = "do not trust";
 
 // Shares of what the energies are compared with.
-constexpr double energy_to_look = 0.05, energy_not_to_trust = 0.3;
+constexpr double rows_to_look = 0.1, made_to_look = 0.02, lost_to_look = 0.05, energy_not_to_trust = 0.3;
 // Relative changes of a body's volume, and of the area of a red cell's membrane, which bursts at 4 %.
 constexpr double volume_to_look = 0.01, volume_not_to_trust = 0.05;
 constexpr double area_to_look = red_cell_bursts, area_not_to_trust = 0.1;
@@ -38,13 +38,12 @@ Summary::Verdict judge_energy(const Evidence &e) {
                uncertain = over(e.budget.uncertain(), e.budget.handled());
   if (!e.rows_resolve_forcing)
     return {of, look, "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period"};
-  if (made > energy_to_look || made != made)
-    return {of, word(made, energy_to_look, energy_not_to_trust),
+  if (made > made_to_look || made != made)
+    return {of, word(made, made_to_look, energy_not_to_trust),
             "the run made energy of its own, " + percent(made) + all + " meanwhile"};
-  if (lost - uncertain > energy_to_look || lost != lost)
-    return {of, word(lost - uncertain, energy_to_look, energy_not_to_trust),
-            "the numerics lost " + percent(lost) + all};
-  if (uncertain > energy_not_to_trust)
+  if (lost - uncertain > lost_to_look || lost != lost)
+    return {of, word(lost - uncertain, lost_to_look, energy_not_to_trust), "the numerics lost " + percent(lost) + all};
+  if (uncertain > rows_to_look)
     return {of, look,
             "rows of series.csv are too far apart to tell within " + percent(uncertain) + all +
                 "; a shorter -series_interval"};

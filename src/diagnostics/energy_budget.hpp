@@ -68,7 +68,7 @@ private:
 
   static constexpr int works = 4, energies = 3;
   /// Of made_share(): a window in which more than that was made is found.
-  static constexpr std::array<double, 2> shares{0.05, 0.3};
+  static constexpr std::array<double, 2> shares{0.02, 0.3};
   double time_ = -1;                               ///< of the last state; negative: none yet
   std::array<double, works> rate_{}, work_{};      ///< supplied, dissipated, elastic, elastic where extended
   std::array<double, energies> first_{}, last_{};  ///< kinetic, elastic, elastic where extended
