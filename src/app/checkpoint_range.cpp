@@ -28,8 +28,7 @@ std::string find_absurd_number(const CheckpointNumbers &numbers) {
       if (never_negative.count(name) > 0 && value < 0) return absurd(name, value, "a number >= 0");
     }
   for (const auto &[name, values] : numbers.integers)
-    if (name != "state_hash")
-      if (std::string wrong = find_absurd_count(name, values); !wrong.empty()) return wrong;
+    if (std::string wrong = find_absurd_count(name, values); !wrong.empty()) return wrong;
   const double time = numbers.reals.at("time")[0], dt = numbers.reals.at("time_step")[0];
   const double step = double(numbers.integers.at("step")[0]);
   if (step > 0 && !(time > 0)) return absurd("time", time, "after a step a number > 0");

@@ -1,5 +1,6 @@
 #include "app/outputs.hpp"
 
+#include "app/saved_state.hpp"
 #include "app/series_columns.hpp"
 #include "app/verdict.hpp"
 #include "base/events.hpp"
@@ -202,7 +203,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, grid_->comm()));
   summary.bytes_per_cell = counted[0] / grid_->cell_count();
   summary.active_fraction = counted[1] / grid_->cell_count();
-  PetscCall(state_hash(*grid_, state, &summary.state_hash));
+  PetscCall(state_hash(solver_, &summary.state_hash));
   const double evolved = (counted[1] + counted[2]) * double(state.step);
   const Evidence evidence{budget, rows_resolve_forcing_, measured, double(state.forgotten), evolved};
   verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};

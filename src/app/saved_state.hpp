@@ -13,6 +13,8 @@ struct RunPosition {
   OutputsPosition outputs;
 };
 
+/// Collective. Rank-independent 64-bit hash of all that a checkpoint holds of the solver: fields, markers and numbers.
+PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash);
 /// Collective.
 PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
                           const std::string &path);

@@ -1,6 +1,7 @@
 #include "io/checkpoint.hpp"
 
 #include "base/events.hpp"
+#include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
 #include <algorithm>
@@ -24,6 +25,20 @@ PetscErrorCode write_all(MPI_Comm comm, Hdf5File &file, const std::map<std::stri
     PetscCallMPI(MPI_Bcast(&count, 1, MPI_UINT64_T, 0, comm));
     PetscCall(file.write_array(name, {count}, values));
   }
+  PetscFunctionReturn(0);
+}
+
+// The attribute `content` of a file: which datasets it has, and which checksums.
+PetscErrorCode find_content(Hdf5File &file, std::string *content) {
+  std::uint64_t sum = 0;
+  PetscFunctionBeginUser;
+  for (const std::string &name : file.datasets()) {
+    std::string checksum_of_values;
+    PetscCall(file.read_attribute(name, "checksum", &checksum_of_values));
+    const std::string entry = name + " " + checksum_of_values;
+    sum += mix_bits(checksum(entry.data(), entry.size(), 0));
+  }
+  *content = checksum_text(sum);
   PetscFunctionReturn(0);
 }
 
@@ -73,6 +88,9 @@ PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));
     if (any > 0) PetscCall(file.write_records(some.name, some.numbers, some.values));
   }
+  std::string content;
+  PetscCall(find_content(file, &content));
+  PetscCall(file.write_attribute("/", "content", content));
   PetscCall(file.commit());
   PetscFunctionReturn(0);
 }
@@ -90,6 +108,12 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
                                     ? ""
                                     : path + ": has format " + std::to_string(long(number)) + " (written by version " +
                                           version_ + "), this program reads format " + std::to_string(format)));
+  if (!file_.has_attribute("/", "content")) PetscFunctionReturn(0);  // of version 0.2.0 and before
+  std::string content, expected;
+  PetscCall(file_.read_attribute("/", "content", &expected));
+  PetscCall(find_content(file_, &content));
+  PetscCall(
+      fail_together(comm, content == expected ? "" : path + ": damaged (its datasets are not those it was made of)"));
   PetscFunctionReturn(0);
 }
 

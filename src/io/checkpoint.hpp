@@ -44,7 +44,7 @@ PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const
 /// ranks, with one line that begins with the path.
 class CheckpointFile {
 public:
-  /// Refuses what is not a checkpoint and formats of other versions.
+  /// Refuses what is not a checkpoint, formats of other versions, and files whose datasets or checksums have changed.
   PetscErrorCode open(MPI_Comm comm, const std::string &path);
   /// The program that wrote it.
   const std::string &version() const { return version_; }

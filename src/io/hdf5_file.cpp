@@ -133,9 +133,12 @@ std::vector<std::string> Hdf5File::datasets() const {
   H5G_info_t info{};
   (void)H5Gget_info(file_.get(), &info);
   for (hsize_t n = 0; n < info.nlinks; ++n) {
-    char name[256] = "";
-    (void)H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, sizeof name, H5P_DEFAULT);
-    names.emplace_back(name);
+    const auto get = [&](char *name, std::size_t size) {
+      return H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, size, H5P_DEFAULT);
+    };
+    std::string name(static_cast<std::size_t>(std::max<ssize_t>(get(nullptr, 0), 0)), '\0');
+    (void)get(name.data(), name.size() + 1);
+    names.push_back(std::move(name));
   }
   return names;
 }

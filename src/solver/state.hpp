@@ -26,7 +26,4 @@ struct State {
   std::vector<Phase> phases;   ///< three ghosts valid; half a step behind when staggered
 };
 
-/// Rank-independent 64-bit hash of velocity, pressure, phases and markers.
-PetscErrorCode state_hash(const Grid &grid, const State &state, std::uint64_t *hash);
-
 }  // namespace eulastic

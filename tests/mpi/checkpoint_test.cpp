@@ -57,7 +57,7 @@ PetscErrorCode advance(Scene *scene, int steps, std::uint64_t *hash) {
     if (scene->solver.state().step % 10 == 0) PetscCall(scene->solver.measure(&extremes));
     PetscCall(scene->solver.step(0.01 + 0.001 * (scene->solver.state().step % 3)));
   }
-  PetscCall(state_hash(scene->grid, scene->solver.state(), hash));
+  PetscCall(state_hash(&scene->solver, hash));
   PetscFunctionReturn(0);
 }
 

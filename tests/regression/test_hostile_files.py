@@ -6,6 +6,7 @@ Needs EULASTIC and EULASTIC_MPIEXEC.
 """
 import os
 import pathlib
+import re
 import sys
 import unittest
 
@@ -13,7 +14,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from checksum import checksum  # noqa: E402
+from checksum import change, checksum, content  # noqa: E402
 from restart_case import FLAT, Restart  # noqa: E402
 
 FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax pressure "
@@ -25,13 +26,11 @@ FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_x
 class Numbers(Restart):
     def refuse_changed(self, case, path, name, index, value, says=None):
         good = path.read_bytes()
-        with h5py.File(path, "r+") as file:
-            data = file[name][...]
+
+        def put(data):
             data.reshape(-1)[index] = value
-            file[name][...] = data
-            text = f"{checksum(data):016x}".encode()
-            self.assertEqual(len(file[name].attrs["checksum"]), 16)
-            file[name].attrs.modify("checksum", numpy.array(text, dtype="S16")[()])
+            return data
+        change(path, name, put)
         with self.subTest(name, index=index, value=value):
             self.refused(*case, "-restart", path, "-output_dir", "new", says=["-restart", says or name, "accepted"])
             self.assertFalse((self.room / "new").exists())
@@ -43,6 +42,7 @@ class Numbers(Restart):
         path = self.checkpoints()[0]
         with h5py.File(path) as file:
             self.assertEqual(int(file["time"].attrs["checksum"], 16), checksum(file["time"][...]))
+            self.assertEqual(int(file.attrs["content"], 16), content(file))
         nan, inf = numpy.nan, numpy.inf
         for name, index, value in (("time", 0, nan), ("time", 0, -1.), ("time", 0, inf), ("time_step", 0, nan), ("time_step", 0, 1e300),
                                    ("time_step", 0, -1e-3), ("time_step", 1, inf), ("time_step", 1, -1.), ("step", 0, -4),
@@ -63,6 +63,62 @@ class Numbers(Restart):
         for name in ("nan", "cell", "label", "phase"):
             index, value = {"nan": 7, "cell": 3, "label": 1, "phase": 2}[name], {"nan": numpy.nan, "cell": 1e9, "label": 77., "phase": -1.}[name]
             self.refuse_changed(case, path, "membrane_markers", index, value)
+
+
+MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmax_windkessel 1,.1,2 "
+            "-boundary_y wall -fluid_viscosity .5 -body_force 1,0,0 -species a,b -a_shape sphere -a_radius .4 -a_centre .9,1.2,0 "
+            "-a_law membrane -a_surface_shear_modulus .1 -b_shape sphere -b_radius .3 -b_centre 1.3,.4,0 -b_shear_modulus 1 "
+            "-b_viscosity 1 -time_end 100 -time_step .01 -guard_volume_drift 0").split()
+# What a run has beside the state: clocks, counts, and what has been written of it.
+BESIDE = {"options", "wall_seconds", "output_times", "output_rows", "energy_budget", "guarded_energy", "mach_max", "stages_and_sweeps"}
+
+
+class EveryDataset(Restart):
+    """A change of one dataset changes the hash of the state that goes on; of what is beside the state, it is refused."""
+
+    def check(self, case, expected, others=True):
+        steps = ["-time_steps_max", 4]
+        self.run_case("run", *case, *steps)
+        path = self.checkpoints()[0]
+        again = [*case, *steps, "-restart", path, "-output_dir", "new", "-output_overwrite"]
+        good, whole = path.read_bytes(), self.summary("run")["state_hash"]
+
+        def hash_of():
+            result = self.call(*again)
+            if result.returncode == 2:  # out of range
+                self.assertRegex(result.stderr, r"\Aeulastic: error: -(restart|time_steps_max): [^\n]+\n\Z")
+                return "refused"
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            return self.summary("new")["state_hash"]
+
+        def flip(data):
+            """The last bit of all reals that are not 0, or of the last integer: some are found anew at a restart, not all."""
+            words = data.reshape(-1).view(f"u{data.dtype.itemsize}")
+            held = numpy.flatnonzero(words) if words.any() else numpy.array([0])
+            words[held if data.dtype.kind == "f" else held[-1:]] ^= words.dtype.type(1)
+            return data
+        self.assertEqual(hash_of(), whole)
+        with h5py.File(path) as file:
+            names = list(file)
+        self.assertEqual(expected - set(names), set())
+        for name in names if others else expected:
+            path.write_bytes(good)
+            with self.subTest(name):
+                change(path, name, flip, whole=name not in BESIDE)
+                if name in BESIDE:
+                    self.refused(*again, says=["-restart", path.name, "damaged"])
+                else:
+                    self.assertNotEqual(hash_of(), whole)
+
+    def test_of_bodies_in_a_flow(self):
+        self.check(FLAT, {"velocity_y", "pressure", "advection_x", "pressure_increment_0", "left_cauchy_green_xy_cell", "body_bead", "time",
+                          "step", "time_step", "flow_scales", "bodies.references", "bodies.first_volumes"} | BESIDE)
+
+    def test_of_membranes_viscosities_and_a_load(self):
+        self.check(MEMBRANE, {"membrane_markers", "pressure_before", "pressure_interval", "outlet_loads", "left_cauchy_green_xx_a"}, others=False)
+
+    def test_of_bodies_that_come_in(self):
+        self.check([*FEEDER, "-time_step", ".01"], {"bodies_in_feeders"}, others=False)
 
 
 class Files(Restart):

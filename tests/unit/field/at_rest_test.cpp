@@ -1,4 +1,5 @@
 // Fields that rest away from bodies: memory follows what is written.
+#include "app/saved_state.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -99,7 +100,7 @@ void expect_little_memory(MethodKind kind) {
   const std::vector<Phase> *phases = nullptr;
   ASSERT_EQ(scene.solver.phases_now(&phases), 0);
   std::uint64_t hash = 0;
-  ASSERT_EQ(state_hash(scene.grid, state, &hash), 0);
+  ASSERT_EQ(state_hash(&scene.solver, &hash), 0);
   EXPECT_GT((*phases)[0].tensor.field[0](53, 53, 53), 1.1);
   EXPECT_EQ((*phases)[0].tensor.field[0](10, 53, 53), 1);
   EXPECT_LT(own_memory() - before, 2 * field) << "of " << field;
