@@ -14,6 +14,8 @@ namespace {
 using kernels::Tensor;
 using kernels::Vector;
 
+constexpr double doubtful = 2;  // ratio of the traces of B_s of markers and grid
+
 template <int Dim>
 struct Local {
   std::ptrdiff_t stride[3];
@@ -203,14 +205,20 @@ double MembraneTransport::least_area_squared(const Phase &phase) {
 }
 
 // The strain of the grid comes nearer to that of the markers with every cell that the surface passes, as what fades
-// does; within a cell it is that of the grid, whose force and surface fit each other.
+// does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
+// tell of something else altogether lie where a quadratic is not determined.
 void MembraneTransport::recall(double dt, const FieldBlock &velocity,
                                const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase) {
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
       const SurfaceCells::Cell &cell = surface_.all()[strain.cell];
-      double passed = 0;
+      double told = 0, known = 0, passed = 0;
+      for (int a = 0; a < dim; ++a) {
+        told += strain.B[a];
+        known += phase->tensor.field[a].origin[cell.at];
+      }
+      if (!(told < doubtful * known && known < doubtful * told)) continue;
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
                   grid_->spacing()[d];

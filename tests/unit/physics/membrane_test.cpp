@@ -283,4 +283,38 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
   }
 }
 
+// A fit that markers do not determine may tell of any strain: one of five times the length is not believed, one of 1.2
+// times is.
+TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
+  for (const double stretch : {1.2, 5.0}) {
+    Ball ball(2);
+    WorkSpace work(ball.grid);
+    ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
+    const BoxSides sides{};
+    MembraneTransport membrane(ball.grid, *ball.exchange, work, sides, false);
+    Phase &phase = ball.phases[0];
+    phase.material.law = Law::membrane;
+    phase.material.membrane.shear_modulus = 2;
+    phase.tensor.field = tensor_at_rest(ball.grid);
+    ASSERT_EQ(membrane.start(&phase), 0);
+    std::vector<SurfaceMarker> markers;
+    ASSERT_EQ(membrane.place_markers(phase, 0, 0, &markers), 0);
+    ASSERT_GT(markers.size(), 50u);
+    for (SurfaceMarker &marker : markers)
+      for (int d = 0; d < 2; ++d)
+        marker.rest[d] = ball.centre[d] + std::remainder(marker.rest[d] - ball.centre[d], 1.0) / stretch;
+    FieldBlock velocity(ball.grid, 2);
+    velocity.fill(0, 1);
+    MembraneTransport::Memory memory{&markers};
+    ASSERT_EQ(membrane.advance(0.2 / Ball::cells, velocity, &memory, &ball.phases), 0);
+    SurfaceEnergy seen;
+    ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
+    const double length = 2 * M_PI * Ball::radius;
+    if (stretch > 2)
+      EXPECT_LT(seen.energy, 1e-3 * length);
+    else
+      EXPECT_GT(seen.energy, 2e-3 * length);
+  }
+}
+
 }  // namespace
