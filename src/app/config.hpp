@@ -124,7 +124,7 @@ struct Config {
   bool body_series = true;            ///< bodies are named, followed and measured
   std::vector<Places> places;         ///< of the bodies of every species, walls and posts everywhere; by validate()
   std::vector<int> colours;           ///< phases that the bodies of every species are expected to need; by validate()
-  std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate() for -check_only
+  std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate()
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;

@@ -110,12 +110,15 @@ std::vector<std::string> lumen_warnings(const Config &config) {
       warnings.push_back(side + "Reynolds number " + number(reynolds, 3) +
                          " of the lumen: above 1e4 a flow is turbulent, of which there is no model");
   });
-  for (const SpeciesSpec &spec : config.species) {
-    double box = 1;
-    for (int d = 0; d < (flat(config) ? 2 : 3); ++d) box *= config.grid.length[d];
+  double box = 1;
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) box *= config.grid.length[d];
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
+    const std::string option = "-" + spec.name;
+    if (spec.shape == Shape::voxels && config.solid_volumes[s] > box * (1 - round_off))
+      warnings.push_back(option + "_voxels: fills all of the box and leaves no fluid");
     if (is_tube(spec.shape) && volume_in_box(spec, config.grid) < round_off * box)
-      warnings.push_back("-" + spec.name +
-                         "_radius: the lumen is as wide as the box, so that the tube fills nothing of it");
+      warnings.push_back(option + "_radius: the lumen is as wide as the box, so that the tube fills nothing of it");
   }
   return warnings;
 }

@@ -14,7 +14,8 @@ double largest_inflow(const Config &config, int d, int high);
 /// velocity, flow rate, Reynolds number.
 std::vector<std::string> side_lines(const Config &config);
 /// One line on every lumen at such a side that is less than 8 cells wide or has a Reynolds number above 1e4, on every
-/// open side that rigid bodies close, and on every tube that fills nothing of the box.
+/// open side that rigid bodies close, on every tube that fills nothing of the box and every body from a file that fills
+/// all of it.
 std::vector<std::string> lumen_warnings(const Config &config);
 
 }  // namespace eulastic

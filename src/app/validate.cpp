@@ -338,10 +338,9 @@ std::string validate(Config *whole) {
       if (crossed(config, d, high))
         solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
   const bool random = std::any_of(config.species.begin(), config.species.end(), is_random);
-  if (random || config.check_only)
-    if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
-        !wrong.empty())
-      return wrong;
+  if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
+      !wrong.empty())
+    return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
   if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
   return check_paths(config);

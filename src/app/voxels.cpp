@@ -116,15 +116,6 @@ std::string about(const SpeciesSpec &spec, const std::string &wrong) {
   return wrong.empty() ? wrong : "-" + spec.name + "_voxels: " + wrong;
 }
 
-// A body from a file is somewhere in the box, and leaves something of it to the fluid.
-std::string why_no_body(const SpeciesSpec &spec, bool any, bool all) {
-  if (any && !all) return {};
-  return about(spec, spec.voxels.path +
-                         (any ? " fills all of the box and leaves no fluid" : " has nothing solid in the box") +
-                         "; accepted: a body with fluid beside it" +
-                         (spec.voxels.invert ? ", or without -" + spec.name + "_voxels_invert" : ""));
-}
-
 constexpr int most_cells = 1 << 24;  // in memory at a time
 
 bool on_any_rank(bool here) {
@@ -165,20 +156,22 @@ std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, dou
     for (int &n : grid.cells) n = std::min(n, 64);
   const Int3 &n = grid.cells;
   double sum = 0;
-  bool any = false, all = true;
+  bool all = true;
   const std::string wrong = read_voxels(spec, grid, {grid, {}, n}, [&](const CellWindow &window, ConstView fraction) {
     for (int k = 0; k < window.size[2]; ++k)
       for (int j = 0; j < n[1]; ++j) {
         const double *phi = fraction.row(j, k);
         sum += std::accumulate(phi, phi + n[0], 0.0);
-        any = any || std::any_of(phi, phi + n[0], [](double q) { return q > 0; });
         all = all && std::all_of(phi, phi + n[0], [](double q) { return q == 1; });
       }
     if (mask) mask->add(window, fraction);
   });
   for (int d = 0; d < (n[2] == 1 ? 2 : 3); ++d) sum *= grid.length[d] / n[d];
   *volume = sum;
-  return wrong.empty() ? why_no_body(spec, any, all) : wrong;
+  if (!wrong.empty()) return wrong;
+  if (sum == 0) return about(spec, spec.voxels.path + " has nothing solid in the box");
+  if (all && spec.law == Law::rigid) return about(spec, spec.voxels.path + " fills all of the box and leaves no fluid");
+  return {};
 }
 
 }  // namespace
@@ -203,16 +196,11 @@ PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label,
   VoxelBody body;
   PetscCall(fail_together(grid.comm(), about(spec, body.open(spec, grid.spec()))));
   PetscCall(fail_together(grid.comm(), about(spec, body.fill(grid, fraction))));
-  int found[2] = {0, 0};  // cells with a part of the body, and such with fluid
   for_points(grid.rows(), [&](int i, int j, int k) {
     double &phi = fraction(i, j, k);
     if (spec.voxels.invert) phi = 1 - phi;
     if (phi > 0) name(i, j, k) = label;
-    found[0] |= phi > 0;
-    found[1] |= phi < 1;
   });
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, grid.comm()));
-  PetscCall(fail_together(grid.comm(), why_no_body(spec, found[0], !found[1])));
   stretch_phase(grid, spec, phase);
   Real3 middle;
   for (int d = 0; d < 3; ++d) middle[d] = grid.spec().length[d] / 2;

@@ -18,7 +18,8 @@ std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, const Cel
                         const VisitLayers &visit);
 
 /// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
-/// `solids`, and with `masks` their cells. Collective. Returns one line on the first that cannot be used, or nothing.
+/// `solids`, and with `masks` their cells. Collective. Returns one line on the first that cannot be used, or nothing:
+/// one that has nothing solid in the box, or is rigid and fills all of it, cannot.
 std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSpec &grid, bool masks,
                            SolidBodies *solids, std::vector<double> *volumes);
 
