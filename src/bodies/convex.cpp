@@ -31,6 +31,60 @@ Real3 core_point(const PlacedConvex &p, const Real3 &n) noexcept {
   return {dot(q[0], y), dot(q[1], y), dot(q[2], y)};
 }
 
+// Points of the difference of two bodies, each with the point of the first body that it comes from.
+struct Simplex {
+  using Point = std::array<Real3, 2>;
+  std::array<Point, 4> points;
+  std::array<double, 4> part;  // of the points, at the place nearest to the origin
+  int count;
+
+  Real3 nearest(int which) const noexcept {
+    Real3 sum{};
+    for (int n = 0; n < count; ++n)
+      for (int d = 0; d < 3; ++d) sum[d] += part[n] * points[n][which][d];
+    return sum;
+  }
+
+  // Keeps, of all points and a new one, those of the corner, edge or face that is nearest to the origin.
+  void add(const Point &point) noexcept {
+    points[count++] = point;
+    Simplex best = *this;
+    double least = -1;
+    for (int set = 1; set < 1 << count; ++set) {
+      Simplex face{points, {1}, 0};
+      for (int n = 0; n < count; ++n)
+        if (set >> n & 1) face.points[face.count++] = points[n];
+      if (face.count > 3 || !face.find_parts()) continue;
+      const Real3 v = face.nearest(0);
+      if (least >= 0 && dot(v, v) >= least) continue;
+      least = dot(v, v);
+      best = face;
+    }
+    *this = best;
+  }
+
+private:
+  // Where the plane through the points is nearest to the origin; whether that is between them.
+  bool find_parts() noexcept {
+    part = {1};
+    if (count == 1) return true;
+    Real3 p = points[0][0], e{}, f{};
+    for (int d = 0; d < 3; ++d) e[d] = points[1][0][d] - p[d];
+    const double ee = dot(e, e), ep = dot(e, p);
+    if (count == 2) {
+      part[1] = ee > 0 ? -ep / ee : -1;
+    } else {
+      for (int d = 0; d < 3; ++d) f[d] = points[2][0][d] - p[d];
+      const double ff = dot(f, f), ef = dot(e, f), fp = dot(f, p), area = ee * ff - ef * ef;
+      if (!(area > 1e-12 * ee * ff)) return false;
+      part[1] = (ef * fp - ff * ep) / area;
+      part[2] = (ef * ep - ee * fp) / area;
+    }
+    part[0] = 1 - part[1] - part[2];
+    return part[0] >= 0 && part[1] >= 0 && part[2] >= 0;
+  }
+};
+
 }  // namespace
 
 ConvexBody::ConvexBody(const SpeciesSpec &spec, int dimension, double margin, double length)
@@ -64,6 +118,13 @@ ConvexBody::ConvexBody(const Real3 &half_sides)
     : kind_(Kind::box), size_(half_sides), rounding_(0), outer_(std::sqrt(dot(half_sides, half_sides))) {
   inner_ = half_sides[2] > 0 ? std::min({half_sides[0], half_sides[1], half_sides[2]})
                              : std::min(half_sides[0], half_sides[1]);
+}
+
+ConvexBody ConvexBody::scaled(double factor) const {
+  ConvexBody body = *this;
+  for (double &size : body.size_) size *= factor;
+  for (double *radius : {&body.rounding_, &body.outer_, &body.inner_}) *radius *= factor;
+  return body;
 }
 
 Real3 ConvexBody::core(const Real3 &n) const noexcept {
@@ -122,6 +183,42 @@ bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift)
     if (square <= margin * margin) return false;
   }
   return false;
+}
+
+// The algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4, 1988), as flat bodies side by side
+// need: v is nearest to the origin in the simplex of all points that count.
+Penetration penetration(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept {
+  constexpr double converged = 1e-4, cores_meet = 1e-3;  // relative to the square; to the margin
+  Real3 v;
+  for (int d = 0; d < 3; ++d) v[d] = b.centre[d] + shift[d] - a.centre[d];
+  const Real3 centre = v;
+  const double outer = a.body->outer_radius() + b.body->outer_radius();
+  const double margin = a.body->rounding() + b.body->rounding();
+  if (dot(v, v) > outer * outer) return {};
+  Simplex simplex{{{v, {}}}, {1}, 1};
+  double square = dot(v, v);
+  for (int turn = 0; turn < 40 && square > cores_meet * cores_meet * margin * margin; ++turn) {
+    const Real3 from = core_point(a, v), to = core_point(b, {-v[0], -v[1], -v[2]});
+    Real3 w;
+    for (int d = 0; d < 3; ++d) w[d] = centre[d] + to[d] - from[d];
+    const double least = dot(v, w);
+    if (least > margin * std::sqrt(square)) return {};
+    if (square - least < converged * square) break;
+    simplex.add({w, from});
+    v = simplex.nearest(0);
+    if (!(dot(v, v) < square)) break;  // round-off
+    square = dot(v, v);
+  }
+  Penetration found;
+  const Real3 on_a = simplex.nearest(1);
+  double distance = std::sqrt(square);
+  found.depth = std::max(margin - distance, 1e-4 * margin);
+  if (distance <= cores_meet * margin) v = centre, distance = std::sqrt(dot(v, v));
+  for (int d = 0; d < 3; ++d) {
+    found.normal[d] = distance > 0 ? v[d] / distance : d == 0;
+    found.point[d] = on_a[d] + found.normal[d] * (a.body->rounding() - found.depth / 2);
+  }
+  return found;
 }
 
 }  // namespace eulastic

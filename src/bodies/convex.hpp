@@ -16,6 +16,9 @@ public:
   /// A cell of the grid, sharp; half its sides, in 2-D 0 along z.
   explicit ConvexBody(const Real3 &half_sides);
 
+  /// The same body, all its lengths times `factor`.
+  ConvexBody scaled(double factor) const;
+
   /// Farthest point of the core in direction n, in body coordinates.
   Real3 core(const Real3 &n) const noexcept;
   double rounding() const { return rounding_; }
@@ -44,5 +47,15 @@ struct PlacedConvex {
 
 /// Whether a and b, moved by `shift`, do not touch. Round-off and very close bodies count as touching.
 bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept;
+
+/// How deep two bodies overlap: at most the sum of their roundings, also where their cores meet.
+struct Penetration {
+  double depth = 0;  ///< 0: they do not touch
+  Real3 normal{};    ///< from a to b, of length 1
+  Real3 point{};     ///< in the middle of the overlap, from the centre of a
+  int other = -1;    ///< b, in a crowd
+};
+/// Of a and b, moved by `shift`: more exact than separated() where they are flat and side by side, and slower.
+Penetration penetration(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept;
 
 }  // namespace eulastic

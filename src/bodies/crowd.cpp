@@ -6,7 +6,7 @@
 namespace eulastic {
 
 Crowd::Crowd(const GridSpec &grid, double diameter, std::size_t expected)
-    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3) {
+    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), widest_(diameter / 2) {
   const double most = std::max(8.0, std::pow(double(expected), 1.0 / dimension_) * 2);
   double count = 1;
   for (int d = 0; d < dimension_; ++d) {
@@ -33,7 +33,6 @@ void Crowd::add(const PlacedConvex &body) {
   links_.push_back({body.centre, first});
   first = static_cast<int>(bodies_.size());
   bodies_.push_back(body);
-  widest_ = std::max(widest_, body.body->outer_radius());
 }
 
 void Crowd::move(std::size_t b, const PlacedConvex &to) {
@@ -58,7 +57,8 @@ bool Crowd::is_far(const Real3 &a, const Real3 &b, double reach) const {
   return square > reach * reach;
 }
 
-bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
+template <class Stop>
+bool Crowd::any_image(const PlacedConvex &a, const PlacedConvex &b, Stop stop) const {
   const double reach = a.body->outer_radius() + b.body->outer_radius();
   Int3 from{}, to{};
   for (int d = 0; d < dimension_; ++d) {
@@ -70,8 +70,12 @@ bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
   for (int k = from[2]; k <= to[2]; ++k)
     for (int j = from[1]; j <= to[1]; ++j)
       for (int i = from[0]; i <= to[0]; ++i)
-        if (!separated(a, b, {i * grid_.length[0], j * grid_.length[1], k * grid_.length[2]})) return false;
-  return true;
+        if (stop(Real3{i * grid_.length[0], j * grid_.length[1], k * grid_.length[2]})) return true;
+  return false;
+}
+
+bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
+  return !any_image(a, b, [&](const Real3 &shift) { return !separated(a, b, shift); });
 }
 
 template <class Stop>
@@ -111,6 +115,20 @@ std::vector<int> Crowd::touching(const PlacedConvex &body, std::size_t except) c
   std::vector<int> found;
   any_touching(body, except, [&](int other) {
     found.push_back(other);
+    return false;
+  });
+  return found;
+}
+
+std::vector<Penetration> Crowd::penetrations(const PlacedConvex &body, std::size_t except) const {
+  std::vector<Penetration> found;
+  any_touching(body, except, [&](int other) {
+    (void)any_image(body, bodies_[other], [&](const Real3 &shift) {
+      Penetration with = penetration(body, bodies_[other], shift);
+      with.other = other;
+      if (with.depth > 0) found.push_back(with);
+      return false;
+    });
     return false;
   });
   return found;

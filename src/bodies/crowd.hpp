@@ -23,6 +23,9 @@ public:
   /// Whether `body`, its centre in the box, touches none but body `except`, periodic images included.
   bool has_room_for(const PlacedConvex &body, std::size_t except) const;
 
+  /// How deep `body`, its centre in the box, is in others but body `except`, in each periodic image.
+  std::vector<Penetration> penetrations(const PlacedConvex &body, std::size_t except) const;
+
 private:
   // What most looks need, two to a cache line: a million bodies are looked at some ten times each.
   struct Link {
@@ -32,6 +35,9 @@ private:
 
   std::size_t bin(const Real3 &x) const;
   bool is_far(const Real3 &a, const Real3 &b, double reach) const;
+  // Whether `stop`(shift) says so of any image of b that may touch a.
+  template <class Stop>
+  bool any_image(const PlacedConvex &a, const PlacedConvex &b, Stop stop) const;
   bool clear(const PlacedConvex &a, const PlacedConvex &b) const;
   // Whether `stop`(index) says so of any body that touches this one.
   template <class Stop>
@@ -40,7 +46,7 @@ private:
   GridSpec grid_;
   int dimension_;
   Int3 bins_{1, 1, 1};
-  double widest_ = 0;  ///< largest outer radius
+  double widest_;  ///< no outer radius is larger
   std::vector<PlacedConvex> bodies_;
   std::vector<Link> links_;
   std::vector<int> first_;  ///< of the chain of a bin

@@ -117,7 +117,8 @@ std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, co
             PlacedConvex there = body;
             there.centre = x;
             for (int d = 0; d < 3; ++d) {
-              if (grid.boundary[d] == Boundary::periodic && x[d] >= grid.length[d]) there.centre[d] -= grid.length[d];
+              if (!region.is_round(d) && grid.boundary[d] == Boundary::periodic && x[d] >= grid.length[d])
+                there.centre[d] -= grid.length[d];
               if (there.centre[d] < 0 || there.centre[d] > grid.length[d]) return;
             }
             if (region.holds(there) && crowd.has_room_for(there, nobody)) sites.push_back({there.centre, orientation});

@@ -2,6 +2,7 @@
 
 #include "bodies/packing.hpp"
 #include "bodies/random.hpp"
+#include "bodies/relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,18 @@ Rotation product(const Rotation &p, const Rotation &q) {
   return r;
 }
 
+// Those with which regular packings are tried.
+std::vector<Real3> orientations(const SpeciesSpec &spec, int dimension) {
+  if (!spec.random_orientation) return {spec.orientation};
+  if (dimension == 2) return {{}, {0, 0, 90}};
+  return {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
+}
+
+// As seed_bodies(); `dense`: what does not fit at random is relaxed.
+std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+                 const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
+                 std::vector<BodyPlace> *places);
+
 class Seeding {
 public:
   Seeding(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, Crowd *crowd, const ConvexBody &shape)
@@ -48,13 +61,11 @@ public:
 
   /// Returns how many of `count` it has placed.
   std::size_t place(std::size_t count, std::vector<BodyPlace> *places) {
-    std::vector<Real3> orientations{spec_.orientation};
-    if (spec_.random_orientation && dimension_ == 3) orientations = {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
-    if (spec_.random_orientation && dimension_ == 2) orientations = {{}, {0, 0, 90}};
     std::vector<BodyPlace> sites;
     if (count > most_single) sites = repeat_block(count);
     const bool repeated = sites.size() >= count;
-    if (!repeated) sites = find_packing(region_, crowd_, grid_, shape_, orientations, count + count / 2);
+    if (!repeated)
+      sites = find_packing(region_, crowd_, grid_, shape_, orientations(spec_, dimension_), count + count / 2);
     places->clear();
     places->reserve(count);
     for (std::size_t s = 0; s < sites.size() && places->size() < count;
@@ -122,7 +133,7 @@ private:
     std::vector<BodyPlace> places, sites;
     for (const double more : {1.15, 1.05}) {  // some are in the way of walls and earlier species
       spec.number = static_cast<long>(std::ceil(more * double(count) * volume / region_.volume()));
-      if (!seed_bodies({spec}, 0, block, {}, {}, &places).empty()) continue;
+      if (!seed({spec}, 0, block, {}, {}, false, &places).empty()) continue;
       sites.clear();
       for (int k = 0; k < copies[2]; ++k)
         for (int j = 0; j < copies[1]; ++j)
@@ -170,17 +181,19 @@ private:
 // Bodies with ends, in bins; infinite ones are in the region.
 bool is_finite(Shape shape) { return shape == Shape::sphere || shape == Shape::ellipsoid || shape == Shape::biconcave; }
 
-std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t most, double body, double region) {
-  char text[200];
-  std::snprintf(text, sizeof text, "-%s_%s: %zu bodies do not fit; at most %zu fit, hematocrit %.4g", spec.name.c_str(),
-                spec.number >= 0 ? "count" : "hematocrit", count, most, double(most) * body / region);
+std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t placed, double hematocrit) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "-%s_%s: %zu bodies do not fit; %zu could be placed, hematocrit %.4g; accepted: fewer bodies, or a smaller "
+      "-%s_gap",
+      spec.name.c_str(), spec.number >= 0 ? "count" : "hematocrit", count, placed, hematocrit, spec.name.c_str());
   return text;
 }
 
-}  // namespace
-
-std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
-                        const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places) {
+std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+                 const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
+                 std::vector<BodyPlace> *places) {
   const SpeciesSpec &spec = species[which];
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (const std::string wrong = why_no_shape(spec, dimension); !wrong.empty())
@@ -198,7 +211,9 @@ std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t whi
   const Region region(species, earlier, vessel, solids, grid, margin);
   const double body = shape_volume(spec, dimension);
   const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
-  if (!(wanted <= most_bodies)) return too_many(spec, most_bodies, most_bodies, body, region.volume());
+  if (!(wanted <= most_bodies))
+    return "-" + spec.name + (spec.number >= 0 ? "_count" : "_hematocrit") +
+           ": more bodies than can be counted; accepted: at most " + std::to_string(most_bodies) + " bodies";
   const std::size_t count = static_cast<std::size_t>(wanted);
 
   std::vector<ConvexBody> shapes;
@@ -218,8 +233,18 @@ std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t whi
     if (is_finite(species[s].shape))
       for (const BodyPlace &place : earlier[s].known)
         crowd.add({&shapes[s], place.centre, rotation(place.orientation)});
-  const std::size_t placed = Seeding(spec, grid, region, &crowd, shapes[which]).place(count, places);
-  return placed < count ? too_many(spec, count, placed, body, region.volume()) : "";
+  const Crowd others = crowd;
+  std::size_t placed = Seeding(spec, grid, region, &crowd, shapes[which]).place(count, places);
+  if (placed < count && dense)
+    placed = std::max(placed, relax_crowd(spec, grid, region, others, orientations(spec, dimension), count, places));
+  return placed < count ? too_many(spec, count, placed, placed > 0 ? double(placed) * body / region.volume() : 0) : "";
+}
+
+}  // namespace
+
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+                        const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places) {
+  return seed(species, which, grid, solids, earlier, true, places);
 }
 
 }  // namespace eulastic

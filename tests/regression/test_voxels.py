@@ -232,7 +232,7 @@ class Voxels(WithRoom):
                 on_three = self.seeded(name, "-cell_hematocrit", ".1", "-cell_inside", "part", *options, ranks=3)
                 numpy.testing.assert_array_equal(on_three[1], cells)
         self.hdf5(numpy.ones(SHAPE))
-        for inside, says in (("other", "other is not a species of tubes or voxels"), ("part", "at most 0 fit")):
+        for inside, says in (("other", "other is not a species of tubes or voxels"), ("part", "0 could be placed, hematocrit 0;")):
             self.refused(*RUN, "-species", "part,cell", *BODY[2:], "v.h5", "-cell_shape", "sphere", "-cell_radius", ".1",
                          "-cell_shear_modulus", "1", "-cell_placement", "random", "-cell_count", "2", "-cell_inside",
                          inside, says=["-cell_", says])
@@ -283,15 +283,17 @@ class Voxels(WithRoom):
                 (bad, ["[7, 9, 11] is 1.5", "0 ... 1"], {}), (-good, ["is -0.5"], {}), (nan, ["[1, 2, 3] is nan"], {}),
                 (good[0, 0], ["1 dimensions"], {}), (good[None], ["4 dimensions"], {}),
                 (numpy.zeros((0, 3, 3)), ["no values"], {}), (good.astype("c16"), ["floats"], {}),
-                (numpy.zeros(SHAPE), ["nothing solid"], {}), (numpy.ones(SHAPE), ["fills all of the box"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
+                (numpy.zeros(SHAPE), ["nothing solid"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
                 (good, ["spacing"], {"spacing": [.1, 0, .1]}), (good, ["spacing"], {"spacing": "three"}),
                 (good, ["origin"], {"origin": [0, 0, numpy.inf]}),
                 (good, ["outside the box"], {"origin": [5., 0, 0], "spacing": [.1, .1, .1]}),
                 (good, ["origin without a spacing"], {"origin": [0., 0, 0]})]:
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.hdf5(values, **at), says=["-part_voxels: v.h5", *says])
-        for values, says in ((0, "nothing solid"), (1, "fills all of the box")):
-            self.refused(*RUN, *BODY, self.hdf5(numpy.full(SHAPE, values)), "-check_only", says=["-part_voxels: v.h5", says])
+        rigid = "-species part -part_law rigid -part_shape voxels -part_voxels".split()
+        for check in ([], ["-check_only"]):
+            for values, body, says in ((0, BODY, "nothing solid"), (1, rigid, "fills all of the box")):
+                self.refused(*RUN, *body, self.hdf5(numpy.full(SHAPE, values)), *check, says=["-part_voxels: v.h5", says])
         self.refused(*RUN, *BODY, "v.h5:other", says=["no dataset other", "mask"])
         self.refused(*RUN, *BODY, "no.h5:mask", says=["no.h5 is not a file"])
         self.refused(*RUN, *BODY, "v.h5", "-part_placement", "lattice", says=["-part_placement", "voxels"])

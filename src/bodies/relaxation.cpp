@@ -1,0 +1,262 @@
+#include "bodies/relaxation.hpp"
+
+#include "bodies/packing.hpp"
+#include "bodies/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+constexpr double densest = 0.7;   // part of the region that bodies are tried for
+constexpr double skin = 0.01;     // inner radii that bodies are larger while they move
+constexpr double finer = 1.02;    // from one size for which a packing is looked for to the next
+constexpr double growth = 1.005;  // in one go
+constexpr int melting = 100;      // rounds, before bodies grow
+constexpr int patience = 400;     // rounds of full size in which the overlap has to fall by a quarter
+constexpr int tries = 6;          // to push a body away, in one round
+constexpr int inward_tries = 40;  // to bring one back into the region
+constexpr double least_moves = 4e6, moves_of_body = 1500, most_moves = 2e7;
+constexpr double pi = 3.14159265358979323846;
+
+double dot(const Real3 &a, const Real3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Real3 cross(const Real3 &a, const Real3 &b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// The square, so that overlaps are shared out until none is deep.
+double overlap(const std::vector<Penetration> &contacts) {
+  double sum = 0;
+  for (const Penetration &contact : contacts) sum += contact.depth * contact.depth;
+  return sum;
+}
+
+class Relaxation {
+public:
+  Relaxation(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, const Crowd &others,
+             const std::vector<Real3> &orientations, std::size_t count)
+      : spec_(spec),
+        grid_(grid),
+        dimension_(grid.cells[2] == 1 ? 2 : 3),
+        region_(region),
+        others_(others),
+        orientations_(orientations),
+        count_(count),
+        shape_(spec, dimension_, spec.gap / 2),
+        wide_(spec, dimension_, spec.gap / 2 + skin * shape_.inner_radius()),
+        now_(wide_),
+        crowd_(others),
+        random_(spec.seed, spec.name + " relaxation") {}
+
+  std::size_t run(std::vector<BodyPlace> *places) {
+    if (double(count_) * volume() > densest * region_.volume()) return 0;
+    const double moves = std::clamp(moves_of_body * double(count_), least_moves, most_moves);
+    std::size_t most = 0;
+    for (int attempt = 1; most < count_ && (attempt == 1 || moved_ < moves); ++attempt) {
+      if (!begin(attempt % 2 == 1 ? 1.05 : 1.25)) return most;
+      most = std::max(most, grow(attempt % 2 == 1 ? 60 : 200, moves) ? count_ : clear_ones());
+    }
+    *places = places_;
+    return most;
+  }
+
+private:
+  struct Round {
+    double overlap = 0, deepest = 0;
+    std::size_t outside = 0;  ///< of the region
+  };
+
+  PlacedConvex convex(const BodyPlace &place, const ConvexBody &shape) const {
+    return {&shape, place.centre, rotation(place.orientation)};
+  }
+
+  // Of a body with its gap, about: as much larger than without as its widths are.
+  double volume() const {
+    const ConvexBody bare(spec_, dimension_, 0);
+    double volume = shape_volume(spec_, dimension_);
+    for (int d = 0; d < dimension_; ++d) volume *= convex({}, shape_).half_width(d) / convex({}, bare).half_width(d);
+    return volume;
+  }
+
+  // Some sites of the regular packing of the largest bodies of which enough fit; bodies smaller than these by `looser`.
+  bool begin(double looser) {
+    std::vector<BodyPlace> sites;
+    double widest = wide_.outer_radius();
+    for (std::size_t b = 0; b < others_.size(); ++b) widest = std::max(widest, others_[b].body->outer_radius());
+    crowd_ = Crowd(grid_, 2 * widest, others_.size() + count_);
+    for (std::size_t b = 0; b < others_.size(); ++b) crowd_.add(others_[b]);
+    for (scale_ = 1; sites.size() < count_; scale_ /= finer) {
+      if (scale_ < 0.3) return false;
+      now_ = wide_.scaled(scale_);
+      sites = find_packing(region_, crowd_, grid_, now_, orientations_, count_);
+    }
+    scale_ = std::min(1.0, scale_ * finer) / looser;
+    now_ = wide_.scaled(scale_);
+    places_.clear();
+    for (std::size_t s = 0; places_.size() < count_; ++s) {
+      if (random_.below(sites.size() - s) >= count_ - places_.size()) continue;
+      places_.push_back(sites[s]);
+      crowd_.add(convex(sites[s], now_));
+    }
+    return true;
+  }
+
+  // Whether all bodies are clear in the end.
+  bool grow(int most_waiting, double most) {
+    double before = HUGE_VAL;
+    for (int round = 0, waited = 0; moved_ < most; ++round, ++waited) {
+      const Round now = move_all();
+      if (round < melting) continue;
+      const bool settled = now.outside == 0 && now.deepest < 2 * skin * shape_.inner_radius();
+      if (scale_ == 1 && settled && is_clear()) return true;
+      if (scale_ == 1 && waited >= (settled ? 5 : 1) * patience) {
+        if (now.overlap > 0.75 * before) return false;
+        before = now.overlap;
+        waited = 0;
+      }
+      if (scale_ == 1 || !(settled || waited >= most_waiting)) continue;
+      scale_ = std::min(1.0, scale_ * growth);
+      now_ = wide_.scaled(scale_);
+      waited = 0;
+    }
+    return false;
+  }
+
+  BodyPlace moved(BodyPlace place, const Real3 &step, const Real3 &turn) const {
+    for (int d = 0; d < dimension_; ++d) {
+      double &x = place.centre[d];
+      x += step[d];
+      if (grid_.boundary[d] == Boundary::periodic) x -= std::floor(x / grid_.length[d]) * grid_.length[d];
+      x = std::clamp(x, 0.0, grid_.length[d]);
+    }
+    if (!spec_.random_orientation) return place;
+    if (dimension_ == 2)
+      place.orientation[2] = std::remainder(place.orientation[2] + turn[2] * (180 / pi), 360.0);
+    else
+      place.orientation = turned(place.orientation, turn);
+    return place;
+  }
+
+  // Away from those that it overlaps, and turned as they push it.
+  BodyPlace pushed(const BodyPlace &place, const std::vector<Penetration> &contacts, double part) const {
+    const double inertia = 0.3 * shape_.outer_radius() * shape_.outer_radius();
+    Real3 step{}, turn{};
+    for (const Penetration &with : contacts) {
+      const Real3 arm = cross(with.point, with.normal);
+      const double share = part * with.depth / (1 + dot(arm, arm) / inertia);
+      for (int d = 0; d < 3; ++d) {
+        step[d] -= share * with.normal[d];
+        turn[d] -= share * arm[d] / inertia;
+      }
+    }
+    return moved(place, step, turn);
+  }
+
+  BodyPlace nearby(const BodyPlace &place) {
+    const double reach = shape_.inner_radius() * std::exp(random_.between(std::log(0.01), std::log(0.5)));
+    const double angle = 2 * reach / shape_.outer_radius();
+    Real3 step, turn;
+    for (double &q : step) q = random_.between(-reach, reach);
+    for (double &q : turn) q = random_.between(-angle, angle);
+    return moved(place, step, turn);
+  }
+
+  std::vector<Penetration> contacts_of(std::size_t b) const {
+    return crowd_.penetrations(crowd_[others_.size() + b], others_.size() + b);
+  }
+  // All bodies get this shape.
+  void take(const ConvexBody &shape) {
+    for (std::size_t b = 0; b < places_.size(); ++b) crowd_.move(others_.size() + b, convex(places_[b], shape));
+  }
+
+  // Moves a body to a place in the region where it overlaps less than `*most`, or as little as before.
+  bool move(std::size_t b, const BodyPlace &to, double *most) {
+    const PlacedConvex body = convex(to, now_);
+    ++moved_;
+    if (!region_.holds(body)) return false;
+    const double there = overlap(crowd_.penetrations(body, others_.size() + b));
+    if (there > *most || (there == *most && there > 0)) return false;
+    *most = there;
+    places_[b] = to;
+    crowd_.move(others_.size() + b, body);
+    return true;
+  }
+
+  // Every body once.
+  Round move_all() {
+    Round sum;
+    for (std::size_t b = 0; b < places_.size(); ++b) {
+      const PlacedConvex &body = crowd_[others_.size() + b];
+      if (!region_.holds(body)) {
+        const BodyPlace from = places_[b];
+        double most = HUGE_VAL;
+        for (int n = 0; n < inward_tries; ++n) (void)move(b, nearby(from), &most);
+        ++sum.outside;
+        continue;
+      }
+      const std::vector<Penetration> contacts = contacts_of(b);
+      double depth = overlap(contacts);
+      sum.overlap += depth;
+      for (const Penetration &with : contacts) sum.deepest = std::max(sum.deepest, with.depth);
+      bool done = depth > 0 && (move(b, pushed(places_[b], contacts, 0.7), &depth) ||
+                                move(b, pushed(places_[b], contacts, 0.25), &depth));
+      for (int n = contacts.empty() ? tries : 2; n <= tries && !done; ++n) done = move(b, nearby(places_[b]), &depth);
+    }
+    return sum;
+  }
+
+  bool is_clear() {
+    take(shape_);
+    bool clear = true;
+    for (std::size_t b = 0; b < places_.size() && clear; ++b) clear = contacts_of(b).empty();
+    if (!clear) take(now_);
+    return clear;
+  }
+
+  // How many are left where bodies that are outside or overlap are taken away, those with most others first.
+  std::size_t clear_ones() {
+    std::vector<std::vector<Penetration>> contacts(places_.size());
+    std::vector<bool> gone(places_.size());
+    take(shape_);
+    for (std::size_t b = 0; b < places_.size(); ++b) {
+      contacts[b] = contacts_of(b);
+      gone[b] = !region_.holds(crowd_[others_.size() + b]);
+    }
+    const auto number = [&](std::size_t b) {
+      const int own = static_cast<int>(others_.size());
+      return std::count_if(contacts[b].begin(), contacts[b].end(),
+                           [&](const Penetration &with) { return with.other < own || !gone[with.other - own]; });
+    };
+    std::size_t left = 0;
+    for (long most = 100; most >= 0; --most)
+      for (std::size_t b = 0; b < places_.size(); ++b) {
+        if (gone[b] || number(b) < most) continue;
+        if (most > 0) gone[b] = true;
+        left += most == 0;
+      }
+    return left;
+  }
+
+  const SpeciesSpec &spec_;
+  const GridSpec &grid_;
+  int dimension_;
+  const Region &region_;
+  const Crowd &others_;
+  const std::vector<Real3> &orientations_;
+  std::size_t count_;
+  ConvexBody shape_, wide_, now_;  ///< the body; with the skin; what it has grown to
+  Crowd crowd_;                    ///< points to these
+  Random random_;
+  std::vector<BodyPlace> places_;
+  double scale_ = 1, moved_ = 0;
+};
+
+}  // namespace
+
+std::size_t relax_crowd(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, const Crowd &others,
+                        const std::vector<Real3> &orientations, std::size_t count, std::vector<BodyPlace> *places) {
+  return Relaxation(spec, grid, region, others, orientations, count).run(places);
+}
+
+}  // namespace eulastic
