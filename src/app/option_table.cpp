@@ -245,9 +245,10 @@ void add_running(Rows &rows, Config &config) {
   rows.real("guard_mach", guard.mach, not_negative, "",
             "largest |v| over the sound speed of artificial compressibility, where there is one");
   rows.real("guard_volume_drift", guard.volume_drift, not_negative, "", "relative change of the volume of any body");
-  rows.real("guard_energy_growth", guard.energy_growth, not_negative, "",
-            "energy that a run makes of its own within any time, per energy that it held at the beginning of that time and "
-            "was supplied with since");
+  rows.real(
+      "guard_energy_growth", guard.energy_growth, not_negative, "",
+      "energy that a run makes of its own within any time, per energy that it held at the beginning of that time and "
+      "was supplied with since");
   rows.real("guard_memory", guard.memory, not_negative, "",
             "memory that the ranks of a node need, per memory it has; looked at before the start");
 
