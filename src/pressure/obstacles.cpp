@@ -139,6 +139,10 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
   first_.push_back(cells_.size());
 }
 
+void ObstacleSolver::copy_closed(const FieldBlock &from, FieldBlock *to) const {
+  for_closed_cells([&](const Int3 &cell) { (*to)[0](cell[0], cell[1], cell[2]) = from[0](cell[0], cell[1], cell[2]); });
+}
+
 PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
@@ -255,8 +259,9 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, 
 }
 
 // The equation says nothing of cells whose faces are all closed, where what the other solver leaves would add up over
-// the steps: they get 0. Where no side is open, the mean of the increment over the other cells becomes 0.
-PetscErrorCode ObstacleSolver::normalise(FieldBlock &increment) {
+// the steps: they get 0. Where no side is open, the mean of the increment over the other cells becomes 0; where bodies
+// travel, which cells these are changes with the steps, and the mean of the pressure over them becomes 0.
+PetscErrorCode ObstacleSolver::normalise(const FieldBlock &pressure, FieldBlock &increment) {
   PetscFunctionBeginUser;
   const View q = increment[0];
   for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
@@ -266,9 +271,15 @@ PetscErrorCode ObstacleSolver::normalise(FieldBlock &increment) {
       for_closed_cells([&](const Int3 &) { ++closed_count_; });
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed_count_, 1, MPI_INT64_T, MPI_SUM, grid_->comm()));
     }
+    const auto add = [&](const RowPart &part, ExactSums &sums) {
+      add_values(*grid_, part, q, sums);
+      if (!travels_) return;
+      const ConstView p = pressure[0];
+      add_values(*grid_, part, p, sums);
+      if (part.first) for_closed_cells([&](const Int3 &cell) { sums.add(0, -p(cell[0], cell[1], cell[2])); });
+    };
     double sum;
-    PetscCall(sum_row_parts(
-        *grid_, 1, [&](const RowPart &part, ExactSums &sums) { add_values(*grid_, part, q, sums); }, &sum));
+    PetscCall(sum_row_parts(*grid_, 1, add, &sum));
     const double mean = sum / std::max(1.0, grid_->cell_count() - double(closed_count_));
     for (const Segment &row : grid_->rows())
       for (int i = row.i_begin; i < row.i_end; ++i) q(i, row.j, row.k) -= mean;
@@ -343,7 +354,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
       since = 0;
     }
   }
-  PetscCall(normalise(increment));
+  PetscCall(normalise(pressure, increment));
   if (memory_) {
     memory_.turn();
     memory_.increment(0).copy_from(increment);

@@ -31,6 +31,8 @@ public:
   /// D* of cells beside bodies becomes that of a whole cell, for the rotational update of p: divided by how far its
   /// faces are open on average. All of a ghost layer. Collective.
   PetscErrorCode spread(FieldBlock &divergence) const;
+  /// Owned cells whose faces are all closed get the values of another field.
+  void copy_closed(const FieldBlock &from, FieldBlock *to) const;
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }
@@ -51,7 +53,7 @@ private:
   /// Calls work(cell) for every owned cell whose faces are all closed.
   template <class Work>
   void for_closed_cells(const Work &work) const;
-  PetscErrorCode normalise(FieldBlock &increment);
+  PetscErrorCode normalise(const FieldBlock &pressure, FieldBlock &increment);
   PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;

@@ -206,12 +206,12 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
   PetscFunctionBeginUser;
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   if (in_middle) PetscCall(look_behind(in_middle));
+  if (now_.pressure_before) expect_pressure(dt);
   if (obstacles_ && rigid_->travel()) {
     PetscCall(obstacles_->extend(now_.pressure));
     PetscCall(update_centre_ghosts(now_.pressure, 1));
   }
   PetscCall(move_rigid(now_.time + dt, dt));
-  if (now_.pressure_before) expect_pressure(dt);
   PetscCall(predict(dt));  // (7)
   if (feeders_) {
     PetscCall(exchange_->update(velocity_star_, Grid::stencil_width));

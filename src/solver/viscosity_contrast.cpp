@@ -76,6 +76,8 @@ void Solver::expect_pressure(double dt) {
     now[i] = p + ratio * (p - before[i]);
     before[i] = p;
   }
+  // What a body that travels has left in closed cells would go on growing there.
+  if (obstacles_ && rigid_->travel()) obstacles_->copy_closed(now_.pressure_before, &now_.pressure);
   now_.pressure_interval = interval;
 }
 

@@ -143,6 +143,22 @@ class Vessels(SceneCase):
         self.assertLess(abs(pressure[~deep].mean()), 1e-4)
         self.assertGreater(abs(pressure[solid < .01]).max(), 1e-4)
 
+    def test_pressure_where_a_body_travels_is_bounded(self):
+        """Cells close and open as it goes: the level of the pressure stays, and nothing grows in cells that it has closed."""
+        scene = ("-grid_cells 24,16,1 -grid_length 3,2,1 -boundary_y wall -body_force .1,0,0 -fluid_viscosity .3 -species post,cell "
+                 "-post_shape sphere -post_radius .45 -post_centre 1,.9,0 -post_law rigid -post_velocity .3,.1,0 "
+                 "-post_velocity_frequency 2 -cell_shape sphere -cell_radius .25 -cell_centre 2.3,1.2,0 -cell_shear_modulus 2 "
+                 "-guard_volume_drift 0 -time_end 12 -snapshot_interval 6 -snapshot_fields pressure,solid_fraction "
+                 "-snapshot_precision double").split()
+        for viscosity in (.3, .15):
+            run = self.run_program("travels", *scene, "-cell_viscosity", str(viscosity), "-output_overwrite")
+            for number in (1, 2):
+                with h5py.File(run.directory / f"snapshot_{number:06d}.h5") as file, self.subTest(viscosity=viscosity, number=number):
+                    pressure, post = file["pressure"][...], file["solid_fraction_post"][...]
+                    self.assertLess(abs(pressure[post == 0].mean()), .02)
+                    self.assertLess(abs(pressure).max(), 1.5)
+                    self.assertGreater(abs(pressure).max(), .3)
+
 
 if __name__ == "__main__":
     unittest.main()
