@@ -62,3 +62,28 @@ TEST(NumberRows, NoNumberIsTakenForAnother) {
   EXPECT_NE(wrong_with("1.5\n1 2 3\n", list).find("line 1: \"1.5\" is no number of rows"), std::string::npos);
   EXPECT_NE(wrong_with("1 2 3\n2\n", list).find("line 2: a row has 1 number;"), std::string::npos);
 }
+
+TEST(NumberRows, ACommentLineNamesANumber) {
+  const RowFormat named{"rows of time,value", {"time", "value"}, {2}, false, "period"};
+  const auto read = [&](const std::string &text, double *period) {
+    return read_rows(
+        "t.csv", text, named, [](const std::vector<double> &) { return std::string(); }, period);
+  };
+  for (const char *line : {"# period 0.8", "#PERIOD\t.8", "  #   Period +8e-1\r"}) {
+    double period = 0;
+    EXPECT_EQ(read(std::string(line) + "\n0,1\n", &period), "") << line;
+    EXPECT_EQ(period, 0.8) << line;
+    EXPECT_EQ(read(std::string("0,1\n") + line, &period), "") << line;
+    EXPECT_EQ(wrong_with(std::string(line) + "\n0,1\n"), "") << line;  // of no meaning in other texts
+  }
+  double period = 0;
+  EXPECT_EQ(read("# periodic\n# the period is 3\n0,1 # period 4\n", &period), "");
+  EXPECT_EQ(period, 0);
+  for (const char *wrong :
+       {"# period", "# period = 0.8", "# period 0.8 s", "# period -1", "# period inf", "# period 0,8"})
+    EXPECT_NE(read(std::string(wrong) + "\n0,1\n", &period).find("t.csv line 1: \"period"), std::string::npos) << wrong;
+  EXPECT_EQ(
+      read("# period 1\n0,1\n# period 1\n", &period),
+      "t.csv line 3: \"period 1\" comes a second time; accepted: one line # period T with a number T > 0, or other "
+      "comments");
+}
