@@ -84,10 +84,38 @@ def pressure_drop(run, d=None):
     return drops(run)[direction_of_flow(run) if d is None else d]
 
 
-def gap(run, d):
-    """Between the walls normal to d, with what a plane of symmetry mirrors; 0 if there are none."""
-    kinds = sorted(run.side(d, side) for side in (0, 1))
-    return {("wall", "wall"): 1, ("symmetry", "wall"): 2}.get(tuple(kinds), 0) * run.length[d]
+def channels(run, d):
+    """[(low, high, low wall, high wall)]: where fluid is along d between walls of the box and slabs. A wall is "ymin", ... or a
+    slab and its face, "NAME_ymax", ...; of sides that are no walls it is None. Across a periodic side `high` is beyond the box."""
+    axis, length, spaces = "xyz"[d], run.length[d], []
+    slabs = [name for name, shape in run.species.items()
+             if shape == "slab" and run.is_fixed(name) and run.options.get(f"{name}_axis", "y") == axis]
+    low, wall = 0.0, f"{axis}min" if run.side(d, 0) == "wall" else None
+    for first, last, name in sorted((*vector(run, f"{name}_interval"), name) for name in slabs):
+        if first > low:
+            spaces.append((low, first, wall, f"{name}_{axis}min"))
+        if last > low:
+            low, wall = last, f"{name}_{axis}max"
+    if low < length:
+        spaces.append((low, length, wall, f"{axis}max" if run.side(d, 1) == "wall" else None))
+    if not run.is_bounded(d) and len(spaces) > 1 and spaces[0][2] is None and spaces[-1][3] is None:
+        (_, high, _, last), (low, _, first, _) = spaces.pop(0), spaces.pop()
+        spaces.append((low, length + high, first, last))
+    elif not run.is_bounded(d) and len(spaces) == 1 and spaces[0][2:] != (None, None):
+        low, high, first, last = spaces.pop()  # a slab at one side of the box is the wall at the other one
+        spaces.append((low, high, first or f"{slabs[-1]}_{axis}max", last or f"{slabs[0]}_{axis}min"))
+    return spaces
+
+
+def channel(run, d):
+    """(height of the fluid along d, gap): of the only channel between walls normal to d, with what a plane of symmetry mirrors
+    in the gap; (0, 0) if there is none or there are several."""
+    spaces = channels(run, d)
+    if len(spaces) != 1:
+        return 0.0, 0.0
+    (low, high, *walls), sides = spaces[0], [run.side(d, side) for side in (0, 1)]
+    ends = sorted("wall" if wall else side for wall, side in zip(walls, sides))
+    return high - low, {("wall", "wall"): 1, ("symmetry", "wall"): 2}.get(tuple(ends), 0) * (high - low)
 
 
 def tubes(run):
@@ -95,28 +123,29 @@ def tubes(run):
 
 
 def refuse_inner_walls(run, what):
-    """Between slabs and in vessels from a file the distance of the walls is not known here."""
-    inner = [name for name, shape in run.species.items() if shape in ("slab", "voxels") and run.is_fixed(name)]
+    """In vessels from a file the distance of the walls is not known here."""
+    inner = [name for name, shape in run.species.items() if shape == "voxels" and run.is_fixed(name)]
     if inner:
-        raise ValueError(f"{run.directory}: {what}: {inner[0]} is neither a tube nor a wall of the box")
+        raise ValueError(f"{run.directory}: {what}: {inner[0]} is neither a tube, a slab nor a wall of the box")
 
 
 def apparent_viscosity(run, species=None):
     """(nt) at the rows of series.csv: the viscosity with which a Newtonian fluid would have the flow rate of this run, driven
     by its pressure drop. In a tube, `species` or the only one, it is the column NAME_apparent_viscosity (Poiseuille's law); in
-    a plane channel between two walls of the box, pressure drop / length x gap^2 / (12 x mean velocity). It means what it says
-    in steady flow, or averaged over periods. 0 where nothing flows. ValueError in any other flow."""
+    a plane channel between two walls of the box or slabs, pressure drop / length x gap^2 / (12 x mean velocity of the fluid). It
+    means what it says in steady flow, or averaged over periods. 0 where nothing flows. ValueError in any other flow."""
     vessels = [species] if species else tubes(run)
     if len(vessels) == 1 and f"{vessels[0]}_apparent_viscosity" in run.series.dtype.names:
         return run.series[f"{vessels[0]}_apparent_viscosity"]
     refuse_inner_walls(run, "apparent viscosity")
-    walls = [d for d in range(dimension(run)) if gap(run, d) > 0]
+    walls = [d for d in range(dimension(run)) if channel(run, d)[1] > 0]
     if vessels or len(walls) != 1 or direction_of_flow(run) in walls:
         raise ValueError(f"{run.directory}: apparent viscosity: neither a tube (of several, name one) nor a plane channel")
     along = direction_of_flow(run)
-    mean = run.series["bulk_velocity_" + "xyz"[along]]
+    height, gap = channel(run, walls[0])
+    mean = run.series["bulk_velocity_" + "xyz"[along]] * run.length[walls[0]] / height
     gradient = pressure_drop(run, along) / run.length[along]
-    return numpy.divide(gradient * gap(run, walls[0]) ** 2, 12 * mean, out=numpy.zeros(len(mean)), where=mean != 0)
+    return numpy.divide(gradient * gap ** 2, 12 * mean, out=numpy.zeros(len(mean)), where=mean != 0)
 
 
 def between(run, since, until):
@@ -184,9 +213,14 @@ def layers(run, fraction):
         return found
     for d in range(dimension(run)):
         lines = numpy.moveaxis(fraction, 2 - d, -1).reshape(-1, run.cells[d])
-        for side, end in enumerate(("min", "max")):
-            if run.side(d, side) == "wall":
-                found["xyz"[d] + end] = first_crossing(lines[:, ::-1] if side else lines, run.centres(d))
+        lines, centres = numpy.concatenate((lines, lines), axis=1), numpy.append(run.centres(d), run.centres(d) + run.length[d])
+        for low, high, first, last in channels(run, d):
+            between_walls = (centres > low) & (centres < high)
+            line, centre = lines[:, between_walls], centres[between_walls]
+            if first:
+                found[first] = first_crossing(line, centre - low)
+            if last:
+                found[last] = first_crossing(line[:, ::-1], high - centre[::-1])
     return found
 
 
@@ -195,7 +229,7 @@ def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
     wall inward, in a tube to its axis, it ends where the solid fraction reaches 1/2; lines that meet no body do not count.
 
     The namespace has `time` (nt) of the snapshots; `thickness` (nt), the mean over all walls, and `walls`, {wall: (nt)} for
-    each (ymin, ..., or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time
+    each (ymin, ..., NAME_ymax, ... of a slab, or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time
     (roughness); `covered`, the share of the lines that meet a body. ValueError where there is no wall or no snapshot."""
     refuse_inner_walls(run, "cell-free layer")
     snapshots, walls, every = between(run, since, until), {}, []
@@ -203,7 +237,7 @@ def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
         fraction = (snapshot.fraction_of(species) if species else snapshot.fraction_of_bodies()).astype(float)
         found = layers(run, fraction)
         if not found:
-            raise ValueError(f"{run.directory}: cell-free layer: there is neither a tube nor a wall of the box")
+            raise ValueError(f"{run.directory}: cell-free layer: there is neither a tube nor a wall of the box nor a slab")
         every.append(numpy.concatenate(list(found.values())))
         for wall, distances in found.items():
             walls.setdefault(wall, []).append(mean_of(distances))

@@ -109,6 +109,18 @@ class Channels(WithRoom):
         run = self.solve("half", *words[:1], "4,16,1", *words[2:3], ".25,1,1", *words[4:], *"-boundary_ymin wall -boundary_ymax symmetry".split())
         self.assertAlmostEqual(eulastic.apparent_viscosity(run)[-1] / (1.5 / (1 + 2 / 32**2)), 1, delta=1e-9)
 
+    def test_a_channel_between_slabs(self):
+        """The same flow as between walls of the box, 2 high, in a box that is 2.5 or, periodic, 3 high."""
+        slabs = "-species low,high -low_shape slab -low_axis y -low_law rigid -high_shape slab -high_axis y -high_law rigid".split()
+        words = " ".join(CHANNEL)
+        for name, cells, height, intervals in (("walls", 40, 2.5, (0, .25, 2.25, 2.5)), ("middle", 48, 3, (0, .5, 2.5, 3))):
+            options = words.replace("4,32,1", f"4,{cells},1").replace(".25,2,1", f".25,{height},1").split()
+            if name == "middle":  # the channel is across the periodic side, the wall in the middle of the box
+                options = [word for word in options if word not in ("-boundary_y", "wall")]
+                intervals = (1, 1.5, 1.5, 2)
+            run = self.solve(name, *options, *slabs, "-low_interval", "%g,%g" % intervals[:2], "-high_interval", "%g,%g" % intervals[2:])
+            self.assertAlmostEqual(eulastic.apparent_viscosity(run)[-1] / (1.5 / (1 + 2 / 32**2)), 1, delta=1e-6)
+
     def test_a_tube_between_pressures(self):
         """In 2-D two rigid plates make the tube: the column of series.csv is Poiseuille's 3/2 / R^3."""
         run = self.solve("tube", *("-grid_cells 8,32,1 -grid_length .5,2,1 -boundary_xmin pressure -boundary_xmax pressure -boundary_y wall "
@@ -165,6 +177,18 @@ class Walls(WithRoom):
         self.assertAlmostEqual(found.deviation, numpy.sqrt(0.05**2 / 2))
         self.assertEqual(found.covered, 0.5)
 
+    def test_a_core_between_slabs(self):
+        """A core around the periodic side is .2 from the wall in the middle of the box, on both faces of it."""
+        phi = lambda x, y, z, t: numpy.clip(0.5 + (0.2 - abs(abs(y - 0.5) - 0.5)) / 0.2, 0, 1) + (abs(y - .5) < .1)
+        core = lambda x, y, z, t: numpy.clip(0.5 + (0.2 - abs(abs(y - 0.5) - 0.5)) / 0.2, 0, 1)
+        h = 1 / 40
+        z, y, x = numpy.meshgrid([.5], (numpy.arange(40) + .5) * h, (numpy.arange(8) + .5) / 8, indexing="ij")
+        found = self.layer("-grid_cells 8,40,1\n-grid_length 1,1,1\n-species rbc,bar\n-rbc_shape sphere\n-bar_shape slab\n-bar_axis y\n"
+                           "-bar_interval .4,.6\n", (8, 40, 1), phi, solid_fraction_rbc=lambda t: core(x, y, z, t),
+                           solid_fraction_bar=lambda t: (abs(y - .5) < .1) * 1.0)
+        for face in ("bar_ymin", "bar_ymax"):
+            numpy.testing.assert_allclose(found.walls[face], [0.2, 0.2], atol=1e-12)
+
     def test_a_core_in_a_tube(self):
         """The vessel's own solid does not count; a thread around another axis is nearer on one side, and as near on average to
         second order: the mean distance to a circle shifted by e is R - r + e^2/(4 r)."""
@@ -183,9 +207,9 @@ class Walls(WithRoom):
         options = "-grid_cells 4,4,1\n-grid_length 1,1,1\n-species rbc\n-rbc_shape sphere\n"
         with self.assertRaisesRegex(ValueError, "neither a tube nor a wall"):
             self.layer(options, (4, 4, 1), lambda x, y, z, t: 0 * x)
-        for more in "-wall_shape slab\n-wall_interval 0,.1\n", "-wall_shape voxels\n-wall_shear_modulus 1\n":
-            with self.assertRaisesRegex(ValueError, "wall is neither a tube nor a wall of the box"):
-                self.layer("-grid_cells 4,4,1\n-grid_length 1,1,1\n-boundary_y wall\n-species wall\n" + more, (4, 4, 1), lambda x, y, z, t: 0 * x)
+        with self.assertRaisesRegex(ValueError, "wall is neither a tube, a slab nor a wall of the box"):
+            self.layer("-grid_cells 4,4,1\n-grid_length 1,1,1\n-boundary_y wall\n-species wall\n-wall_shape voxels\n"
+                       "-wall_shear_modulus 1\n", (4, 4, 1), lambda x, y, z, t: 0 * x)
         found = self.layer(options + "-boundary_y wall\n", (4, 4, 1), lambda x, y, z, t: 0 * x)
         self.assertEqual(found.covered, 0)
         self.assertTrue(numpy.isnan(found.mean))
