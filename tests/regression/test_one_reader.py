@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import unittest
 
-SCENE = """-grid_cells 8,8,8 -boundary_y wall -time_end 1e-3 -time_step 1e-3 -options_file more.opts
+SCENE = """-grid_cells 8,9,8 -boundary_y wall -time_end 1e-3 -time_step 1e-3 -options_file more.opts
 -species cell,plate -cell_shape sphere -cell_radius .25 -cell_shear_modulus 1 -cell_placement list
 -plate_shape voxels -plate_law rigid -plate_voxels plate.nrrd
 """
@@ -19,8 +19,8 @@ FILES = {
                  "-inflow_xmin_velocity table.csv -inflow_xmin_profile profile\n",
     "places.csv": ".5,.5,.5\n",
     "table.csv": "0,0\n1,1\n",
-    "profile": 64 * "1 ",
-    "plate.nrrd": "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: ascii\n\n" + 8 * (8 * "1 " + 56 * "0 "),
+    "profile": 72 * "1 ",
+    "plate.nrrd": "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 9 8\nencoding: ascii\n\n" + 8 * (8 * "1 " + 64 * "0 "),
 }
 
 
