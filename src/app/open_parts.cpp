@@ -107,7 +107,7 @@ private:
   // Whether the lumen goes on beyond the end of the plane as its mirror image does.
   bool mirrors(int which, int high) const { return config_.sides[along_[which]][high].kind != SideKind::wall; }
 
-  // Of every cell the length, in cells, of the open piece of its line; the shorter one of both directions.
+  // Finds for every cell the length, in cells, of the open piece of its line; keeps the shorter one of both directions.
   void find_chords(int which) {
     const int n = count(which), lines = count(1 - which);
     const double spacing = config_.grid.length[along_[which]] / n;

@@ -9,14 +9,14 @@
 namespace eulastic {
 namespace {
 
-constexpr double densest = 0.7;   // part of the region that bodies are tried for
-constexpr double skin = 0.01;     // inner radii that bodies are larger while they move
-constexpr double finer = 1.02;    // from one size for which a packing is looked for to the next
-constexpr double growth = 1.005;  // in one go
-constexpr int melting = 100;      // rounds, before bodies grow
-constexpr int patience = 400;     // rounds of full size in which the overlap has to fall by a quarter
-constexpr int tries = 6;          // to push a body away, in one round
-constexpr int inward_tries = 40;  // to bring one back into the region
+constexpr double densest = 0.7;   // part of the region; crowds above it are not tried
+constexpr double skin = 0.01;     // inner radii by which bodies are larger while they move
+constexpr double finer = 1.02;    // ratio of the sizes for which a packing is sought
+constexpr double growth = 1.005;  // ratio of the sizes before and after a step of growth
+constexpr int melting = 100;      // rounds before bodies grow
+constexpr int patience = 400;     // rounds at full size in which the overlap has to fall by a quarter
+constexpr int tries = 6;          // of a body that overlaps others, in one round
+constexpr int inward_tries = 40;  // of a body that has grown out of the region
 constexpr double least_moves = 4e6, moves_of_body = 1500, most_moves = 2e7;
 constexpr double pi = 3.14159265358979323846;
 
@@ -25,7 +25,7 @@ Real3 cross(const Real3 &a, const Real3 &b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The square, so that overlaps are shared out until none is deep.
+// The sum of the squares of the depths, so that bodies share an overlap.
 double overlap(const std::vector<Penetration> &contacts) {
   double sum = 0;
   for (const Penetration &contact : contacts) sum += contact.depth * contact.depth;
@@ -71,7 +71,7 @@ private:
     return {&shape, place.centre, rotation(place.orientation)};
   }
 
-  // Of a body with its gap, about: as much larger than without as its widths are.
+  // The volume of a body with its gap, estimated from its widths.
   double volume() const {
     const ConvexBody bare(spec_, dimension_, 0);
     double volume = shape_volume(spec_, dimension_);
@@ -79,7 +79,8 @@ private:
     return volume;
   }
 
-  // Some sites of the regular packing of the largest bodies of which enough fit; bodies smaller than these by `looser`.
+  // Places the bodies on random sites of the packing of the largest bodies of which enough fit, smaller than those by
+  // the factor `looser`. Returns whether there is such a packing.
   bool begin(double looser) {
     std::vector<BodyPlace> sites;
     double widest = wide_.outer_radius();
@@ -102,7 +103,8 @@ private:
     return true;
   }
 
-  // Whether all bodies are clear in the end.
+  // Lets the bodies grow to their size; returns whether all are clear. They wait at most `most_waiting` rounds at a
+  // size.
   bool grow(int most_waiting, double most) {
     double before = HUGE_VAL;
     for (int round = 0, waited = 0; moved_ < most; ++round, ++waited) {
@@ -138,7 +140,7 @@ private:
     return place;
   }
 
-  // Away from those that it overlaps, and turned as they push it.
+  // Moves a body away from those that it overlaps, and turns it as they push it.
   BodyPlace pushed(const BodyPlace &place, const std::vector<Penetration> &contacts, double part) const {
     const double inertia = 0.3 * shape_.outer_radius() * shape_.outer_radius();
     Real3 step{}, turn{};
@@ -165,7 +167,7 @@ private:
   std::vector<Penetration> contacts_of(std::size_t b) const {
     return crowd_.penetrations(crowd_[others_.size() + b], others_.size() + b);
   }
-  // All bodies get this shape.
+  // Gives all bodies a shape.
   void take(const ConvexBody &shape) {
     for (std::size_t b = 0; b < places_.size(); ++b) crowd_.move(others_.size() + b, convex(places_[b], shape));
   }
@@ -183,7 +185,7 @@ private:
     return true;
   }
 
-  // Every body once.
+  // Moves every body once; returns what was found before.
   Round move_all() {
     Round sum;
     for (std::size_t b = 0; b < places_.size(); ++b) {
@@ -214,7 +216,7 @@ private:
     return clear;
   }
 
-  // How many are left where bodies that are outside or overlap are taken away, those with most others first.
+  // Counts the bodies that are left when those outside and then those that overlap most others are taken away.
   std::size_t clear_ones() {
     std::vector<std::vector<Penetration>> contacts(places_.size());
     std::vector<bool> gone(places_.size());
