@@ -25,7 +25,11 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
   energy_ = position.energy;
   energy_.allow_return(config.method.pressure == PressureKind::acm && config.method.acm_of_the_paper());
   const double apart = std::max(config.output.series_interval, config.time.step);
-  rows_resolve_forcing_ = 4 * apart <= solver->limits({}).forcing;
+  energy_unknown_.clear();
+  if (4 * apart > solver->limits({}).forcing)
+    energy_unknown_ = "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period";
+  else if (Feeders::exist(config.sides) && !config.species.empty())
+    energy_unknown_ = "bodies that come in through a side bring energy that is not counted";
   mach_max_ = position.mach_max;
 }
 
@@ -74,7 +78,7 @@ PetscErrorCode Outputs::measure() {
   PetscCall(measure_strains(&m));
   if (solver_->state().step > 0)
     mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
-  m.energy_made = rows_resolve_forcing_ ? budget_now().made_share() : 0;
+  m.energy_made = energy_unknown_.empty() ? budget_now().made_share() : 0;
   PetscFunctionReturn(0);
 }
 
@@ -205,7 +209,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.active_fraction = counted[1] / grid_->cell_count();
   PetscCall(state_hash(solver_, &summary.state_hash));
   const double evolved = (counted[1] + counted[2]) * double(state.step);
-  const Evidence evidence{budget, rows_resolve_forcing_, measured, double(state.forgotten), evolved};
+  const Evidence evidence{budget, energy_unknown_, measured, double(state.forgotten), evolved};
   verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};
   summary.verdicts = verdicts_;
   PetscCall(eulastic::write_summary(grid_->comm(), directory_ + "/summary.json", summary));

@@ -112,7 +112,7 @@ private:
   bool waits_ = false, seen_ = false, is_new_ = false;
   double series_time_before_ = -1;  ///< of the row before the one that waits
   EnergyBudget energy_;
-  bool rows_resolve_forcing_ = true;  ///< rows of series.csv are close enough for what swings
+  std::string energy_unknown_;  ///< why the energy budget cannot be judged, or empty
   bool area_warned_ = false, stretch_warned_ = false;
   std::vector<Summary::Verdict> verdicts_;
   long bodies_rows_ = 0, snapshots_before_ = 0;

@@ -70,6 +70,8 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
                                &row->sides));
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
+  constexpr int starting_steps = 20;  // as TimeStepControl has them
+  energy.starts = config_.method.staggered() && config_.time.step == 0 && state.step < starting_steps;
   row->dt = state.dt;
   row->step = double(state.step);
   row->bodies = solver_->bodies().bodies();
@@ -188,7 +190,7 @@ PetscErrorCode Outputs::write_row() {
   const FlowMeasures &flow = measured.flow;
   const EnergyRates &rates = row_.energy.rates;
   energy_.advance(measured.time, row_.energy);
-  measured.energy_made = rows_resolve_forcing_ ? energy_.made_share() : 0;
+  measured.energy_made = energy_unknown_.empty() ? energy_.made_share() : 0;
   double solid = 0;
   for (const double volume : flow.phase_volume) solid += volume;
   std::vector<double> row{measured.time,

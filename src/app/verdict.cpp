@@ -36,8 +36,7 @@ Summary::Verdict judge_energy(const Evidence &e) {
   const std::string of = "energy", all = " of the energy that it held and was supplied with";
   const double made = e.budget.made_share_max(), lost = over(e.budget.lost(), e.budget.handled()),
                uncertain = over(e.budget.uncertain(), e.budget.handled());
-  if (!e.rows_resolve_forcing)
-    return {of, look, "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period"};
+  if (!e.energy_unknown.empty()) return {of, look, e.energy_unknown};
   if (made > made_to_look || made != made)
     return {of, word(made, made_to_look, energy_not_to_trust),
             "the run made energy of its own, " + percent(made) + all + " meanwhile"};

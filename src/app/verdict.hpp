@@ -12,10 +12,10 @@ namespace eulastic {
 /// What a verdict follows from.
 struct Evidence {
   const EnergyBudget &budget;
-  bool rows_resolve_forcing;  ///< rows of series.csv are close enough for what swings
-  const Measured &measured;   ///< at the end
-  double forgotten;           ///< strain_forgotten of summary.json
-  double evolved;             ///< points at which B was evolved, and markers of membranes, as many as at the end in all steps
+  const std::string &energy_unknown;  ///< why the budget cannot be judged, or empty
+  const Measured &measured;           ///< at the end
+  double forgotten;                   ///< strain_forgotten of summary.json
+  double evolved;  ///< points at which B was evolved, and markers of membranes, as many as at the end in all steps
 };
 
 Summary::Verdict judge_energy(const Evidence &evidence);

@@ -27,7 +27,7 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   time_ = time;
   see_made(state.unknown);
   if (!started_) since_.fill(made_);
-  started_ = !begins;
+  started_ = started_ || !(begins || state.starts);
   compare_made();
 }
 

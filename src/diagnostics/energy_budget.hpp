@@ -12,6 +12,7 @@ struct EnergyState {
   double kinetic = 0, elastic = 0;
   double surface = 0, surface_power = 0;  ///< of surface tension: its energy, what the flow gives to it
   double dissipation = 0;                 ///< by viscosity
+  bool starts = false;                    ///< steps are still the small ones of a start
   double unknown = 0;      ///< energies below it say nothing: round-off, what body forces give the fluid in a step
   double force_range = 0;  ///< what the power of body forces may be at most with this kinetic energy
   EnergyRates rates;

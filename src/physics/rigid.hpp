@@ -80,7 +80,8 @@ PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, co
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
 
 /// What viscosity dissipates at cut faces, where (28) takes the place of the Laplacian, beyond what the compact
-/// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body. Collective.
+/// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body; less the friction of
+/// faces inside on sides of the box. Collective.
 PetscErrorCode measure_rigid_dissipation(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
                                          const FieldBlock &velocity, double *dissipation);
 

@@ -4,6 +4,8 @@
 #include "physics/rigid.hpp"
 #include "physics/rigid_rows.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 PetscErrorCode measure_rigid_dissipation(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
@@ -26,6 +28,14 @@ PetscErrorCode measure_rigid_dissipation(const Grid &grid, const RigidFaces &fac
       const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u, strides(velocity[a]));
       sums.add(0, volume * (*u - of_body) * (rates.regular - rates.cut));
     }
+    // Faces inside feel no friction on sides of the box, where a body has no surface.
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) {
+        const double of_body = velocity[a](i, j, k);
+        if (of_body != 0)
+          sums.add(0, volume_of_face(grid, a, side_of_face(grid, a, i, j, k)) * of_body *
+                          laplacian_of_sides(grid, a, i, j, k, velocity[a]));
+      }
   });
   scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 10));
   PetscCall(sums.reduce(grid.comm(), dissipation));

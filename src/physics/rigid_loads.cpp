@@ -9,19 +9,6 @@
 namespace eulastic {
 namespace {
 
-// Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
-double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstView u) {
-  double sum = 0;
-  for (int d = 0; d < grid.dimension(); ++d) {
-    if (d == a || !grid.is_wall(d)) continue;
-    const int at = grid.layout().begin[d] + std::array{i, j, k}[d];
-    const double *here = &u(i, j, k), square = grid.spacing()[d] * grid.spacing()[d];
-    if (at == 0) sum += (here[-u.stride(d)] - here[0]) / square;
-    if (at == grid.cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
-  }
-  return sum;
-}
-
 // Sums over the faces that bodies are at, of what they push.
 class RigidLoadSums {
 public:

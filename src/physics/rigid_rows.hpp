@@ -50,6 +50,19 @@ inline double volume_of_face(const Grid &grid, int a, int side) {
   return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0;
 }
 
+// Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
+inline double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstView u) {
+  double sum = 0;
+  for (int d = 0; d < grid.dimension(); ++d) {
+    if (d == a || !grid.is_wall(d)) continue;
+    const int at = grid.layout().begin[d] + std::array{i, j, k}[d];
+    const double *here = &u(i, j, k), square = grid.spacing()[d] * grid.spacing()[d];
+    if (at == 0) sum += (here[-u.stride(d)] - here[0]) / square;
+    if (at == grid.cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
+  }
+  return sum;
+}
+
 inline bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
