@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "scripts/studies/st
 sys.dont_write_bytecode = True
 from eulastic import Run  # noqa: E402
 from full import full  # noqa: E402
-from stability_judge import MADE, energy_growth, energy_made, judge  # noqa: E402
+from stability_judge import MADE, energy_growth, energy_made, judge, surface_energy_made  # noqa: E402
 from stability_scenes import contact, corner  # noqa: E402
 
 TIME = numpy.linspace(0, 1, 101)
@@ -52,6 +52,13 @@ class Judge(unittest.TestCase):
         self.assertLess(energy_made(run.series).max(), .6)  # the .5 that is there in the first row is not paid for
         self.assertGreater(run.series.kinetic_energy.max(), 2 * 2)
         self.assertLessEqual(energy_growth(run), 1)
+
+    def test_what_membranes_make_counts_at_its_worst(self):
+        """Membranes that make 3 of the 20 that come in, and lose it again."""
+        lost = types.SimpleNamespace(energy_lost_elastic=numpy.where(TIME < .7, -3 * TIME / .7, 5))
+        made = surface_energy_made(types.SimpleNamespace(series=lost, summary={"energy_supplied": 20}))
+        self.assertAlmostEqual(made, 3 * TIME[TIME < .7].max() / .7 / 20)
+        self.assertGreater(made, MADE)
 
     def test_motion_from_nothing_is_made(self):
         """The same motion without the solid, or from a solid that keeps what it has."""

@@ -11,6 +11,7 @@ DRIFT = {"fast": 1e-3, "classic": 0.1}  # of the volume of all bodies
 PHI = {"fast": 1e-9, "classic": 0.01}  # beyond 0 and 1
 DETERMINANT = (0.5, 4.0)  # of B at the centres in free bodies, as long as no stretch was beyond
 STRETCH = 3.0
+MEMBRANES = ("membrane", "red_cell")  # B_s has the determinant 0
 # WENO5 bounds neither phi nor the volume: of classic this is reported, not judged.
 # Bodies of one species that touch have phases of their own; a snapshot holds the sum of their phi. Each is between 0 and 1
 # (planes), the sum need not be: where it is not, they overlap.
@@ -59,6 +60,11 @@ def energy_made(series):
     return unpaid - numpy.minimum.accumulate(unpaid)
 
 
+def surface_energy_made(run):
+    """What membranes have made of nothing, over what came in."""
+    return float(-run.series.energy_lost_elastic.min() / run.summary["energy_supplied"])
+
+
 def energy_growth(run):
     """Largest energy over what the start and the force allow. Of walls: no more motion than all at twice their speed,
     unless it is paid for: a solid that a wall stretches may hold many times that, and give it back at once."""
@@ -88,13 +94,16 @@ def judge(directory, method):
     if not all(numpy.isfinite(series[name]).all() for name in series.dtype.names):
         return "not finite", [], m
     m["energy"] = energy_growth(run)
+    membranes = {name[:-len("_law")] for name, law in run.options.items() if name.endswith("_law") and law in MEMBRANES}
+    if membranes:
+        m["energy"] = max(m["energy"], 1 + surface_energy_made(run) - MADE)
     m["forgotten"] = summary["strain_forgotten"]
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0
     m["phi"], m["overlap"], m["stretch"], det = 0.0, 0.0, 1.0, []
     flat = run.cells[2] == 1
     for name in [n for n in run.options.get("species", "none").split(",") if n != "none"]:
-        largest, free = 1.0, run.options[f"{name}_shape"] != "slab"
+        largest, free = 1.0, run.options[f"{name}_shape"] != "slab" and name not in membranes
         for snapshot in run.snapshots:
             phi, trace, determinant = fields_of_b(snapshot, name)
             beyond = "overlap" if sum(body["species"] == name for body in summary["bodies"]) > 1 else "phi"

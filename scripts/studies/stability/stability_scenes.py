@@ -219,6 +219,13 @@ def corner(cells, G):
     return cavity(G, 100, cells, end=60, steps=100000) | {"series_interval": 0.1}
 
 
+def crowd(hematocrit, seed):
+    """Red cells at random between plates, 16 cells long and 2.5 thick, in um, us and mPa s: they touch walls and each other."""
+    return box((48, 40), "y", 1.2, 1500, 100000, grid_length="24,20,.5", body_force="4e-4,0,0", species="rbc", rbc_law="red_cell",
+               rbc_diameter=8, rbc_placement="random", rbc_orientation="random", rbc_hematocrit=hematocrit, rbc_seed=seed,
+               time_integrator="staggered", interface_scheme="plic", series_interval=10)
+
+
 MODULI = [1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000]
 REYNOLDS = [0.1, 1, 10, 100, 1000, 10000]
 THREE = [0.01, 1, 100]
@@ -255,6 +262,7 @@ GROUPS = [
     Group("long", "a hundred thousand steps", long, ["rest", "shear", "cavity", "reversing"], [0.01, 1, 100], "", "G/(ρU²)"),
     Group("viscosity", "viscosity of a body over the fluid's", viscous, [.01, .05, .2, 5, 20, 100], VISCOUS, "contrast", "",
           [(.01, "cavity"), (100, "shear"), (100, "3-D")]),
+    Group("crowd", "membranes between plates", crowd, [.2, .3], [1, 2], "hematocrit", "seed", [(.3, 1)]),
     Group("corner", "a disc held in a corner to t = 60", corner, [16, 24], MODULI[1:-1], "cells of the box", "G/(ρU²)",
           [(16, 0.01)]),
 ]
