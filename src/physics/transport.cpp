@@ -69,7 +69,8 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity 
     if (second_of_heun) moved = 0.5 * (next[o] + moved);
     next[o] = share < threshold ? exterior : moved < least && moved >= lowest ? least : moved;
   };
-  const auto shear = [=](std::ptrdiff_t o) EULASTIC_BODY { return viscosity.template shear<Dim>(va + o, vb + o, vc + o, solid + o); };
+  const auto shear = [=](std::ptrdiff_t o)
+                         EULASTIC_BODY { return viscosity.template shear<Dim>(va + o, vb + o, vc + o, solid + o); };
   if (a == b)
     kernels::for_points(batch, phi, [=](std::ptrdiff_t o, int i) EULASTIC_BODY {
       const double half = kernels::half_diagonal_stretch<Dim>(aa + o, ab + o, ac + o, shear(o), d);

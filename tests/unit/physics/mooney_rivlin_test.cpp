@@ -1,7 +1,6 @@
-// Mooney-Rivlin: stress, energy and what one takes from the other, in every component; the bound of its stiffness.
+// Mooney-Rivlin: stress and energy in every component, the bound of its stiffness; stress on edges of two viscosities.
 #include "diagnostics/edge_stress.hpp"
 #include "diagnostics/energy_rates.hpp"
-#include "kernels/upper_convected.hpp"
 #include "physics/limits.hpp"
 #include "support/materials.hpp"
 #include "support/solid_box.hpp"
@@ -218,107 +217,10 @@ TEST(MooneyRivlin, ForceIsOfSecondOrder) {
   }
 }
 
-// d(B)/dt by stretching alone.
-template <int Dim, class Viscosity>
-void stretch(const Grid &grid, const Phase &phase, const Viscosity &viscosity, const FieldBlock &v, FieldBlock &rate) {
-  const FieldBlock &B = phase.tensor.field;
-  const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
-  for (const Segment &s : grid.rows())
-    for (int a = 0; a < Dim; ++a)
-      for (int b = a; b < Dim; ++b) {
-        const int other = a == b ? (a + 1) % Dim : b, third = Dim == 3 ? 3 - a - other : other;
-        const auto inverse = [&](int d) { return 1 / grid.spacing()[d]; };
-        const kernels::Directions d{v[0].stride(a), v[0].stride(other), v[0].stride(third),
-                                    inverse(a),     inverse(other),     inverse(third)};
-        double *out = rate[at(a, b)].row(s.j, s.k);
-        const auto row = [&s](ConstView q) { return q.row(s.j, s.k); };
-        const double *aa = row(B[a]), *bb = row(B[b]), *ab = row(B[at(a, other)]), *bc = row(B[at(b, third)]);
-        const double *ac = row(B[at(a, third)]), *va = row(v[a]), *vb = row(v[other]), *vc = row(v[third]);
-        const double *phi = row(phase.fraction[0]);
-        for (int i = s.i_begin; i < s.i_end; ++i) {
-          const auto shear = viscosity.template shear<Dim>(va + i, vb + i, vc + i, phi + i);
-          out[i] += a == b ? 2 * kernels::half_diagonal_stretch<Dim>(aa + i, ab + i, ac + i, shear, d)
-                           : kernels::shear_stretch<Dim>(aa + i, bb + i, ab + i, bc + i, ac + i, shear, d);
-        }
-      }
-}
-
-double total_energy(const Grid &grid, const Phase &phase) {
-  double sum = 0;
-  std::vector<double> row(grid.owned()[0]);
-  for (const Segment &s : grid.rows()) {
-    strain_energy(grid, phase, s, row.data());
-    for (const double e : row) sum += e;
-  }
-  return sum * grid.cell_volume();
-}
-
-struct Exchange {
-  double force = 0, stress = 0, energy = 0;  // power of the force, of the stress, rate of the energy
-};
-
-// Random B; phi random or uniform; v solenoidal. The energy is quadratic in B: a central difference is its rate.
-// `contrast`: viscosity of the solid over the fluid's.
-Exchange exchange_of(bool flat, const Material &material, bool uniform, double contrast) {
-  Solid solid(flat, 0, 30);
-  const Grid &grid = solid.grid;
-  Phase &phase = solid.phases[0];
-  phase.material = material;
-  phase.tensor.rule.viscosity_excess = contrast - 1;
-  Random random(31);
-  randomise(grid, phase.fraction, random, contrast == 1 ? 1.5 : 0.5);
-  if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
-  randomise(grid, phase.tensor.field, random, 0.4);
-  randomise_solenoidal(grid, solid.velocity, random);
-  FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.field.count());
-  EXPECT_EQ(compute_elastic_force(grid, 1, solid.phases, force), 0);
-  Exchange e;
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &s : grid.rows())
-      for (int i = 0; i < s.i_end; ++i)
-        e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * grid.cell_volume();
-  EnergyRates rates;
-  EnergyNumbers numbers;
-  EXPECT_EQ(measure_energy_rates(grid, solid.velocity, solid.phases, numbers, &rates), 0);
-  e.stress = rates.elastic_power;
-  with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
-    if (flat)
-      stretch<2>(grid, phase, viscosity, solid.velocity, rate);
-    else
-      stretch<3>(grid, phase, viscosity, solid.velocity, rate);
-  });
-  GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update(rate, 1), 0);
-  FieldBlock before;
-  before.copy_from(phase.tensor.field);
-  for (const double sign : {1.0, -1.0}) {
-    const std::size_t doubles = before.bytes() / sizeof(double);
-    for (std::size_t n = 0; n < doubles; ++n) phase.tensor.field.data()[n] = before.data()[n] + sign * rate.data()[n];
-    e.energy += sign / 2 * total_energy(grid, phase);
-  }
-  return e;
-}
-
-// What the force takes from the flow is what the stress takes, whatever phi is, and what the energy gains: for c2 that
-// needs a uniform phi, as a symmetric stress cannot do it where phi changes.
-TEST(ElasticExchange, PowerOfForceAndStressAndRateOfEnergy) {
-  for (const bool flat : {false, true})
-    for (const Material &material : {Material{0.9}, test::mooney_rivlin(0.7, 0, 0.3), rubber})
-      for (const bool uniform : {false, true})
-        for (const double contrast : {1.0, 0.1, 5.0}) {
-          const Exchange e = exchange_of(flat, material, uniform, contrast);
-          EXPECT_GT(std::fabs(e.energy), 0.01);
-          EXPECT_NEAR(e.force, -e.stress, 1e-13) << flat << uniform << contrast;
-          if (uniform || material.c2 == 0) {
-            EXPECT_NEAR(e.energy, e.stress, 1e-12) << flat << uniform << contrast;
-          }
-        }
-}
-
 // A solid and a fluid in layers under uniform shear, B_xy = 0.3 as far as the solid goes: the stress of an edge that
 // both share is that of the layers, what is left of it without elasticity the viscosity's. Where the surface lies at 45
 // degrees the stress that the edge has is along it: both have the same strain there.
-TEST(ElasticExchange, StressOfLayersOfTwoViscosities) {
+TEST(ElasticStress, OfLayersOfTwoViscosities) {
   const double modulus = 0.7, fluid = 0.4, strain = 0.3, rate = 0.9;
   for (const double contrast : {0.1, 1.0, 5.0})
     for (const double share : {0.125, 0.5, 0.875}) {
@@ -340,33 +242,6 @@ TEST(ElasticExchange, StressOfLayersOfTwoViscosities) {
       surface_along(1, 1);
       EXPECT_NEAR(computed_stress(solid, 0, 1), share * modulus * strain, 1e-14) << contrast << " " << share;
     }
-}
-
-// A rigid rotation turns B as it is, whatever the viscosities are.
-TEST(ElasticExchange, RotationIsThatOfTheMixture) {
-  for (const bool flat : {false, true}) {
-    Solid solid(flat, 0, 20);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) solid.v[a].g[b] = a == b ? 0 : a < b ? solid.v[a].g[b] : -solid.v[b].g[a];
-    solid.fill();
-    Phase &phase = solid.phases[0];
-    Random random(8);
-    randomise(solid.grid, phase.fraction, random, 0.5);
-    FieldBlock rate[2];
-    for (const bool own : {false, true}) {
-      phase.tensor.rule.viscosity_excess = own ? 4 : 0;
-      rate[own] = FieldBlock(solid.grid, phase.tensor.field.count());
-      with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
-        if (flat)
-          stretch<2>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
-        else
-          stretch<3>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
-      });
-    }
-    for (int c = 0; c < rate[0].count(); ++c)
-      for (const Segment &s : solid.grid.rows())
-        for (int i = 0; i < s.i_end; ++i) EXPECT_NEAR(rate[0][c](i, s.j, s.k), rate[1][c](i, s.j, s.k), 1e-12);
-  }
 }
 
 // rho c^2 of a wave along n that moves along m is the second derivative of W for F -> (1 + e m n) F.
