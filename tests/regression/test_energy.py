@@ -98,7 +98,7 @@ class Verdicts(Restart):
         return {v["of"]: v for v in found}, [line for line in result.stderr.splitlines() if "warning" in line]
 
     def test_a_good_run_is_fine(self):
-        found, warnings = self.judged("good", *DISC, "-time_end", ".5")
+        found, warnings = self.judged("good", *DISC, "-initial_velocity", "couette", "-time_end", ".5")
         self.assertEqual({v["verdict"] for v in found.values()}, {"fine"}, found)
         self.assertEqual(warnings, [])
 
