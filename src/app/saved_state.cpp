@@ -252,7 +252,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   const bool fits = set_colours(grid, colours, &solver->state().phases);
   PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
   CheckpointNumbers expected = numbers_of(*solver, *position);
-  if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of a version before 0.3.0
+  if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of an earlier version
     expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
   if (!file->has("energy_made")) expected.reals.erase("energy_made");  // of version 0.2.0 and before
   CheckpointNumbers numbers = expected;

@@ -15,8 +15,14 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   constexpr int per_component = 4, per_body = 3 * per_component;
   const int dimension = grid_.dimension(), cells = grid_.owned()[0];
   ExactSums sums(per_body * faces_.count);
-  const auto add = [&](int image, int a, Real3 place, double part, bool nearest) {
-    const int index = faces_.bodies[image].index;
+  faces_.footprints.clear();
+  const auto add = [&](int image, int a, const Int3 &cell, int high, double part, bool nearest) {
+    const int index = faces_.bodies[image].index, side = grid_.layout().begin[a] + cell[a] + high;
+    Int3 face = cell;
+    face[a] += high;
+    const Real3 place = place_of_face(grid_, a, face[0], face[1], face[2]);
+    if (grid_.is_wall(a) && (side == 0 || side == grid_.cells()[a]))
+      faces_.footprints.push_back({cell, a, high > 0, image, 2 * part});
     const PlacedBody *body = sources_[index].body.get();
     const Real3 &centre = faces_.bodies[image].centre;
     sums.add(per_body * index + per_component * a, part);
@@ -35,18 +41,10 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     }
     return -1;
   };
-  std::vector<int> beside[2];
-  for (std::vector<int> &bodies : beside) bodies.resize(cells);
+  std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
   for (const Segment &row : grid_.rows())
     for (int a = 0; a < dimension; ++a) {
-      for (const int high : {0, 1}) {
-        std::fill(beside[high].begin(), beside[high].end(), -1);
-        const int shift = a == 0 && high;
-        const RigidFaces::Row faces = faces_.row(a, row.j + (a == 1 && high), row.k + (a == 2 && high));
-        for (const RigidFaces::Run *run = faces.runs; run != faces.runs_end; ++run)
-          for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, cells); ++i)
-            beside[high][i] = run->body;
-      }
+      for (const int high : {0, 1}) faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
       for (int i = 0; i < cells; ++i) {
         double solid = 0;
         for (const Phase &phase : phases)
@@ -54,18 +52,16 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
         const double fluid = 1 - std::min(1.0, solid);
         if (solid == 0 && beside[0][i] < 0 && beside[1][i] < 0) continue;
         for (const int high : {0, 1}) {
-          Int3 face{i, row.j, row.k};
-          face[a] += high;
-          const Real3 place = place_of_face(grid_, a, face[0], face[1], face[2]);
+          const Int3 cell{i, row.j, row.k};
           if (beside[high][i] >= 0) {
-            if (fluid > 0) add(beside[high][i], a, place, -0.5 * fluid, false);
+            if (fluid > 0) add(beside[high][i], a, cell, high, -0.5 * fluid, false);
             continue;
           }
           for (const Phase &phase : phases) {
             const double part = phase.material.is_rigid() ? phase.fraction[0](i, row.j, row.k) : 0;
             const int index = part > 0 && phase.label ? index_of(phase, int(phase.label[0](i, row.j, row.k))) : -1;
             if (index >= 0 && index < faces_.count)
-              add(image_of(index, {0, 0, 0}), a, place, 0.5 * part * std::min(1.0, 1 / solid), true);
+              add(image_of(index, {0, 0, 0}), a, cell, high, 0.5 * part * std::min(1.0, 1 / solid), true);
           }
         }
       }

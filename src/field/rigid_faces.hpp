@@ -70,6 +70,15 @@ struct RigidGap {
   std::array<Real3, 3> first{};
 };
 
+/// Likewise on a side of the box, of a body in an owned cell beside it: in parts of the cell's face.
+struct RigidFootprint {
+  Int3 cell{};
+  int direction = 0;
+  bool high = false;
+  int body = 0;  ///< index in RigidFaces::bodies
+  double more = 0;
+};
+
 /// A body, or one of its images across periodic sides.
 struct RigidBody {
   int index = 0;   ///< among all rigid bodies
@@ -104,10 +113,11 @@ public:
 
   std::vector<RigidMotion> motions;
   std::vector<RigidBody> bodies;
-  std::vector<RigidMass> masses;  ///< by the index of the body
-  std::vector<RigidGap> gaps;     ///< likewise; empty where bodies travel
-  std::vector<Real3> ahead;       ///< of every motion: from the time of the surfaces to that of the faces, in cells
-  int count = 0;                  ///< of bodies, images not counted
+  std::vector<RigidMass> masses;           ///< by the index of the body
+  std::vector<RigidGap> gaps;              ///< likewise; empty where bodies travel
+  std::vector<RigidFootprint> footprints;  ///< where `more` is not 0
+  std::vector<Real3> ahead;  ///< of every motion: from the time of the surfaces to that of the faces, in cells
+  int count = 0;             ///< of bodies, images not counted
   bool moves = false, travels = false;
   Real3 speed{};  ///< largest of any surface, along every direction
 
@@ -118,6 +128,8 @@ public:
     return {c.cuts.data() + c.first_cut[at], c.cuts.data() + c.first_cut[at + 1], c.runs.data() + c.first_run[at],
             c.runs.data() + c.first_run[at + 1], c.all[at] != 0};
   }
+  /// Of the first cells of row (j, k), as many as `found` has: the body on their low or high face across d, or -1.
+  void find_beside(int d, bool high, int j, int k, std::vector<int> *found) const;
   /// All cut faces of component a, those of ghost rows too.
   const std::vector<Cut> &cuts(int a) const { return components_[a].cuts; }
   /// Component a of the velocity of a body at a face, at the times of the factors of its motion.

@@ -40,21 +40,17 @@ Seen seen_by(const Grid &grid, const RigidFaces &faces, int a, Int3 face, int li
 RigidImpulse::RigidImpulse(const Grid &grid, const RigidFaces &faces, const Fluid &fluid)
     : grid_(grid), faces_(faces), fluid_(fluid) {
   const int cells = grid.owned()[0];
-  std::vector<int> beside[2];
-  for (std::vector<int> &bodies : beside) bodies.resize(cells);
+  std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
   for (const Segment &row : grid.rows())
     for (int d = 0; d < grid.dimension(); ++d) {
-      for (const int high : {0, 1}) {
-        std::fill(beside[high].begin(), beside[high].end(), -1);
-        const int shift = d == 0 && high;
-        const RigidFaces::Row at = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
-        for (const RigidFaces::Run *run = at.runs; run != at.runs_end; ++run)
-          for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, cells); ++i)
-            beside[high][i] = run->body;
-      }
+      for (const int high : {0, 1}) faces.find_beside(d, high > 0, row.j, row.k, &beside[high]);
       for (int i = 0; i < cells; ++i)
-        if (beside[0][i] != beside[1][i]) contacts_.push_back({d, i, row.j, row.k, beside[0][i], beside[1][i]});
+        for (const int high : {0, 1})
+          if (beside[0][i] != beside[1][i] && beside[high][i] >= 0)
+            contacts_.push_back({d, i, row.j, row.k, beside[high][i], high ? 1. : -1.});
     }
+  for (const RigidFootprint &at : faces.footprints)
+    contacts_.push_back({at.direction, at.cell[0], at.cell[1], at.cell[2], at.body, at.high ? at.more : -at.more});
   pressure_.resize(contacts_.size());
   for (int a = 0; a < grid.dimension(); ++a) lacks_[a].resize(faces.cuts(a).size());
 }
@@ -97,9 +93,10 @@ void RigidImpulse::set_pressure(const FieldBlock &pressure) {
     pressure_[n] = pressure[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
 }
 
-void RigidImpulse::add_increment(const FieldBlock &increment) {
+void RigidImpulse::add_increment(const FieldBlock &increment, bool partly) {
   for (std::size_t n = 0; n < contacts_.size(); ++n)
     pressure_[n] += increment[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
+  if (!partly) return;
   for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *q = increment[0].row(j, k), factor = 1 / (fluid_.density * grid_.spacing()[a]);
     const std::ptrdiff_t step = increment[0].stride(a);
@@ -120,14 +117,6 @@ void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSu
     const int e = (d + 1) % 3, g = (d + 2) % 3;
     if (e == a || g == a) sums->add(at + 3 + d, r[e] * f[g] - r[g] * f[e]);
   }
-}
-
-// Along d the arms of both faces differ along d alone, which makes no torque.
-void RigidImpulse::add_pressure(const Contact &contact, double pressure, ExactSums *sums) const {
-  const Real3 place = place_of_face(grid_, contact.d, contact.i, contact.j, contact.k);
-  const double push = pressure * grid_.cell_volume() / grid_.spacing()[contact.d];
-  if (contact.low >= 0) add(contact.low, contact.d, place, -push, sums);
-  if (contact.high >= 0) add(contact.high, contact.d, place, push, sums);
 }
 
 // The viscous terms of a cut face and of its neighbours inside, as if all were fluid, less what the cut face feels of
@@ -161,7 +150,11 @@ void RigidImpulse::add_cut(const RigidMeans &means, int a, const RigidFaces::Cut
 PetscErrorCode RigidImpulse::sum(const RigidMeans &means, std::vector<double> *total) const {
   PetscFunctionBeginUser;
   ExactSums sums(6 * faces_.count);
-  for (std::size_t n = 0; n < contacts_.size(); ++n) add_pressure(contacts_[n], pressure_[n], &sums);
+  for (std::size_t n = 0; n < contacts_.size(); ++n) {
+    const Contact &at = contacts_[n];  // arms along d are those of forces along d, which make no torque
+    add(at.body, at.d, place_of_face(grid_, at.d, at.i, at.j, at.k),
+        at.weight * pressure_[n] * grid_.cell_volume() / grid_.spacing()[at.d], &sums);
+  }
   for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (owned(grid_, a, cut->i)) add_cut(means, a, *cut, j, k, &sums);

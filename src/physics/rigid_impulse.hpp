@@ -24,20 +24,21 @@ public:
   void add_prediction(double dt, const FieldBlock &velocity, const FieldBlock &velocity_star);
   /// The pressure that acts in the step, less what increments add to it; owned cells are read.
   void set_pressure(const FieldBlock &pressure);
-  /// An increment that corrects the velocity; one ghost layer.
-  void add_increment(const FieldBlock &increment);
+  /// An increment that corrects the velocity; one ghost layer. `partly`: cut faces as far as they are open.
+  void add_increment(const FieldBlock &increment, bool partly);
   /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. `velocity` is that of
   /// `time`, when power is measured. Exact sums: the same bits on any ranks. Collective.
   PetscErrorCode measure(double time, const FieldBlock &velocity, std::vector<RigidLoad> *loads) const;
   std::size_t bytes() const;
 
 private:
-  /// A cell with different bodies on its faces across direction d; -1: fluid.
+  /// A body on a face of a cell across direction d; weight: 1 of the high face, -1 of the low one; none
+  /// if it is on both.
   struct Contact {
-    int d, i, j, k, low, high;
+    int d, i, j, k, body;
+    double weight;
   };
   RigidMeans means_of(double time, const FieldBlock &velocity) const;
-  void add_pressure(const Contact &contact, double pressure, ExactSums *sums) const;
   void add_cut(const RigidMeans &means, int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const;
   void add(int body, int a, const Real3 &place, double push, ExactSums *sums) const;
   PetscErrorCode sum(const RigidMeans &means, std::vector<double> *total) const;

@@ -1,4 +1,4 @@
-// What the fluid exerts on rigid bodies.
+// What the fluid exerts on rigid bodies of a scene in which some travel.
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
 #include "physics/rigid.hpp"

@@ -7,13 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace eulastic {
 namespace {
 
 constexpr double round_off = 1e-12;  // of the first residual: further on directions are noise
-constexpr double least_open = 0.03;  // mean openness that D* is divided by
 constexpr int patience = 12;         // iterations without progress: round-off
 
 template <int Dim>
@@ -99,112 +97,45 @@ bool ObstacleSolver::Beside::closed() const {
   return std::all_of(open, open + 6, [](double part) { return part == 0; });
 }
 
-template <class Work>
-void ObstacleSolver::for_closed_cells(const Work &work) const {
-  std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c)
-      if (cells_[c].closed()) work(Int3{cells_[c].i, row.j, row.k});
-    ++at;
-  }
-}
-
 void ObstacleSolver::follow(const RigidFaces &faces) {
   closed_count_ = -1;
   cells_.clear();
   first_.clear();
   travels_ = faces.travels;
   const Int3 &n = grid_->owned();
-  std::vector<std::array<double, 6>> open(n[0]);
+  const Real3 &h = grid_->spacing();
+  // How far faces are open, and how far it is from them to the surface through the cell, in parts of the spacing.
+  std::vector<std::array<double, 6>> open(n[0]), depth(n[0]);
+  std::vector<int> body(n[0]);
   for (const Segment &row : grid_->rows()) {
     first_.push_back(cells_.size());
-    for (auto &cell : open) cell.fill(1);
+    for (auto *cells : {&open, &depth})
+      for (auto &cell : *cells) cell.fill(1);
     for (int d = 0; d < grid_->dimension(); ++d)
       for (int high = 0; high < 2; ++high) {
-        const int shift = d == 0 && high;
+        const int shift = d == 0 && high, face = 2 * d + high;
+        faces.find_beside(d, high, row.j, row.k, &body);
+        for (int i = 0; i < n[0]; ++i)
+          if (body[i] >= 0) open[i][face] = depth[i][face] = 0;
         const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
-        for (const RigidFaces::Run *run = beside.runs; run != beside.runs_end; ++run)
-          for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, n[0]); ++i)
-            open[i][2 * d + high] = 0;
         for (const RigidFaces::Cut *cut = beside.cuts; cut != beside.cuts_end; ++cut)
-          if (const int i = cut->i - shift; i >= 0 && i < n[0]) open[i][2 * d + high] = cut->open;
+          if (const int i = cut->i - shift; i >= 0 && i < n[0]) {
+            open[i][face] = cut->open;
+            depth[i][face] = 1 / (cut->link[2 * d + !high] * h[d] * h[d]);
+          }
       }
     for (int i = 0; i < n[0]; ++i) {
       if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
       Beside cell{i, {}};
       std::copy_n(open[i].begin(), 2 * grid_->dimension(), cell.open);  // 2-D has no faces along z
+      for (int d = 0; d < grid_->dimension(); ++d) {
+        const double *at = &open[i][2 * d], *to = &depth[i][2 * d];
+        cell.response = std::max(cell.response, at[0] > 0 && at[1] > 0 ? 0.5 * (at[0] + at[1]) : to[0] + to[1]);
+      }
       cells_.push_back(cell);
     }
   }
   first_.push_back(cells_.size());
-}
-
-void ObstacleSolver::copy_closed(const FieldBlock &from, FieldBlock *to) const {
-  for_closed_cells([&](const Int3 &cell) { (*to)[0](cell[0], cell[1], cell[2]) = from[0](cell[0], cell[1], cell[2]); });
-}
-
-PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
-  PetscFunctionBeginUser;
-  VerbScope scope(Verb::rigid);
-  WorkSpace::Lease taken;
-  PetscCall(work_->take("known pressure", 2, &taken));
-  FieldBlock known = taken.part(0, 1), next = taken.part(1, 1);
-  for (FieldBlock *block : {&known, &next}) block->fill(0, 1);
-  for_closed_cells(
-      [&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = next[0](cell[0], cell[1], cell[2]) = 0; });
-  PetscCall(extend_layer(known, next, pressure));
-  PetscCall(extend_layer(next, known, pressure));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const {
-  PetscFunctionBeginUser;
-  PetscCall(exchange_->update(known, 1));
-  PetscCall(exchange_->update(pressure, 1));
-  std::size_t at = 0;
-  const View p = pressure[0];
-  for (const Segment &row : grid_->rows()) {
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const Int3 cell{cells_[c].i, row.j, row.k};
-      const double *is_known = &known[0](cell[0], cell[1], cell[2]);
-      double *value = &p(cell[0], cell[1], cell[2]);
-      if (*is_known != 0) continue;
-      double sum = 0, count = 0;
-      for (int d = 0; d < grid_->dimension(); ++d) {
-        double pair[2] = {};
-        for (int high = 0; high < 2; ++high) {
-          const std::ptrdiff_t step = high ? p.stride(d) : -p.stride(d);
-          const int global = grid_->layout().begin[d] + cell[d] + (high ? 1 : -1);
-          if ((grid_->is_wall(d) && (global < 0 || global >= grid_->cells()[d])) || is_known[step] == 0) continue;
-          pair[high] = value[step];
-          ++count;
-        }
-        sum += pair[0] + pair[1];
-      }
-      if (count == 0) continue;
-      *value = sum / count;
-      next[0](cell[0], cell[1], cell[2]) = 1;
-    }
-    ++at;
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ObstacleSolver::spread(FieldBlock &divergence) const {
-  PetscFunctionBeginUser;
-  const int faces = 2 * grid_->dimension();
-  std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
-    double *D = divergence[0].row(row.j, row.k);
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const double *open = cells_[c].open;
-      D[cells_[c].i] /= std::max(least_open, std::accumulate(open, open + faces, 0.0) / faces);
-    }
-    ++at;
-  }
-  PetscCall(exchange_->update(divergence, 1));
-  fill_ghosts_of_increment(*grid_, divergence[0], 1);
-  PetscFunctionReturn(0);
 }
 
 // dt div(open grad q); q has a layer of ghosts.

@@ -28,9 +28,9 @@ public:
   /// Cells whose faces are all closed get what the pressure around them is, two layers deep: nothing corrects it there,
   /// and where a body moves away it is what the fluid begins with. All of a ghost layer. Collective.
   PetscErrorCode extend(FieldBlock &pressure) const;
-  /// D* of cells beside bodies becomes that of a whole cell, for the rotational update of p: divided by how far its
-  /// faces are open on average. All of a ghost layer. Collective.
-  PetscErrorCode spread(FieldBlock &divergence) const;
+  /// D* of cells beside bodies becomes that of a whole cell, for the rotational update of p, which takes `part` of what
+  /// is wrong in a step (docs/method.md, section 19). All of a ghost layer. Collective.
+  PetscErrorCode spread(double part, FieldBlock &divergence) const;
   /// Owned cells whose faces are all closed get the values of another field.
   void copy_closed(const FieldBlock &from, FieldBlock *to) const;
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
@@ -46,6 +46,7 @@ private:
   struct Beside {
     int i;
     double open[6];
+    double response = 0;  ///< r of docs/method.md, section 19
     bool closed() const;
   };
   PetscErrorCode extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const;
@@ -70,5 +71,15 @@ private:
   double accuracy_, target_ = 0;
   long iterations_ = 0;
 };
+
+template <class Work>
+void ObstacleSolver::for_closed_cells(const Work &work) const {
+  std::size_t at = 0;
+  for (const Segment &row : grid_->rows()) {
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c)
+      if (cells_[c].closed()) work(Int3{cells_[c].i, row.j, row.k});
+    ++at;
+  }
+}
 
 }  // namespace eulastic

@@ -67,7 +67,7 @@ PetscErrorCode Solver::settle_loads(double dt, const FieldBlock &divergence, Fie
   PetscFunctionBeginUser;
   PetscCall(measure_loads(velocity_star_, &flow));
   loads_->add_up(*grid_, loads_->settle(dt, flow), increment);
-  if (rigid_impulse_) rigid_impulse_->add_increment(increment);
+  if (rigid_impulse_) rigid_impulse_->add_increment(increment, obstacles_ != nullptr);
   PetscCall(correct_velocity(*grid_, spec_.fluid.density, dt, 0, increment, divergence, velocity_star_, now_.pressure));
   respect_rigid(now_.time + dt, dt, increment, velocity_star_);
   PetscFunctionReturn(0);

@@ -192,8 +192,8 @@ std::size_t Solver::bytes() const {
   std::size_t sum = now_.velocity.bytes() + now_.pressure.bytes() + now_.pressure_before.bytes() +
                     velocity_star_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
                     work_->bytes() + flow_.bytes() + viscosity_.bytes() + pressure_solver_->bytes() +
-                    (rigid_ ? rigid_->bytes() : 0) + (loads_ ? loads_->bytes() : 0) +
-                    (membranes_ ? membranes_->bytes() : 0);
+                    (rigid_ ? rigid_->bytes() : 0) + (rigid_impulse_ ? rigid_impulse_->bytes() : 0) +
+                    (loads_ ? loads_->bytes() : 0) + (membranes_ ? membranes_->bytes() : 0);
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
       sum += phase.fraction.bytes() + phase.label.bytes();
@@ -271,16 +271,18 @@ PetscErrorCode Solver::project(double dt) {
   fill_ghosts_of_increment(*grid_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
-  if (obstacles_ && spec_.staggered()) PetscCall(obstacles_->spread(divergence));
+  if (obstacles_ && !rigid_->travel() && spec_.staggered())
+    PetscCall(obstacles_->spread(expects_pressure() ? 1 : 0.5, divergence));
   if (rigid_impulse_) rigid_impulse_->set_pressure(now_.pressure);
-  if (rigid_impulse_ && !pressure_solver_->formula()) rigid_impulse_->add_increment(increment.fields());
+  if (rigid_impulse_ && !pressure_solver_->formula())
+    rigid_impulse_->add_increment(increment.fields(), obstacles_ != nullptr);
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
     PetscCall(
         correct_velocity(*grid_, density, dt, rotate.uniform, *formula, divergence, velocity_star_, now_.pressure));
   else
     PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
-  if (rigid_impulse_ && (viscosity_ || pressure_solver_->formula())) rigid_impulse_->set_pressure(now_.pressure);
+  if (rigid_impulse_ && pressure_solver_->formula()) rigid_impulse_->set_pressure(now_.pressure);
   respect_rigid(now_.time + dt, dt, increment.fields(), velocity_star_);
   if (loads_) PetscCall(settle_loads(dt, divergence, increment.fields()));
   if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_.fields, rotate.local, divergence, now_.pressure));
