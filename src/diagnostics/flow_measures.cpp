@@ -105,8 +105,9 @@ private:
 // and none on high ones, and no shear along them.
 class SideFaces {
 public:
-  SideFaces(const Grid &grid, const FieldBlock &velocity, ExactSums *sums)
-      : grid_(grid), velocity_(velocity), sums_(sums) {}
+  /// `viscosity`: that the squares of gradients are weighted with.
+  SideFaces(const Grid &grid, const FieldBlock &velocity, double viscosity, ExactSums *sums)
+      : grid_(grid), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
 
   void add(int d, bool high) const {
     const ConstView v = velocity_[d];
@@ -123,13 +124,14 @@ private:
   void add_shear(const double *q, std::ptrdiff_t step, int e, int index) const {
     const double inverse_h = 1 / grid_.spacing()[e];
     const bool at_low = index == 0 && grid_.touches_low(e);
-    sums_->add(gradient_squared, (at_low ? 0.25 : 0.5) * square((q[0] - q[-step]) * inverse_h));
+    sums_->add(gradient_squared, viscosity_ * (at_low ? 0.25 : 0.5) * square((q[0] - q[-step]) * inverse_h));
     if (index == grid_.owned()[e] - 1 && grid_.touches_high(e))
-      sums_->add(gradient_squared, 0.25 * square((q[step] - q[0]) * inverse_h));
+      sums_->add(gradient_squared, viscosity_ * 0.25 * square((q[step] - q[0]) * inverse_h));
   }
 
   const Grid &grid_;
   const FieldBlock &velocity_;
+  double viscosity_;
   ExactSums *sums_;
 };
 
@@ -192,7 +194,9 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
     add(part, sums);
     if (!part.first || !numbers.sides) return;
     for (const auto [d, high] : grid.sides())
-      if (volume_crosses((*numbers.sides)[d][high].kind)) SideFaces(grid, velocity, &sums).add(d, high);
+      if (volume_crosses((*numbers.sides)[d][high].kind))
+        SideFaces(grid, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
+            .add(d, high);
   };
   scope.flops(grid.owned_count() * dimension * (10 + 4 * dimension));
   double sum[flow_sums];
