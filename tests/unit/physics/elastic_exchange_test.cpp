@@ -1,5 +1,6 @@
 // What the elastic stress takes from the flow and what the elastic energy gains, of every law; what stretches B.
 #include "diagnostics/energy_rates.hpp"
+#include "kernels/tensor.hpp"
 #include "kernels/upper_convected.hpp"
 #include "support/materials.hpp"
 #include "support/solid_box.hpp"
