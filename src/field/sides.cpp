@@ -118,10 +118,9 @@ void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View 
   for (const auto [d, high] : grid.sides()) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
-void fill_wall_ghosts_of_bodies(const Grid &grid, const BoxSides &sides, View field, int width,
-                                const OccupiedRows *rows) {
+void clear_solid_ghosts(const Grid &grid, const BoxSides &sides, View field, int width, const OccupiedRows *rows) {
   for (const auto [d, high] : grid.sides())
-    reflect(grid, field, d, high, false, {is_solid(sides[d][high].kind) ? 0.0 : 1.0, 0.0}, width, rows);
+    if (is_solid(sides[d][high].kind)) reflect(grid, field, d, high, false, {0.0, 0.0}, width, rows);
 }
 
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,

@@ -69,9 +69,9 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
 /// not where `rows`, if it is given, is idle before the side.
 void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
-/// The same at centres, but 0 behind solid sides: for fractions of bodies that end there.
-void fill_wall_ghosts_of_bodies(const Grid &grid, const BoxSides &sides, View field, int width,
-                                const OccupiedRows *rows = nullptr);
+/// Behind solid sides 0, at centres: for fractions of bodies that end there. Other sides are left as they are.
+void clear_solid_ghosts(const Grid &grid, const BoxSides &sides, View field, int width,
+                        const OccupiedRows *rows = nullptr);
 /// All components of a left Cauchy-Green block.
 void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows = nullptr);

@@ -130,16 +130,14 @@ bool Hdf5File::has(const std::string &dataset) const {
 
 std::vector<std::string> Hdf5File::datasets() const {
   std::vector<std::string> names;
-  H5G_info_t info{};
-  (void)H5Gget_info(file_.get(), &info);
-  for (hsize_t n = 0; n < info.nlinks; ++n) {
-    const auto get = [&](char *name, std::size_t size) {
-      return H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name, size, H5P_DEFAULT);
-    };
-    std::string name(static_cast<std::size_t>(std::max<ssize_t>(get(nullptr, 0), 0)), '\0');
-    (void)get(name.data(), name.size() + 1);
-    names.push_back(std::move(name));
-  }
+  const auto add = [](hid_t, const char *name, const H5L_info_t *, void *list) -> herr_t {
+    static_cast<std::vector<std::string> *>(list)->emplace_back(name);
+    return 0;
+  };
+  // In the order of the file: for any other one HDF5 makes a table of the links, which it cannot free where one is
+  // damaged.
+  (void)H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
+  std::sort(names.begin(), names.end());
   return names;
 }
 

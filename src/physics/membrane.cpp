@@ -282,6 +282,7 @@ PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, 
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(phase, surface.fields()));
   markers_.place(surface_, surface.fields(), phase, number, label, markers);
+  PetscCall(markers_.send_home(markers));  // the surface beside a rank's last cell may lie in the next one
   PetscFunctionReturn(0);
 }
 

@@ -49,6 +49,7 @@ public:
   /// ghosts of phi, here and below.
   PetscErrorCode start(Phase *phase);
   /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
+  /// Collective.
   PetscErrorCode place_markers(const Phase &phase, int number, int label, std::vector<SurfaceMarker> *markers);
   /// Each to the phase that its body is in now; those of bodies that are gone away.
   PetscErrorCode follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers);

@@ -117,14 +117,21 @@ Grid::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const 
   return grid_->points_near(d, false, d < grid_->dimension() && !alone ? ghosts : 0);
 }
 
-// Whether the first filter reads behind one.
+// Whether the first filter reads behind one: also from cells of other ranks, which are ghosts here, so that all ranks
+// that see a body there agree.
 bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
-  for (const auto [d, high] : grid_->sides())
-    if (is_solid((*sides_)[d][high].kind))
-      for (const Segment &row : grid_->cells_at(d, high, smooth_reach))
-        if (!phase.rows.idle(row.j, row.k) &&
-            OccupiedRows::any(phase.fraction[0].row(row.j, row.k), row.i_begin, row.i_end))
-          return true;
+  const Int3 &n = grid_->owned();
+  for (const auto [d, high] : grid_->sides()) {
+    if (!is_solid((*sides_)[d][high].kind) || !grid_->touches(d, high)) continue;
+    Int3 begin{}, end = n;
+    for (int e = 0; e < grid_->dimension(); ++e) {
+      begin[e] = e != d ? -smooth_reach : high ? std::max(0, n[e] - smooth_reach) : 0;
+      end[e] = e != d ? n[e] + smooth_reach : high ? n[e] : std::min(smooth_reach, n[e]);
+    }
+    for (int k = begin[2]; k < end[2]; ++k)
+      for (int j = begin[1]; j < end[1]; ++j)
+        if (!phase.rows.idle(j, k) && OccupiedRows::any(phase.fraction[0].row(j, k), begin[0], end[0])) return true;
+  }
   return false;
 }
 
@@ -141,7 +148,7 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) 
       for (int j = -ghosts; j < n[1] + ghosts; ++j)
         if (cleared_around(*grid_, phase.rows, j, k))
           std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
-    fill_wall_ghosts_of_bodies(*grid_, *sides_, copy, ghosts, &phase.rows);
+    clear_solid_ghosts(*grid_, *sides_, copy, ghosts, &phase.rows);
     phi = copy;
   }
   const auto fill = [&](int field, const auto &row) {
@@ -158,7 +165,8 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) 
     });
     FieldBlock filled = fields.part(field, 1);
     PetscCall(exchange_->update(filled, ghosts, &phase.rows));
-    fill_wall_ghosts_of_bodies(*grid_, *sides_, fields[field], ghosts, &phase.rows);
+    fill_wall_ghosts_even(*grid_, at_centre, fields[field], ghosts, &phase.rows);
+    clear_solid_ghosts(*grid_, *sides_, fields[field], ghosts, &phase.rows);
     PetscFunctionReturn(0);
   };
   PetscCall(fill(smoothed, [&](int j, int k, int begin, int end, RowScratch &scratch) {

@@ -78,7 +78,7 @@ class Membranes(SceneCase):
         """Five cells away while the wall above goes on by 15 cells' lengths; whole, and makes no energy."""
         bodies, series = run.bodies, run.series
         self.assertGreater(bodies.centroid[-1, -1, 0] - bodies.centroid[0, -1, 0], 5)
-        self.assertLess(bodies.largest_stretch[:, -1].max(), 1.6)
+        self.assertLess(bodies.largest_stretch[:, -1].max(), 1.72)  # along the surface; glued to the wall 1.73 and more
         self.assertLess(abs(bodies.volume[:, -1] / bodies.volume[0, -1] - 1).max(), 1e-6)
         self.assertGreater(series.energy_lost_elastic.min(), -0.02)
         self.assertLess(series.energy_lost_elastic[-1], 0.004 * run.summary["energy_dissipated"])
