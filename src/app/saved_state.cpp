@@ -261,7 +261,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
   PetscCall(require_range(grid, path, find_absurd_number(numbers)));
   PetscCall(load_bodies(file, path, grid, &solver->bodies(), solver->feeders()));
-  if (FieldBlock *memory = solver->pressure_memory()) memory->clear();               // the file may know of fewer
+  solver->clear_pressure_memory();  // the file may know of fewer increments
   for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
   PetscCall(file->read_fields(grid, fields_of(*solver)));
   take_numbers(numbers, solver, position);

@@ -31,6 +31,7 @@ public:
   long sweeps() const override { return sweeps_; }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
   FieldBlock *memory() override { return memory_.saved(); }
+  void clear_memory() override { memory_.clear(); }
   /// rms of D that the last solve left, by its own account.
   double residual_rms() const { return residual_rms_; }
   std::size_t bytes() const override;

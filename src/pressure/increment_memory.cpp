@@ -17,8 +17,12 @@ FieldBlock *IncrementMemory::saved() {
   double *data = block_.data();
   std::rotate(data, data + newest_ * size, data + count() * size);
   newest_ = 0;
-  ghosts_valid_ = false;
   return &block_;
+}
+
+void IncrementMemory::clear() {
+  if (block_) block_.clear();
+  ghosts_valid_ = false;
 }
 
 PetscErrorCode IncrementMemory::update_ghosts(const Grid &grid, GhostExchange &exchange) {

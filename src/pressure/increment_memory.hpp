@@ -17,8 +17,10 @@ public:
   FieldBlock increment(int n) { return block_.part((newest_ + n) % count(), 1); }
   /// The place of the oldest becomes that of the newest; until that is set its values are anything.
   void turn() { newest_ = (newest_ + count() - 1) % count(); }
-  /// All, the newest first, or null. Whoever asks may write owned cells.
+  /// All, the newest first, or null.
   FieldBlock *saved();
+  /// All become 0; owned cells may be written then, through saved().
+  void clear();
   /// One ghost layer of all, if anybody may have written.
   PetscErrorCode update_ghosts(const Grid &grid, GhostExchange &exchange);
 

@@ -39,6 +39,7 @@ public:
   double sound_speed() const override { return other_->sound_speed(); }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
   FieldBlock *memory() override { return memory_.saved(); }
+  void clear_memory() override { memory_.clear(); }
   std::size_t bytes() const override;
 
 private:

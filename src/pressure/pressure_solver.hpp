@@ -30,6 +30,8 @@ public:
   virtual double sound_speed() const { return 0; }
   /// Fields that must survive a restart for the same bits, or null.
   virtual FieldBlock *memory() { return nullptr; }
+  /// These become 0; until the next solve() owned cells may be written then.
+  virtual void clear_memory() {}
   /// Bytes of the solver's own fields on this rank.
   virtual std::size_t bytes() const { return 0; }
 };

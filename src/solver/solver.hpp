@@ -117,6 +117,7 @@ public:
   double sound_speed() const { return pressure_solver_->sound_speed(); }
   /// What the pressure solver remembers of earlier steps, or null.
   FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
+  void clear_pressure_memory() { pressure_solver_->clear_memory(); }
   /// The sides with the pressures that loads have now.
   BoxSides sides_now() const { return loads_ ? loads_->with_pressures(spec_.sides) : spec_.sides; }
   /// Of stretches that feed inflow sides, or null.
