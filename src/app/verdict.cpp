@@ -59,7 +59,7 @@ Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &e) 
   const std::string volume = word(m.volume_drift, volume_to_look, volume_not_to_trust),
                     area = word(m.red_cell_area.value, area_to_look, area_not_to_trust);
   const std::string why = "the volume of a body has changed by " + percent(m.volume_drift) + " at most",
-                    of_area = "the area of a red cell has grown by " + percent(m.red_cell_area.value);
+                    of_area = "the area of a red cell has grown by " + percent(std::max(m.red_cell_area.value, 0.0));
   const bool red_cells = m.red_cell_area.label > 0;
   if (volume == do_not_trust || (volume == look && area != do_not_trust)) return {of, volume, why};
   if (red_cells && area != fine) return {of, area, of_area};

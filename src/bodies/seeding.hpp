@@ -1,8 +1,8 @@
 // Random bodies without overlap, for a number or a hematocrit.
 //
 // They start on random sites of a regular packing, which is what makes high hematocrits possible, then move at random
-// (hard-body Monte Carlo): anywhere if there is room, else by steps. What the packing cannot hold is tried at random; if
-// it does not fit so, all are relaxed (bodies/relaxation.hpp).
+// (hard-body Monte Carlo): anywhere if there is room, else by steps. What the packing cannot hold is tried at random;
+// if it does not fit so, all are relaxed (bodies/relaxation.hpp).
 #pragma once
 
 #include "bodies/placement.hpp"
