@@ -30,16 +30,10 @@ std::string fill(const Config &config, std::size_t s, const CellWindow &cells, V
   const Surface surface(spec, flat(config) ? 2 : 3);
   for (const NumberedPlace &place : config.places[s].known) {
     const PlacedBody body(surface, config.grid, place);
-    const auto ranges = [&](int d) { return body.ranges(d, first[d], first[d] + cells.size[d]); };
-    for (const PlacedBody::Range &z : ranges(2))
-      for (const PlacedBody::Range &y : ranges(1))
-        for (const PlacedBody::Range &x : ranges(0))
-          for (int k = z.begin; k < z.end; ++k)
-            for (int j = y.begin; j < y.end; ++j)
-              for (int i = x.begin; i < x.end; ++i) {
-                double &phi = fraction(i - first[0], j - first[1], k - first[2]);
-                phi = std::max(phi, body.fraction({i + x.shift, j + y.shift, k + z.shift}));
-              }
+    body.for_cells(first, cells.size, [&](const Int3 &cell, const Int3 &unwrapped) {
+      double &phi = fraction(cell[0] - first[0], cell[1] - first[1], cell[2] - first[2]);
+      phi = std::max(phi, body.fraction(unwrapped));
+    });
   }
   return {};
 }

@@ -1,6 +1,7 @@
 // Outputs: rows of series.csv and bodies.h5.
 #include "app/between.hpp"
 #include "app/outputs.hpp"
+#include "app/time_step_control.hpp"
 #include "base/events.hpp"
 #include "physics/species_force.hpp"
 
@@ -70,8 +71,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
                                &row->sides));
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
-  constexpr int starting_steps = 20;  // as TimeStepControl has them
-  energy.starts = config_.method.staggered() && config_.time.step == 0 && state.step < starting_steps;
+  energy.starts = config_.method.staggered() && config_.time.step == 0 && state.step <= starting_steps;
   row->dt = state.dt;
   row->step = double(state.step);
   row->bodies = solver_->bodies().bodies();

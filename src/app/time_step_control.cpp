@@ -14,7 +14,6 @@ constexpr double growth = 1.05;     // most that dt grows from one measurement t
 // The staggered scheme starts with small steps that grow with the time that has passed: a flow that starts changes on
 // that scale, whatever the limits are, it need not balance the forces, RKL2 brings stiff modes only about half way in a
 // step, and solids meanwhile move with what there is. docs/method.md, section 8.
-constexpr int starting_steps = 19;
 constexpr double starting_growth = 1.25;
 constexpr double many_steps = 1e9;
 

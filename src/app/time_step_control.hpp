@@ -5,6 +5,9 @@
 
 namespace eulastic {
 
+/// Steps of a run of the staggered integrator that grow, before the automatic step is reached.
+inline constexpr int starting_steps = 19;
+
 class TimeStepControl {
 public:
   explicit TimeStepControl(const TimeControl &time) : time_(time) {}

@@ -218,20 +218,14 @@ void add_shared(const SpeciesSpec &spec, const Places &places, const GridSpec &g
   const Int3 &first = cells.begin;
   for (const NumberedPlace &place : places.known) {
     const PlacedBody body(surface, grid, place);
-    const auto ranges = [&](int d) { return body.ranges(d, first[d], first[d] + cells.size[d]); };
     SharedVolume with;
-    for (const PlacedBody::Range &z : ranges(2))
-      for (const PlacedBody::Range &y : ranges(1))
-        for (const PlacedBody::Range &x : ranges(0))
-          for (int k = z.begin; k < z.end; ++k)
-            for (int j = y.begin; j < y.end; ++j)
-              for (int i = x.begin; i < x.end; ++i) {
-                const double solid = fraction(i - first[0], j - first[1], k - first[2]);
-                if (!(solid > 0)) continue;
-                const double more = solid + body.fraction({i + x.shift, j + y.shift, k + z.shift}) - 1;
-                if (more > excess) with.overlaps = true;
-                if (more > 0) with.volume += std::llround(std::ldexp(more, 30));
-              }
+    body.for_cells(first, cells.size, [&](const Int3 &cell, const Int3 &unwrapped) {
+      const double solid = fraction(cell[0] - first[0], cell[1] - first[1], cell[2] - first[2]);
+      if (!(solid > 0)) return;
+      const double more = solid + body.fraction(unwrapped) - 1;
+      if (more > excess) with.overlaps = true;
+      if (more > 0) with.volume += std::llround(std::ldexp(more, 30));
+    });
     if (with.volume == 0) continue;
     SharedVolume &all = (*shared)[place.index];
     all.volume += with.volume;

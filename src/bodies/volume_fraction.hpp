@@ -27,6 +27,18 @@ public:
   };
   /// Cells first <= i < last of direction d that the body may touch, in every periodic image.
   std::vector<Range> ranges(int d, int first, int last) const;
+  /// visit(cell, unwrapped) for the cells first <= cell < first + size that the body may touch, once for every image;
+  /// `unwrapped`: where the body has it.
+  template <class Visit>
+  void for_cells(const Int3 &first, const Int3 &size, const Visit &visit) const {
+    const auto along = [&](int d) { return ranges(d, first[d], first[d] + size[d]); };
+    for (const Range &z : along(2))
+      for (const Range &y : along(1))
+        for (const Range &x : along(0))
+          for (int k = z.begin; k < z.end; ++k)
+            for (int j = y.begin; j < y.end; ++j)
+              for (int i = x.begin; i < x.end; ++i) visit(Int3{i, j, k}, Int3{i + x.shift, j + y.shift, k + z.shift});
+  }
   /// Whether the surface cannot pass a global, unwrapped cell, and the cell is outside: cheaper than its fraction.
   bool is_clear_of(const Int3 &cell) const noexcept;
   /// Negative inside, at a place in cells from the middle of the box.
