@@ -1,6 +1,7 @@
 #include "app/balance.hpp"
 
 #include "grid/cuts.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -18,16 +19,16 @@ constexpr int most_units = 4096;  // along a direction: a sum over all ranks for
 
 class Balance {
 public:
-  explicit Balance(const Solver &solver) : grid_(solver.grid()), cost_(grid_.rows().size(), 0) {
-    for (double &cost : cost_) cost = grid_.owned()[0];
+  explicit Balance(const Solver &solver) : domain_(solver.domain()), cost_(domain_.rows().size(), 0) {
+    for (double &cost : cost_) cost = domain_.cells()[0];
     for (const Phase &phase : solver.state().phases) add(phase);
     for (const double cost : cost_) own_ += cost;
     for (int d = 0; d < 3; ++d) {
-      const int cells = grid_.cells()[d], parts = grid_.processors(d);
-      for (int p = 0; p <= parts; ++p) starts_[d].push_back(grid_.first_cell(d, p));
+      const int cells = domain_.domain_cells()[d], parts = domain_.processors(d);
+      for (int p = 0; p <= parts; ++p) starts_[d].push_back(domain_.first_cell(d, p));
       unit_[d] = cut_unit(cells, parts);
       while (cells > most_units * unit_[d]) unit_[d] *= 2;
-      least_[d] = (Grid::stencil_width + unit_[d] - 1) / unit_[d];
+      least_[d] = (Box::stencil_width + unit_[d] - 1) / unit_[d];
       movable_[d] = d > 0 && parts > 1 && cells / unit_[d] >= parts * least_[d];
     }
   }
@@ -36,9 +37,9 @@ public:
     PetscFunctionBeginUser;
     double total = own_, heaviest = own_;
     std::array<std::vector<double>, 3> sums, weights;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_DOUBLE, MPI_SUM, grid_.comm()));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &heaviest, 1, MPI_DOUBLE, MPI_MAX, grid_.comm()));
-    *before = heaviest * grid_.ranks() / total;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_DOUBLE, MPI_SUM, domain_.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &heaviest, 1, MPI_DOUBLE, MPI_MAX, domain_.comm()));
+    *before = heaviest * domain_.ranks() / total;
     const double even = heaviest;
     for (int d = 1; d < 3; ++d) PetscCall(sum_planes(d, &sums[d]));
     weights = sums;
@@ -53,17 +54,17 @@ public:
       for (int d = 1; d < 3; ++d)
         if (movable_[d]) weigh(d, sums[d], most[d], &weights[d]);
     }
-    *after = heaviest * grid_.ranks() / total;
+    *after = heaviest * domain_.ranks() / total;
     if (heaviest < worth * even) spec->starts = best;
     PetscFunctionReturn(0);
   }
 
 private:
-  double &cost(int j, int k) { return cost_[j + std::size_t(grid_.owned()[1]) * k]; }
+  double &cost(int j, int k) { return cost_[j + std::size_t(domain_.cells()[1]) * k]; }
 
   void add(const Phase &phase) {
     if (phase.material.is_rigid()) return;
-    const Int3 &n = grid_.owned();
+    const Int3 &n = domain_.cells();
     const double factor = phase.material.is_membrane() ? membrane_cost : phase_cost;
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) {
@@ -75,20 +76,20 @@ private:
   // Over the planes of each unit along d.
   PetscErrorCode sum_planes(int d, std::vector<double> *sums) {
     PetscFunctionBeginUser;
-    const Int3 &n = grid_.owned();
-    const int units = grid_.cells()[d] / unit_[d];  // the last one may have more cells
+    const Int3 &n = domain_.cells();
+    const int units = domain_.domain_cells()[d] / unit_[d];  // the last one may have more cells
     sums->assign(units, 0);
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) {
-        const int plane = grid_.layout().begin[d] + (d == 1 ? j : k);
+        const int plane = domain_.layout().begin[d] + (d == 1 ? j : k);
         (*sums)[std::min(plane / unit_[d], units - 1)] += cost(j, k);
       }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, grid_.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, domain_.comm()));
     PetscFunctionReturn(0);
   }
 
   void cut(int d, const std::vector<double> &weights) {
-    const int parts = grid_.processors(d);
+    const int parts = domain_.processors(d);
     const std::vector<int> first = equal_cuts(weights, parts, least_[d]);
     for (int p = 1; p < parts; ++p) starts_[d][p] = first[p] * unit_[d];
   }
@@ -96,9 +97,9 @@ private:
   // The planes of a rank weigh together what the heaviest of the boxes that they go through does.
   void weigh(int d, const std::vector<double> &sums, const std::vector<double> &most, std::vector<double> *weights) {
     const int units = static_cast<int>(sums.size());
-    for (int p = 0; p < grid_.processors(d); ++p) {
+    for (int p = 0; p < domain_.processors(d); ++p) {
       const int begin = starts_[d][p] / unit_[d],
-                end = p + 1 < grid_.processors(d) ? starts_[d][p + 1] / unit_[d] : units;
+                end = p + 1 < domain_.processors(d) ? starts_[d][p + 1] / unit_[d] : units;
       double sum = 0;
       for (int u = begin; u < end; ++u) sum += sums[u];
       for (int u = begin; u < end; ++u) (*weights)[u] = sums[u] * most[p] / sum;
@@ -108,11 +109,11 @@ private:
   // The heaviest box at every place along y and z, if ranks began at starts_.
   PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
     PetscFunctionBeginUser;
-    const Int3 &begin = grid_.layout().begin, &n = grid_.owned();
+    const Int3 &begin = domain_.layout().begin, &n = domain_.cells();
     const auto place_along = [&](int d, int i) {
       return static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), i) - starts_[d].begin()) - 1;
     };
-    const Int3 me = grid_.place_of(grid_.rank());
+    const Int3 me = domain_.place_of(domain_.rank());
     std::vector<PetscSFNode> owners;
     std::vector<double> parts;
     const int y0 = place_along(1, begin[1]), y1 = place_along(1, begin[1] + n[1] - 1);
@@ -123,27 +124,27 @@ private:
         for (int k = std::max(starts_[2][z], begin[2]); k < std::min(starts_[2][z + 1], begin[2] + n[2]); ++k)
           for (int j = std::max(starts_[1][y], begin[1]); j < std::min(starts_[1][y + 1], begin[1] + n[1]); ++j)
             sum += cost(j - begin[1], k - begin[2]);
-        owners.push_back({grid_.rank_at({me[0], y, z}), 0});
+        owners.push_back({domain_.rank_at({me[0], y, z}), 0});
         parts.push_back(sum);
       }
     SfHandle boxes;
     double box = 0;
-    PetscCall(PetscSFCreate(grid_.comm(), boxes.put()));
+    PetscCall(PetscSFCreate(domain_.comm(), boxes.put()));
     PetscCall(PetscSFSetGraph(boxes.get(), 1, static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,
                               owners.data(), PETSC_COPY_VALUES));
     PetscCall(PetscSFReduceBegin(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
     PetscCall(PetscSFReduceEnd(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
     for (int d = 1; d < 3; ++d) {
       std::vector<double> &heaviest = (*most)[d];
-      heaviest.assign(grid_.processors(d), 0);
+      heaviest.assign(domain_.processors(d), 0);
       heaviest[me[d]] = box;
       PetscCallMPI(
-          MPI_Allreduce(MPI_IN_PLACE, heaviest.data(), grid_.processors(d), MPI_DOUBLE, MPI_MAX, grid_.comm()));
+          MPI_Allreduce(MPI_IN_PLACE, heaviest.data(), domain_.processors(d), MPI_DOUBLE, MPI_MAX, domain_.comm()));
     }
     PetscFunctionReturn(0);
   }
 
-  const Grid &grid_;
+  const Domain &domain_;
   std::vector<double> cost_;  ///< of owned rows
   double own_ = 0;            ///< their sum
   std::array<std::vector<int>, 3> starts_;
@@ -159,7 +160,7 @@ PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *
   char text[120];
   Balance balance(solver);
   PetscCall(balance.find(spec, &before, &after));
-  if (solver.grid().ranks() == 1)
+  if (solver.domain().ranks() == 1)
     std::snprintf(text, sizeof text, "balance: one rank has all cells");
   else if (spec->starts[0].empty())
     std::snprintf(text, sizeof text,

@@ -1,6 +1,7 @@
 // -balance: where ranks begin so that they have about as much to do, rather than as many cells.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "solver/solver.hpp"
 
 namespace eulastic {

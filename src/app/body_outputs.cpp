@@ -26,14 +26,14 @@ PetscErrorCode Outputs::measure_drift(Measured *measured) {
     m.volume_drift = std::max(m.volume_drift, drift);
     if (resolved(first) && (drift > resolved_one.drift || resolved_one.label == 0)) resolved_one = {drift, body.label};
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m.volume_drift, 1, MPI_DOUBLE, MPI_MAX, grid_->comm()));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &resolved_one, 1, MPI_DOUBLE_INT, MPI_MAXLOC, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m.volume_drift, 1, MPI_DOUBLE, MPI_MAX, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &resolved_one, 1, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
   m.resolved_drift = resolved_one.drift;
   m.drifting_body = resolved_one.label;
   Real3 place{};
   for (const BodyMeasure &body : m.bodies)
     if (body.label == m.drifting_body) place = body.centroid;
-  PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   PetscFunctionReturn(0);
 }
 
@@ -54,7 +54,7 @@ PetscErrorCode Outputs::measure_strains(Measured *measured) {
   }
   for (Largest &l : largest)
     if (l.label == 0) l = {-HUGE_VAL, INT_MAX};
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE_INT, MPI_MAXLOC, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
   for (Largest &l : largest)
     if (l.label == INT_MAX) l = {};
   m.stretch = largest[0];
@@ -66,7 +66,7 @@ PetscErrorCode Outputs::measure_strains(Measured *measured) {
 double Outputs::largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
                                 std::size_t b) const {
   if (config_.species[bodies[b].species].is_membrane()) return b < surfaces.size() ? surfaces[b].largest_stretch : 1;
-  return std::sqrt(stretch_squared(bodies[b].trace_max, grid_->dimension()));
+  return std::sqrt(stretch_squared(bodies[b].trace_max, domain_->dimension()));
 }
 
 std::string Outputs::strain_warning() {
@@ -100,7 +100,7 @@ PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
   long small = 0;
   PetscFunctionBeginUser;
   for (const double volume : solver_->bodies().first_volumes()) small += !resolved(volume);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &small, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &small, 1, MPI_LONG, MPI_SUM, domain_->comm()));
   *line = small == 0 ? ""
                      : "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) +
                            " of " + std::to_string(solver_->bodies().bodies()) +
@@ -156,7 +156,7 @@ PetscErrorCode Outputs::list_bodies(Summary *summary) const {
   std::vector<BodyMeasure> bodies;
   std::vector<SurfaceMeasure> surfaces;
   PetscFunctionBeginUser;
-  const MPI_Comm comm = grid_->comm();
+  const MPI_Comm comm = domain_->comm();
   const int all = solver_->bodies().bodies();
   PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.bodies, &bodies));
   if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.surfaces, &surfaces));

@@ -42,7 +42,7 @@ public:
   }
 
   void grid(Report &report, int ranks) const {
-    const Int3 &n = config_.grid.cells, parts = Grid::decompose(config_.grid, ranks);
+    const Int3 &n = config_.grid.cells, parts = Domain::decompose(config_.grid, ranks);
     const double cells = double(n[0]) * n[1] * n[2];
     report.line("cells", "%d x %d x %d = %.0f", n[0], n[1], n[2], cells);
     if (dimension_ == 2)
@@ -58,7 +58,7 @@ public:
                   double(std::numeric_limits<PetscInt>::max()));
     if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.acm_of_the_paper() &&
         config_.method.acm_coarse)
-      report.line("V-cycle", "%s", Multigrid::shares(Grid::planned(config_.grid, ranks)).c_str());
+      report.line("V-cycle", "%s", Multigrid::shares(Domain::planned(config_.grid, ranks)).c_str());
     const double bytes = bytes_per_rank(config_, parts);
     report.line("memory", "%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
                 1e-9 * bytes, 1e-9 * memory_limit());
@@ -72,12 +72,12 @@ public:
   }
 
   void boxes(Report &report, const Int3 &parts) const {
-    const Int3 box = Grid::largest_box(config_.grid, parts);
+    const Int3 box = Domain::largest_box(config_.grid, parts);
     double own = 1, travelling = 1, in_memory = 1;
     int around = 1;
     for (int d = 0; d < 3; ++d) {
       own *= box[d];
-      travelling *= box[d] + (parts[d] > 1 ? 2 * Grid::stencil_width : 0);
+      travelling *= box[d] + (parts[d] > 1 ? 2 * Box::stencil_width : 0);
       in_memory *= box[d] + (d < dimension_ ? 2 * config_.grid.ghosts : 0);
       around *= std::min(parts[d], 3);
     }

@@ -2,12 +2,13 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "grid/box.hpp"
 
 #include <string>
 
 namespace eulastic {
 
-/// Derived numbers of a parsed `config` that fits on `ranks` ranks (Grid::why_not): grid, bodies, estimated flow,
+/// Derived numbers of a parsed `config` that fits on `ranks` ranks (Domain::why_not): grid, bodies, estimated flow,
 /// dimensionless numbers, limits of the time step, memory. One `name: value` a line.
 std::string check_report(const Config &config, int ranks);
 

@@ -66,7 +66,7 @@ std::string find_absurd_feeder(const std::vector<long> &inside, int feeders) {
   return {};
 }
 
-std::string find_absurd_marker(const std::vector<double> &packed, const Grid &grid, int bodies, int phases) {
+std::string find_absurd_marker(const std::vector<double> &packed, const Box &box, int bodies, int phases) {
   const std::string name = "membrane_markers";
   for (std::size_t n = 0; n < packed.size(); ++n) {
     const double value = packed[n];
@@ -75,7 +75,7 @@ std::string find_absurd_marker(const std::vector<double> &packed, const Grid &gr
     if (part == 0 && !is_within(value, 0, most)) return absurd(name, value, "numbers from 0 on");
     if (part == 1 && !is_within(value, 0, bodies)) return absurd(name, value, "the label of a body");
     if (part == 2 && !is_within(value, 0, phases - 1)) return absurd(name, value, "the number of a phase");
-    if (part >= 3 && part < 6 && !is_within(value, 0, grid.cells()[part - 3] - 1))
+    if (part >= 3 && part < 6 && !is_within(value, 0, box.domain_cells()[part - 3] - 1))
       return absurd(name, value, "a cell of the box");
     if (part >= 6 && part < 9 && !is_within(value, -1, 1)) return absurd(name, value, "a position within its cell");
   }

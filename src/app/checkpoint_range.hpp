@@ -1,7 +1,7 @@
 // Ranges of what a checkpoint holds: a file whose checksums are right may still hold numbers that no run has saved.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 #include "io/checkpoint.hpp"
 
 #include <string>
@@ -18,6 +18,6 @@ std::string find_absurd_link(const std::vector<long> &like, int placed);
 std::string find_absurd_body(const std::vector<long> &cells, const std::vector<double> &first_volumes);
 std::string find_absurd_feeder(const std::vector<long> &inside, int feeders);
 /// Markers of membranes, packed as by SurfaceMarker::packed().
-std::string find_absurd_marker(const std::vector<double> &packed, const Grid &grid, int bodies, int phases);
+std::string find_absurd_marker(const std::vector<double> &packed, const Box &box, int bodies, int phases);
 
 }  // namespace eulastic

@@ -31,7 +31,7 @@ void Checkpoints::start(const ParseResult &parsed, const std::string &directory,
 
 void Checkpoints::accept(const std::string &directory) {
   directory_ = directory;
-  if (!goes_on_ || solver_->grid().rank() > 0) return;
+  if (!goes_on_ || solver_->domain().rank() > 0) return;
   std::error_code error;
   for (const std::string &path : list_checkpoints(directory_))  // newest first: what is left always fits the series
     if (checkpoint_step(path) > last_step_) fs::remove(path, error);
@@ -40,7 +40,7 @@ void Checkpoints::accept(const std::string &directory) {
 int Checkpoints::wishes() const {
   const double now = MPI_Wtime();
   int wishes = signal_caught() ? wish_signal : 0;
-  if (solver_->grid().rank() > 0) return wishes;
+  if (solver_->domain().rank() > 0) return wishes;
   if (control_.keep > 0 && control_.wall_minutes > 0 && now - last_wall_ >= 60 * control_.wall_minutes)
     wishes |= wish_checkpoint;
   if (control_.stop_after_minutes > 0 && now - begin_ >= 60 * control_.stop_after_minutes) wishes |= wish_wall_limit;
@@ -50,7 +50,7 @@ int Checkpoints::wishes() const {
 PetscErrorCode Checkpoints::after_step(const RunPosition &position, std::string *exit_reason, Stop *stop) {
   PetscFunctionBeginUser;
   int wish = wishes();
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wish, 1, MPI_INT, MPI_BOR, solver_->grid().comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wish, 1, MPI_INT, MPI_BOR, solver_->domain().comm()));
   if (wish & wish_wall_limit) *exit_reason = "wall_limit";
   if (wish & wish_signal) *exit_reason = "signal";
   if (wish == 0 && !due_.at(solver_->state().time)) PetscFunctionReturn(0);
@@ -76,8 +76,8 @@ PetscErrorCode Checkpoints::write(RunPosition position, Stop *stop) {
   PetscCall(guards_->check(*solver_, outputs_->measured(), stop));
   if (*stop) PetscFunctionReturn(0);
   PetscCall(outputs_->sync(&position.outputs));
-  PetscCallMPI(MPI_Bcast(&position.wall_seconds, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
-  PetscCallMPI(MPI_Bcast(&position.wall_seconds_total, 1, MPI_DOUBLE, 0, solver_->grid().comm()));
+  PetscCallMPI(MPI_Bcast(&position.wall_seconds, 1, MPI_DOUBLE, 0, solver_->domain().comm()));
+  PetscCallMPI(MPI_Bcast(&position.wall_seconds_total, 1, MPI_DOUBLE, 0, solver_->domain().comm()));
   PetscCall(save_state(solver_, position, options_, directory_ + "/" + checkpoint_name(static_cast<long>(state.step))));
   last_step_ = state.step;
   due_.last_time = state.time;
@@ -90,7 +90,7 @@ std::string Checkpoints::newest() const { return last_step_ < 0 ? "" : checkpoin
 
 PetscErrorCode Checkpoints::remove_old() {
   PetscFunctionBeginUser;
-  if (solver_->grid().rank() > 0) PetscFunctionReturn(0);
+  if (solver_->domain().rank() > 0) PetscFunctionReturn(0);
   const std::vector<std::string> paths = list_checkpoints(directory_);
   std::error_code error;  // one that stays does no harm
   for (std::size_t n = std::max(control_.keep, 1L); n < paths.size(); ++n) fs::remove(paths[n], error);

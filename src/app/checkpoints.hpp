@@ -4,6 +4,7 @@
 #include "app/due.hpp"
 #include "app/restart.hpp"
 #include "app/saved_state.hpp"
+#include "base/petsc.hpp"
 
 namespace eulastic {
 

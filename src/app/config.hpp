@@ -4,7 +4,7 @@
 #include "bodies/placement.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 #include "io/snapshot_format.hpp"
 #include "physics/fluid.hpp"
 #include "physics/initial_velocity.hpp"

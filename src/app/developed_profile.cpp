@@ -3,6 +3,7 @@
 #include "app/openings.hpp"
 #include "base/petsc.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 
 #include <petscksp.h>
 
@@ -46,11 +47,11 @@ struct OpenCells {
 };
 
 // Collective.
-PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const RigidFaces *rigid, int d, bool high,
+PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const RigidFaces *rigid, int d, bool high,
                                OpenCells *cells) {
   const SidePlane plane(d);
   const int na = config.grid.cells[plane.a], nb = config.grid.cells[plane.b];
-  const Int3 &n = grid.owned(), &begin = grid.layout().begin;
+  const Int3 &n = domain.cells(), &begin = domain.layout().begin;
   PetscFunctionBeginUser;
   cells->all.assign(std::size_t(OpenCells::values) * na * nb, 0);
   if (!rigid) {
@@ -62,7 +63,7 @@ PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const Rig
     return cells->all.data() + OpenCells::values * cell;
   };
   Int3 first{}, last = n;
-  if (!grid.touches(d, high)) last = {};
+  if (!domain.touches(d, high)) last = {};
   first[d] = high ? n[d] : 0;
   last[d] = last[d] > 0 ? first[d] + 1 : 0;
   for (int k = first[2]; k < last[2]; ++k)
@@ -81,24 +82,25 @@ PetscErrorCode find_open_cells(const Config &config, const Grid &grid, const Rig
       }
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cells->all.data(), static_cast<int>(cells->all.size()), MPI_DOUBLE, MPI_SUM,
-                             grid.comm()));
+                             domain.comm()));
   PetscFunctionReturn(0);
 }
 
 // The part of a side that no rigid body covers, from the solid fractions of the cells beside it. Collective.
-PetscErrorCode measure_open_part(const Grid &grid, const std::vector<Phase> &phases, int d, bool high, double *part) {
+PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> &phases, int d, bool high,
+                                 double *part) {
   PetscFunctionBeginUser;
   ExactSums covered(1);
-  for_points(grid.cells_at(d, high, 1), [&](int i, int j, int k) {
+  for_points(domain.cells_at(d, high, 1), [&](int i, int j, int k) {
     double solid = 0;
     for (const Phase &phase : phases)
       if (phase.material.is_rigid()) solid += phase.fraction[0](i, j, k);
     covered.add(0, std::min(1.0, solid));
   });
   double sum, faces = 1;
-  PetscCall(covered.reduce(grid.comm(), &sum));
+  PetscCall(covered.reduce(domain.comm(), &sum));
   for (int e = 0; e < 3; ++e)
-    if (e != d) faces *= grid.cells()[e];
+    if (e != d) faces *= domain.domain_cells()[e];
   *part = 1 - sum / faces;
   PetscFunctionReturn(0);
 }
@@ -173,7 +175,7 @@ PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideP
 
 }  // namespace
 
-PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid,
+PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
                               const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; ++d)
@@ -182,7 +184,7 @@ PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const Rigi
       const bool developed = config.openings[d][high].profile == "developed";
       if (side.kind != SideKind::inflow || !(developed || rigid)) continue;
       OpenCells open;
-      PetscCall(find_open_cells(config, grid, rigid, d, high, &open));
+      PetscCall(find_open_cells(config, domain, rigid, d, high, &open));
       SideProfile profile;
       if (developed) PetscCall(develop(config, d, open, &profile));
       if (profile.empty() && side.profile) profile = *side.profile;
@@ -196,7 +198,7 @@ PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const Rigi
       }
       // A flow rate is that of the whole side, a velocity the mean over its open part.
       double part = 1;
-      if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(grid, phases, d, high, &part));
+      if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
       for (double &value : profile) value *= part * double(profile.size()) / sum;
       side.profile = std::make_shared<const SideProfile>(std::move(profile));
     }

@@ -32,7 +32,7 @@ bool beyond(double value, double limit) { return limit > 0 && !(value <= limit);
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
   const char *broken = solver.limits(extremes).broken(state.dt);
-  return {"nonfinite", where(state, place_of_cell(solver.grid(), extremes.first_bad)) + "a field is not finite; " +
+  return {"nonfinite", where(state, place_of_cell(solver.domain(), extremes.first_bad)) + "a field is not finite; " +
                            text("dt = %.3g, ", state.dt) +
                            (broken ? text("beyond the %s limit; lower -time_step", broken)
                                    : std::string("within all known limits; lower -time_step, more -grid_cells"))};
@@ -64,11 +64,12 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
     PetscFunctionReturn(0);
   }
   double courant = 0;
-  for (int d = 0; d < solver.grid().dimension(); ++d) courant += extremes.speed[d] * dt / solver.grid().spacing()[d];
+  for (int d = 0; d < solver.domain().dimension(); ++d)
+    courant += extremes.speed[d] * dt / solver.domain().spacing()[d];
   const bool still = state.time + dt == state.time;
   if (!still && !beyond(courant, control_.cfl)) PetscFunctionReturn(0);
   Real3 place;
-  PetscCall(place_of_speed(solver.grid(), state.velocity, &place));
+  PetscCall(place_of_speed(solver.domain(), state.velocity, &place));
   stop->reason = "guard";
   stop->message =
       where(state, place) +
@@ -84,8 +85,8 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   const State &state = solver.state();
   if (state.step == 0) PetscFunctionReturn(0);
   // Flow that has come to rest has no scale: no smaller one than a Courant number of 1e-6, as in the solver.
-  const Real3 &h = solver.grid().spacing();
-  const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.grid().dimension()) / state.dt;
+  const Real3 &h = solver.domain().spacing();
+  const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.domain().dimension()) / state.dt;
   const double divergence = m.flow.divergence_rms * std::min(1.0, m.flow.speed_max / rest);
   std::string what;
   Real3 place{};
@@ -114,7 +115,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
     place = m.drifting_place;
   }
   if (what.empty()) PetscFunctionReturn(0);
-  if (find) PetscCall(find(solver.grid(), state.velocity, &place));
+  if (find) PetscCall(find(solver.domain(), state.velocity, &place));
   PetscCall(check_finite(solver, stop));  // a NaN is called what it is
   if (!*stop) *stop = {"guard", where(state, place) + what};
   PetscFunctionReturn(0);
@@ -125,7 +126,7 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   if (!solver.crowded().empty()) *stop = crowded(solver);
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
-  PetscCall(measure_extremes(solver.grid(), solver.state().velocity, solver.state().phases, &extremes));
+  PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "diagnostics/surface_loads.hpp"

@@ -5,7 +5,9 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
 #include "bodies/placement.hpp"
+#include "grid/domain.hpp"
 #include "io/hdf5_file.hpp"
 #include "solver/state.hpp"
 
@@ -13,7 +15,7 @@ namespace eulastic {
 
 class InitialState {
 public:
-  InitialState(const Config &config, const Grid &grid) : config_(&config), grid_(&grid) {}
+  InitialState(const Config &config, const Domain &domain) : config_(&config), domain_(&domain) {}
 
   // All members are collective. What is wrong with the file is an error of fail_together().
 
@@ -40,7 +42,7 @@ private:
   PetscErrorCode fail(const std::string &problem) const;
 
   const Config *config_;
-  const Grid *grid_;
+  const Domain *domain_;
   Hdf5File file_;
   bool open_ = false, has_bodies_ = false;
 };

@@ -1,6 +1,7 @@
 #include "app/memory.hpp"
 
 #include "field/open_sides.hpp"
+#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "solver/solver.hpp"
 
@@ -73,7 +74,7 @@ double fields(const Config &config) {
 }
 
 double ghosted_cells(const Config &config, const Int3 &parts) {
-  const Int3 box = Grid::largest_box(config.grid, parts);
+  const Int3 box = Domain::largest_box(config.grid, parts);
   double cells = 1;
   for (int d = 0; d < 3; ++d) cells *= box[d] + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
   return cells;
@@ -133,7 +134,7 @@ PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *ref
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node));
   PetscCallMPI(MPI_Comm_size(node, &node_ranks));
   PetscCallMPI(MPI_Comm_free(&node));
-  const Int3 parts = Grid::decompose(config.grid, ranks);
+  const Int3 parts = Domain::decompose(config.grid, ranks);
   const double share = config.guard.memory, limit = memory_limit();
   const double needed = bytes_per_rank(config, parts) * node_ranks;
   const double values = ghosted_cells(config, parts) * tensor_fields(config);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
 #include "field/rigid_faces.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -14,7 +16,7 @@ std::string resolve_openings(Config *config);
 /// is 1. Developed ones: the shape of the steady flow along the side, from one Poisson problem on its plane, to
 /// round-off; uniform where nothing holds the fluid. Every rank solves it. Collective; `wrong`: one line, or left
 /// empty.
-PetscErrorCode shape_profiles(const Config &config, const Grid &grid, const RigidFaces *rigid,
+PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
                               const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong);
 
 }  // namespace eulastic

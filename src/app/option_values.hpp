@@ -1,7 +1,7 @@
 // Strict reading and shortest exact writing of option values: what each type of member accepts.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <array>
 #include <limits>

@@ -11,9 +11,9 @@
 
 namespace eulastic {
 
-void Outputs::start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position) {
+void Outputs::start(const Config &config, const Domain &domain, Solver *solver, const OutputsPosition &position) {
   config_ = config;
-  grid_ = &grid;
+  domain_ = &domain;
   solver_ = solver;
   series_due_ = {config.output.series_interval, position.series_time};
   snapshot_due_ = {config.output.snapshot_interval, position.snapshot_time};
@@ -37,12 +37,12 @@ void Outputs::start(const Config &config, const Grid &grid, Solver *solver, cons
 
 PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition &position, bool same_directory) {
   PetscFunctionBeginUser;
-  const MPI_Comm comm = grid_->comm();
+  const MPI_Comm comm = domain_->comm();
   directory_ = directory;
   PetscCall(series_.open(comm, directory + "/series.csv",
-                         series_columns(crossed_sides(config_.sides, *grid_), vessel_flows(config_, 0, {}, {})),
+                         series_columns(crossed_sides(config_.sides, *domain_), vessel_flows(config_, 0, {}, {})),
                          same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config_.samples, *grid_, directory, probes_time_, position.profile_time));
+  PetscCall(samples_.open(config_.samples, *domain_, directory, probes_time_, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
@@ -52,7 +52,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   }
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotOutput>(*grid_, directory, config_.output.snapshot_format);
+    snapshots_ = std::make_unique<SnapshotOutput>(*domain_, directory, config_.output.snapshot_format);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
@@ -163,8 +163,8 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   if (bodies_file_ && summary.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
   summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];
-  summary.cells = static_cast<long>(grid_->cell_count());
-  summary.ranks = grid_->ranks();
+  summary.cells = static_cast<long>(domain_->domain_cell_count());
+  summary.ranks = domain_->ranks();
   summary.threads = config_.threads;
   summary.steps = static_cast<long>(state.step);
   summary.time = state.time;
@@ -206,15 +206,15 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   counted[0] = double(solver_->bytes());
   for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
   counted[2] = double(state.markers.size());
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, grid_->comm()));
-  summary.bytes_per_cell = counted[0] / grid_->cell_count();
-  summary.active_fraction = counted[1] / grid_->cell_count();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
+  summary.bytes_per_cell = counted[0] / domain_->domain_cell_count();
+  summary.active_fraction = counted[1] / domain_->domain_cell_count();
   PetscCall(state_hash(solver_, &summary.state_hash));
   const double evolved = (counted[1] + counted[2]) * double(state.step);
   const Evidence evidence{budget, energy_unknown_, measured, double(state.forgotten), evolved};
   verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};
   summary.verdicts = verdicts_;
-  PetscCall(eulastic::write_summary(grid_->comm(), directory_ + "/summary.json", summary));
+  PetscCall(eulastic::write_summary(domain_->comm(), directory_ + "/summary.json", summary));
   PetscFunctionReturn(0);
 }
 

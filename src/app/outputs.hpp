@@ -7,8 +7,10 @@
 #include "app/sample_files.hpp"
 #include "app/snapshot_output.hpp"
 #include "app/vessels.hpp"
+#include "base/petsc.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/side_flows.hpp"
+#include "grid/domain.hpp"
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
 #include "io/summary.hpp"
@@ -29,7 +31,7 @@ struct OutputsPosition {
 class Outputs {
 public:
   /// Can measure from here on. `position`: how far the run had come that goes on.
-  void start(const Config &config, const Grid &grid, Solver *solver, const OutputsPosition &position);
+  void start(const Config &config, const Domain &domain, Solver *solver, const OutputsPosition &position);
   /// Opens the files in `directory`, which exists and is ours. In that of a run that goes on its files are cut back to
   /// `position`.
   PetscErrorCode open(const std::string &directory, const OutputsPosition &position, bool same_directory);
@@ -66,8 +68,8 @@ public:
   const std::vector<Summary::Verdict> &verdicts() const { return verdicts_; }
 
 private:
-  int few_cells() const { return grid_->dimension() == 3 ? 8 : 4; }
-  bool resolved(double volume) const { return volume >= few_cells() * grid_->cell_volume(); }
+  int few_cells() const { return domain_->dimension() == 3 ? 8 : 4; }
+  bool resolved(double volume) const { return volume >= few_cells() * domain_->cell_volume(); }
   /// Of these bodies, with the loads that were measured.
   std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                   const std::vector<SurfaceMeasure> &surfaces) const;
@@ -98,7 +100,7 @@ private:
   Config config_;
   double probes_time_ = -1;  ///< until which those of a run that goes on stay
   bool membranes_ = false;
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   Solver *solver_ = nullptr;
   std::string directory_;
   Series series_;

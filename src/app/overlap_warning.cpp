@@ -5,6 +5,7 @@
 #include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
 #include "bodies/shapes.hpp"
+#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 
 #include <algorithm>
@@ -157,12 +158,12 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   GridSpec spec = config.grid;
   spec.processors = {};
   spec.starts = {};
-  const bool share = Grid::why_not(spec, ranks).empty();
-  const Grid grid = Grid::planned(spec, share ? ranks : 1);
-  const Layout box = share || rank == 0 ? grid.layout_of(rank) : Layout{};
+  const bool share = Domain::why_not(spec, ranks).empty();
+  const Domain domain = Domain::planned(spec, share ? ranks : 1);
+  const Layout box = share || rank == 0 ? domain.layout_of(rank) : Layout{};
   std::vector<Places> near(config.species.size());
   for (std::size_t s = 0; s < near.size(); ++s)
-    PetscCall(bring_near(comm, grid, config.species[s], config.places[s], &near[s]));
+    PetscCall(bring_near(comm, domain, config.species[s], config.places[s], &near[s]));
   Overlap first;
   std::vector<int> overlaps;
   if (may_overlap(config.species, config.places)) overlaps = find_overlaps(config.species, near, config.grid, &first);

@@ -233,7 +233,7 @@ std::string read_sources(std::vector<Source> *sources, Config *config, std::vect
   if (config->output.series_interval == 0) config->output.series_interval = config->time.end / 200;
   const Method &method = config->method;
   const bool paper = method.interface == InterfaceScheme::weno5 && method.exterior == SolidExterior::identity;
-  if (paper || config->species.empty()) config->grid.ghosts = Grid::stencil_width;
+  if (paper || config->species.empty()) config->grid.ghosts = Box::stencil_width;
   return validate(config);
 }
 

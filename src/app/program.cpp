@@ -8,6 +8,7 @@
 #include "base/message_keeper.hpp"
 #include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
+#include "grid/domain.hpp"
 
 #include <cstdio>
 
@@ -48,7 +49,7 @@ int act(ParseResult &parsed) {
     parsed.error =
         "-balance: -check_only on more than one rank speaks of equal parts only, a run cuts by what its fields hold; "
         "accepted: -balance false with it";
-  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Grid::why_not(parsed.config.grid, ranks) : "";
+  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Domain::why_not(parsed.config.grid, ranks) : "";
   if (!parsed.error.empty()) {
     print_error(parsed.error);
     return exit_usage;

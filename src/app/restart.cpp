@@ -62,7 +62,7 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   CheckpointFile file;
   std::string options;
   PetscFunctionBeginUser;
-  PetscCall(file.open(solver->grid().comm(), path));
+  PetscCall(file.open(solver->domain().comm(), path));
   PetscCall(file.read_options(&options));
   *refusal = changed_option(options, parsed);
   if (!refusal->empty()) PetscFunctionReturn(0);
@@ -72,7 +72,7 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
     position->dt = 0;  // chosen anew at once
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(
-        solver->grid().comm(), stderr, "eulastic: warning: %s\n",
+        solver->domain().comm(), stderr, "eulastic: warning: %s\n",
         one_line(path + " was written by version " + file.version() + ": the same bits are not certain").c_str());
   PetscFunctionReturn(0);
 }
@@ -142,7 +142,7 @@ std::string changed_option(const std::string &before, const ParseResult &now) {
 
 PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *position, std::string *path,
                        std::string *refusal) {
-  const MPI_Comm comm = solver->grid().comm();
+  const MPI_Comm comm = solver->domain().comm();
   const fs::path source = parsed.config.checkpoint.restart;
   std::error_code error;
   const bool is_directory = on_rank_0([&] { return fs::is_directory(source, error); });

@@ -3,6 +3,7 @@
 
 #include "app/parse_options.hpp"
 #include "app/saved_state.hpp"
+#include "base/petsc.hpp"
 
 namespace eulastic {
 

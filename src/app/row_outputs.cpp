@@ -25,13 +25,13 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const bool again = m.time == state.time;  // with the same velocity and pressure
   if (!again || viscosity) {
     PetscCall(measure_flow(
-        *grid_, state.velocity,
+        *domain_, state.velocity,
         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
     PetscCall(solver_->add_rigid_dissipation(&m.flow.viscous_dissipation));
   }
-  PetscCall(measure_phases(*grid_, *phases, &m.flow));
+  PetscCall(measure_phases(*domain_, *phases, &m.flow));
   if (solver_->bodies().bodies() > 0)
-    PetscCall(solver_->bodies().measure(*grid_, *phases, state.velocity, strain_energy, &m.bodies));
+    PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
   if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
@@ -60,15 +60,15 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
                               &config_.sides, state.time,      viscosity};
-  PetscCall(measure_energy_rates(*grid_, state.velocity, *phases, numbers, &energy.rates));
+  PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates));
   double power = 0;
-  PetscCall(species_force_power(*grid_, *phases, state.time, fluid.density, state.velocity, &power));
+  PetscCall(species_force_power(*domain_, *phases, state.time, fluid.density, state.velocity, &power));
   energy.rates.force_power += power;
   PetscCall(solver_->stretch_power(&power));
   energy.rates.force_power += power;
   for (const RigidLoad &load : measured.loads) energy.rates.wall_power += load.power;
-  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, fluid.density, state.velocity, state.pressure,
-                               &row->sides));
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.density, state.velocity,
+                               state.pressure, &row->sides));
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
   energy.starts = config_.method.staggered() && config_.time.step == 0 && state.step <= starting_steps;
@@ -83,9 +83,9 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
 // Schwarz.
 void Outputs::set_energy_scales(EnergyState *energy) const {
   double modulus = 0, volume = 1, shortest = HUGE_VAL;
-  for (int d = 0; d < grid_->dimension(); ++d) {
-    volume *= grid_->spec().length[d];
-    shortest = std::min(shortest, grid_->spacing()[d]);
+  for (int d = 0; d < domain_->dimension(); ++d) {
+    volume *= domain_->domain_shape().length[d];
+    shortest = std::min(shortest, domain_->spacing()[d]);
   }
   const State &state = solver_->state();
   const auto size = [](const Real3 &f) { return std::hypot(f[0], f[1], f[2]); };
@@ -150,7 +150,7 @@ PetscErrorCode Outputs::see_pressure(double dt) {
   const State &state = solver_->state();
   const double share = row_.dt / (row_.dt + dt);
   std::vector<SideFlow> next;
-  PetscCall(measure_side_flows(*grid_, solver_->sides_now(), state.time, config_.fluid.density, state.velocity,
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, config_.fluid.density, state.velocity,
                                state.pressure, &next));
   row_.energy.rates.side_power = 0;
   for (std::size_t s = 0; s < next.size(); ++s) {

@@ -17,6 +17,7 @@
 #include "base/one_line.hpp"
 #include "base/progress.hpp"
 #include "base/rank_zero.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 #include "io/fail_together.hpp"
 #include "io/run_directory.hpp"
@@ -72,7 +73,7 @@ std::string thread_warning(int threads) {
 // Of the scene at the start.
 PetscErrorCode print_warnings(const Config &config, const std::string &overlap, const Run &run) {
   PetscFunctionBeginUser;
-  const MPI_Comm comm = run.solver.grid().comm();
+  const MPI_Comm comm = run.solver.domain().comm();
   std::string unresolved;
   print_warning(comm, overlap);
   PetscCall(run.outputs.unresolved_bodies(&unresolved));
@@ -96,7 +97,7 @@ PetscErrorCode check_measured(Run *run) {
   PetscFunctionBeginUser;
   const Measured *row = run->outputs.take_row();
   if (row == nullptr) PetscFunctionReturn(0);
-  print_warning(run->solver.grid().comm(), run->outputs.strain_warning());
+  print_warning(run->solver.domain().comm(), run->outputs.strain_warning());
   PetscCall(run->guards.check(run->solver, *row, &run->stop));
   PetscFunctionReturn(0);
 }
@@ -106,7 +107,7 @@ PetscErrorCode open_outputs(Run *run) {
   PetscFunctionBeginUser;
   ParseResult whole = run->parsed;
   if (run->in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
-  PetscCall(write_text_file(run->solver.grid().comm(), run->directory.file("options.txt"), options_text(whole)));
+  PetscCall(write_text_file(run->solver.domain().comm(), run->directory.file("options.txt"), options_text(whole)));
   PetscCall(run->outputs.open(run->directory.path(), run->position.outputs, run->in_place));
   PetscFunctionReturn(0);
 }
@@ -141,7 +142,7 @@ PetscErrorCode accept(Run *run) {
   if (!run->directory.pending()) PetscFunctionReturn(0);
   PetscCall(run->guards.check_finite(run->solver, &run->stop));
   if (run->stop) PetscFunctionReturn(0);
-  PetscCall(run->directory.accept(run->solver.grid().comm()));
+  PetscCall(run->directory.accept(run->solver.domain().comm()));
   run->checkpoints.accept(run->directory.path());
   if (run->in_place)
     PetscCall(open_outputs(run));
@@ -163,7 +164,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
       PetscCall(control->choose(&solver, run->guards, &dt, &run->stop, &warning));
     }
     if (run->stop) {
-      print_warning(solver.grid().comm(), warning);
+      print_warning(solver.domain().comm(), warning);
       break;
     }
     run->position.dt = control->dt();
@@ -188,7 +189,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
       PetscCall(control->forget_unresolved(&solver, &warning));
       PetscCall(solver.step(dt, timed(&Outputs::see_middle), timed(&Outputs::see_pressure)));
     }
-    print_warning(solver.grid().comm(), warning);
+    print_warning(solver.domain().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin - looked;
     run->position.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
     PetscCall(accept(run));
@@ -213,7 +214,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
 }
 
 // -balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
-PetscErrorCode balance(const std::string &restarted_from, Grid *grid, Run *run, std::string *line,
+PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *run, std::string *line,
                        std::string *refusal) {
   PetscFunctionBeginUser;
   ParseResult parsed = run->parsed;
@@ -221,15 +222,15 @@ PetscErrorCode balance(const std::string &restarted_from, Grid *grid, Run *run, 
   std::string too_large;
   PetscCall(balance_ranks(run->solver, &config.grid, line));
   if (config.grid.starts[0].empty()) PetscFunctionReturn(0);
-  PetscCall(check_sizes(grid->comm(), config, &too_large));
+  PetscCall(check_sizes(domain->comm(), config, &too_large));
   if (!too_large.empty()) {
     *line += "; the even split stays: " + too_large;
     PetscFunctionReturn(0);
   }
   run->solver = {};
   run->position = {};
-  PetscCall(grid->create(grid->comm(), config.grid));
-  PetscCall(build_scene(config, *grid, &run->solver, refusal));
+  PetscCall(domain->create(domain->comm(), config.grid));
+  PetscCall(build_scene(config, *domain, &run->solver, refusal));
   if (!refusal->empty() || restarted_from.empty()) PetscFunctionReturn(0);
   std::string again;
   config.checkpoint.restart = restarted_from;
@@ -238,39 +239,40 @@ PetscErrorCode balance(const std::string &restarted_from, Grid *grid, Run *run, 
 }
 
 // The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
-PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
+PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   PetscFunctionBeginUser;
   const ParseResult &parsed = run->parsed;
   const Config &config = parsed.config;
-  const Grid &grid = *made;
+  const Domain &domain = *made;
   const std::string &path = config.output.directory, &source = config.checkpoint.restart;
   using Earlier = RunDirectory::Earlier;
   std::string restarted_from, balanced, overlap;
   double thrown_away = 0;
-  PetscCall(build_scene(config, grid, &run->solver, refusal));
-  if (refusal->empty() && source.empty()) PetscCall(find_overlap(grid.comm(), config, &overlap, refusal));
+  PetscCall(build_scene(config, domain, &run->solver, refusal));
+  if (refusal->empty() && source.empty()) PetscCall(find_overlap(domain.comm(), config, &overlap, refusal));
   if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
-  if (refusal->empty() && run->in_place) PetscCall(run->directory.open(grid.comm(), path, Earlier::continued, refusal));
+  if (refusal->empty() && run->in_place)
+    PetscCall(run->directory.open(domain.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
     PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
   if (refusal->empty() && run->in_place) {
     const double now = run->solver.state().time;
-    PetscCall(time_thrown_away(grid.comm(), path, now, &thrown_away));
+    PetscCall(time_thrown_away(domain.comm(), path, now, &thrown_away));
     if (thrown_away > 0 && !config.output.overwrite) *refusal = shorter_end(config, now + thrown_away);
   }
   if (refusal->empty() && config.balance) PetscCall(balance(restarted_from, made, run, &balanced, refusal));
   if (refusal->empty() && !run->in_place)
-    PetscCall(run->directory.open(grid.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
+    PetscCall(run->directory.open(domain.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
                                   refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
-  for (const std::string &warning : parsed.warnings) print_warning(grid.comm(), warning);
-  PetscCall(PetscPrintf(grid.comm(), "%s\n", first_word(config, grid.ranks()).c_str()));
+  for (const std::string &warning : parsed.warnings) print_warning(domain.comm(), warning);
+  PetscCall(PetscPrintf(domain.comm(), "%s\n", first_word(config, domain.ranks()).c_str()));
   for (const auto &lines : {red_cell_lines(config), side_lines(config)})
-    for (const std::string &line : lines) PetscCall(PetscPrintf(grid.comm(), "%s\n", line.c_str()));
-  if (!balanced.empty()) PetscCall(PetscPrintf(grid.comm(), "%s\n", balanced.c_str()));
+    for (const std::string &line : lines) PetscCall(PetscPrintf(domain.comm(), "%s\n", line.c_str()));
+  if (!balanced.empty()) PetscCall(PetscPrintf(domain.comm(), "%s\n", balanced.c_str()));
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
-  run->outputs.start(config, grid, &run->solver, run->position.outputs);
+  run->outputs.start(config, domain, &run->solver, run->position.outputs);
   if (!run->in_place) PetscCall(open_outputs(run));
   PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
   (void)run->outputs.take_row();
@@ -278,12 +280,13 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
   if (source.empty()) PetscCall(print_warnings(config, overlap, *run));
   if (source.empty()) PetscFunctionReturn(0);
-  PetscCall(PetscPrintf(grid.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
+  PetscCall(PetscPrintf(domain.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                         run->solver.state().time, static_cast<long long>(run->solver.state().step)));
   if (thrown_away > 0)
-    PetscCall(PetscPrintf(
-        grid.comm(), "what the directory holds after that, %.3g of simulated time, is thrown away and computed again\n",
-        thrown_away));
+    PetscCall(
+        PetscPrintf(domain.comm(),
+                    "what the directory holds after that, %.3g of simulated time, is thrown away and computed again\n",
+                    thrown_away));
   PetscFunctionReturn(0);
 }
 
@@ -291,9 +294,9 @@ PetscErrorCode begin_run(Grid *made, Run *run, std::string *refusal) {
 PetscErrorCode say_last_word(const Run &run) {
   PetscFunctionBeginUser;
   const State &state = run.solver.state();
-  const MPI_Comm comm = run.solver.grid().comm();
+  const MPI_Comm comm = run.solver.domain().comm();
   const std::string line = last_word(
-      run.parsed, {run.exit_reason, state.time, state.step, run.solver.grid().ranks(), run.checkpoints.newest()});
+      run.parsed, {run.exit_reason, state.time, state.step, run.solver.domain().ranks(), run.checkpoints.newest()});
   for (const Summary::Verdict &verdict : run.outputs.verdicts())
     PetscCall(PetscPrintf(comm, "eulastic: %s\n", verdict_line(verdict).c_str()));
   PetscCall(PetscPrintf(comm, "%s\n", line.c_str()));
@@ -312,19 +315,19 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   if (!refusal->empty()) PetscFunctionReturn(0);
   set_threads(config.threads);
   print_warning(run_communicator(), thread_warning(config.threads));
-  Grid grid;
-  PetscCall(grid.create(run_communicator(), config.grid));
+  Domain domain;
+  PetscCall(domain.create(run_communicator(), config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
   Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
-  PetscCall(begin_run(&grid, &run, refusal));
+  PetscCall(begin_run(&domain, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();
   run.total_before = run.position.wall_seconds_total;
   TimeStepControl control(config.time);
   if (!config.checkpoint.restart.empty()) control.resume(run.position.dt);
-  Progress progress(stdout, Progress::style_of(stdout, grid.rank()),
+  Progress progress(stdout, Progress::style_of(stdout, domain.rank()),
                     {state.time, config.time.end, static_cast<long>(state.step),
-                     config.time.steps_max > 0 ? config.time.steps_max : -1, grid.cell_count()});
+                     config.time.steps_max > 0 ? config.time.steps_max : -1, domain.domain_cell_count()});
   PetscCall(catch_together([&] { return time_loop(config, &control, &progress, &run); }, refusal));
   if (!refusal->empty()) {
     // A full disk may have room for the few bytes that say so.

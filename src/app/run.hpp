@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/parse_options.hpp"
+#include "base/petsc.hpp"
 
 namespace eulastic {
 

@@ -17,17 +17,17 @@ long rows_until(const std::string &path, double end) {
 
 }  // namespace
 
-PetscErrorCode SampleFiles::open(const SampleControl &samples, const Grid &grid, const std::string &directory,
+PetscErrorCode SampleFiles::open(const SampleControl &samples, const Domain &domain, const std::string &directory,
                                  double probes_time, double profile_time) {
   PetscFunctionBeginUser;
-  grid_ = &grid;
+  domain_ = &domain;
   profile_due_ = {samples.profile_interval, profile_time};
   if (!samples.probes.empty()) PetscCall(add({-1, false, samples.probes, {}}, directory, probes_time));
   for (int d = 0; d < 3; ++d) {
     const ProfileSpec &spec = samples.profile[d];
     if (spec.kind == ProfileSpec::Kind::none) continue;
-    std::vector<Real3> points(grid.cells()[d], spec.line);
-    for (int n = 0; n < grid.cells()[d]; ++n) points[n][d] = (n + 0.5) * grid.spacing()[d];
+    std::vector<Real3> points(domain.domain_cells()[d], spec.line);
+    for (int n = 0; n < domain.domain_cells()[d]; ++n) points[n][d] = (n + 0.5) * domain.spacing()[d];
     PetscCall(add({d, spec.kind == ProfileSpec::Kind::mean, points, {}}, directory, profile_time));
   }
   PetscFunctionReturn(0);
@@ -43,7 +43,7 @@ PetscErrorCode SampleFiles::add(File &&of, const std::string &directory, double 
   columns.insert(columns.end(), {"velocity_x", "velocity_y", "velocity_z", "pressure", "solid_fraction"});
   File &file = files_.emplace_back(std::move(of));
   const std::string path = directory + file.name();
-  PetscCall(file.table.open(grid_->comm(), path, columns, grid_->rank() == 0 ? rows_until(path, end) : 0));
+  PetscCall(file.table.open(domain_->comm(), path, columns, domain_->rank() == 0 ? rows_until(path, end) : 0));
   PetscFunctionReturn(0);
 }
 
@@ -76,9 +76,9 @@ PetscErrorCode SampleFiles::write(File &file, double time, const SampledFields &
   PetscFunctionBeginUser;
   std::vector<Sample> samples;
   if (file.mean)
-    PetscCall(sample_planes(*grid_, fields, file.direction, &samples));
+    PetscCall(sample_planes(*domain_, fields, file.direction, &samples));
   else
-    PetscCall(sample_points(*grid_, fields, file.points, &samples));
+    PetscCall(sample_points(*domain_, fields, file.points, &samples));
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const Sample &s = samples[n];
     const Real3 &x = file.points[n];

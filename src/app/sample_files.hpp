@@ -3,7 +3,9 @@
 
 #include "app/config.hpp"
 #include "app/due.hpp"
+#include "base/petsc.hpp"
 #include "diagnostics/probes.hpp"
+#include "grid/domain.hpp"
 #include "io/series.hpp"
 
 namespace eulastic {
@@ -12,8 +14,8 @@ class SampleFiles {
 public:
   /// Opens what `samples` asks for. Of older rows in these files those of probes until `probes_time` and those of
   /// profiles until `profile_time` stay; negative: none.
-  PetscErrorCode open(const SampleControl &samples, const Grid &grid, const std::string &directory, double probes_time,
-                      double profile_time);
+  PetscErrorCode open(const SampleControl &samples, const Domain &domain, const std::string &directory,
+                      double probes_time, double profile_time);
   void moved_to(const std::string &directory);
   /// Collective. All rows survive a power cut when this returns.
   PetscErrorCode sync();
@@ -39,7 +41,7 @@ private:
   }
   PetscErrorCode write(File &file, double time, const SampledFields &fields);
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   std::vector<File> files_;
   Due profile_due_;
 };

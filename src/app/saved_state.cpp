@@ -3,6 +3,7 @@
 #include "app/checkpoint_range.hpp"
 #include "bodies/colours.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
@@ -160,7 +161,7 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
     numbers->reals["rigid_loads"] = numbers_of(loads);
   }
   BodyTracker &bodies = solver.bodies();
-  PetscCall(bodies.known(solver.grid(), &references, &first_volumes));
+  PetscCall(bodies.known(solver.domain(), &references, &first_volumes));
   if (bodies.bodies() == 0) PetscFunctionReturn(0);
   std::vector<long> &cells = numbers->integers["bodies.references"];  // "body_" begins the labels of a species
   for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
@@ -169,21 +170,21 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   if (!feeders) PetscFunctionReturn(0);
   if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
   std::vector<long> &inside = numbers->integers["bodies_in_feeders"];
-  if (solver.grid().rank() > 0) PetscFunctionReturn(0);
+  if (solver.domain().rank() > 0) PetscFunctionReturn(0);
   inside.assign(bodies.bodies(), 0);
   for (const auto &[label, stretch] : feeders->inside()) inside[label - 1] = stretch + 1;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode require_range(const Grid &grid, const std::string &path, const std::string &absurd) {
+PetscErrorCode require_range(const Domain &domain, const std::string &path, const std::string &absurd) {
   PetscFunctionBeginUser;
-  PetscCall(fail_together(grid.comm(), absurd.empty() ? absurd : path + ": " + absurd));
+  PetscCall(fail_together(domain.comm(), absurd.empty() ? absurd : path + ": " + absurd));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Grid &grid, BodyTracker *bodies,
+PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Domain &domain, BodyTracker *bodies,
                            Feeders *feeders) {
-  const BodyRange own = BodyRange::of(bodies->bodies(), grid.rank(), grid.ranks());
+  const BodyRange own = BodyRange::of(bodies->bodies(), domain.rank(), domain.ranks());
   const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
   std::vector<double> first_volumes(own.size());
@@ -193,14 +194,14 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   const std::string earlier = file->has("bodies.references") ? "bodies." : "body_";  // of version 0.2.0 and before
   PetscCall(file->read_share(earlier + "references", 3 * all, 3 * begin, &cells));
   PetscCall(file->read_share(earlier + "first_volumes", all, begin, &first_volumes));
-  PetscCall(require_range(grid, path, find_absurd_body(cells, first_volumes)));
+  PetscCall(require_range(domain, path, find_absurd_body(cells, first_volumes)));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
   if (!feeders) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
   PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
-  PetscCall(require_range(grid, path, find_absurd_feeder(stretches, feeders->count())));
+  PetscCall(require_range(domain, path, find_absurd_feeder(stretches, feeders->count())));
   for (int b = 0; b < own.size(); ++b)
     if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
   PetscCall(feeders->set_inside(inside));
@@ -210,19 +211,19 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
 }  // namespace
 
 PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
-  const Grid &grid = solver->grid();
+  const Domain &domain = solver->domain();
   CheckpointNumbers numbers = numbers_of(*solver);
   std::uint64_t sum = 0;
   PetscFunctionBeginUser;
   PetscCall(gather_numbers(*solver, &numbers));
-  if (grid.rank() == 0) sum = hash_arrays(numbers.reals) + hash_arrays(numbers.integers);
+  if (domain.rank() == 0) sum = hash_arrays(numbers.reals) + hash_arrays(numbers.integers);
   for (const CheckpointField &field : fields_of(*solver))
-    sum += hash_points(grid, field.view, field.staggering, hash_name(field.name));
+    sum += hash_points(domain, field.view, field.staggering, hash_name(field.name));
   for (const SurfaceMarker &marker : solver->state().markers) {
     const auto values = marker.packed();
     sum += hash_values(values.data(), values.size());
   }
-  PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm()));
+  PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
 
@@ -232,12 +233,12 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
   CheckpointNumbers numbers = numbers_of(*solver, position);
   PetscCall(gather_numbers(*solver, &numbers));
   PetscCall(
-      write_checkpoint(solver->grid(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
+      write_checkpoint(solver->domain(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
-  const Grid &grid = solver->grid();
+  const Domain &domain = solver->domain();
   std::vector<long> colours, forgotten, like;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("colours", &colours));
@@ -245,12 +246,12 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   if (solver->feeders()) {
     PetscCall(file->read_if_there("bodies_like", &like));
     solver->bodies().set_like({});
-    PetscCall(require_range(grid, path, find_absurd_link(like, solver->bodies().bodies())));
+    PetscCall(require_range(domain, path, find_absurd_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
-  PetscCall(require_range(grid, path, find_absurd_count("forgotten", forgotten)));
-  const bool fits = set_colours(grid, colours, &solver->state().phases);
-  PetscCall(fail_together(grid.comm(), fits ? "" : path + ": colours is of another scene"));
+  PetscCall(require_range(domain, path, find_absurd_count("forgotten", forgotten)));
+  const bool fits = set_colours(domain, colours, &solver->state().phases);
+  PetscCall(fail_together(domain.comm(), fits ? "" : path + ": colours is of another scene"));
   CheckpointNumbers expected = numbers_of(*solver, *position);
   if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of an earlier version
     expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
@@ -258,17 +259,17 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
-  PetscCall(fail_together(grid.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
-  PetscCall(require_range(grid, path, find_absurd_number(numbers)));
-  PetscCall(load_bodies(file, path, grid, &solver->bodies(), solver->feeders()));
+  PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
+  PetscCall(require_range(domain, path, find_absurd_number(numbers)));
+  PetscCall(load_bodies(file, path, domain, &solver->bodies(), solver->feeders()));
   solver->clear_pressure_memory();  // the file may know of fewer increments
-  for (Phase &phase : solver->state().phases) phase.empty(grid, bool(phase.label));  // of the scene's start
-  PetscCall(file->read_fields(grid, fields_of(*solver)));
+  for (Phase &phase : solver->state().phases) phase.empty(domain, bool(phase.label));  // of the scene's start
+  PetscCall(file->read_fields(domain, fields_of(*solver)));
   take_numbers(numbers, solver, position);
   CheckpointRecords records = markers_of({});
   PetscCall(file->read_records(&records));
-  PetscCall(require_range(grid, path,
-                          find_absurd_marker(records.values, grid, solver->bodies().bodies(),
+  PetscCall(require_range(domain, path,
+                          find_absurd_marker(records.values, domain, solver->bodies().bodies(),
                                              static_cast<int>(solver->state().phases.size()))));
   std::vector<SurfaceMarker> markers;
   for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)

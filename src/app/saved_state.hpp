@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/outputs.hpp"
+#include "base/petsc.hpp"
 #include "io/checkpoint.hpp"
 
 namespace eulastic {

@@ -9,23 +9,24 @@
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/rigid.hpp"
+#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 
 namespace eulastic {
 namespace {
 
 // Bodies of a file begin at some cell of theirs: moves the references to their centres, in the box.
-PetscErrorCode settle_bodies(const Grid &grid, const State &state, BodyTracker *bodies) {
+PetscErrorCode settle_bodies(const Domain &domain, const State &state, BodyTracker *bodies) {
   PetscFunctionBeginUser;
-  for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(grid, state.phases));
-  bodies->wrap(grid);
+  for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(domain, state.phases));
+  bodies->wrap(domain);
   PetscFunctionReturn(0);
 }
 
 // Bodies that are near at the start get phases of their own; bodies of simple shapes are then whole, also where the
 // larger fraction had a cell for itself. `places`: those that come near this rank; `colours`: the first phase of the
 // species, others are added.
-PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const SpeciesSpec &species,
+PetscErrorCode separate_places(const Domain &domain, GhostExchange &exchange, const SpeciesSpec &species,
                                const Places &places, int first_label, bool refill, std::vector<Phase> *colours) {
   PetscFunctionBeginUser;
   std::map<int, int> colour;
@@ -35,66 +36,66 @@ PetscErrorCode separate_places(const Grid &grid, GhostExchange &exchange, const 
   Separation result;
   for (int round = 0; round < most_colours; ++round) {
     if (refill)  // B of a file may differ from I anywhere
-      for (Phase &phase : *colours) PetscCall(phase.rows.find(grid, phase.fraction[0]));
-    PetscCall(separate_bodies(grid, exchange, also, colours, &result));
-    PetscCall(fail_together(grid.comm(), result.crowded));
+      for (Phase &phase : *colours) PetscCall(phase.rows.find(domain, phase.fraction[0]));
+    PetscCall(separate_bodies(domain, exchange, also, colours, &result));
+    PetscCall(fail_together(domain.comm(), result.crowded));
     if (result.changed.empty() || !refill) PetscFunctionReturn(0);
     for (const BodyMove &move : result.moves) colour[move.label - first_label] = move.to;
-    refill_phases(grid, species, places, first_label, colour, colours);  // whole bodies may be near others
+    refill_phases(domain, species, places, first_label, colour, colours);  // whole bodies may be near others
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fill_state(const Config &config, const Grid &grid, Solver *solver) {
+PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *solver) {
   PetscFunctionBeginUser;
   State &state = solver->state();
-  set_initial_velocity(grid, config.sides, config.initial, state.velocity);
-  InitialState file(config, grid);
+  set_initial_velocity(domain, config.sides, config.initial, state.velocity);
+  InitialState file(config, domain);
   PetscCall(file.open());
   PetscCall(file.read_flow(&state));
   int next_label = 1;
-  auto rigid = std::make_unique<RigidBodies>(grid, solver->exchange());
+  auto rigid = std::make_unique<RigidBodies>(domain, solver->exchange());
   std::vector<Phase> more;  // colours come after the first phases of all species
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
     Places placed = config.places[s], near;
-    PetscCall(bring_near(grid.comm(), grid, species, placed, &near));
+    PetscCall(bring_near(domain.comm(), domain, species, placed, &near));
     std::vector<Phase> colours(1);
     Phase &phase = colours[0];
-    PetscCall(fill_phase(grid, species, near, next_label, &phase));
-    if (species.shape == Shape::voxels) PetscCall(fill_voxels(grid, species, next_label, &phase, &placed));
+    PetscCall(fill_phase(domain, species, near, next_label, &phase));
+    if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
     PetscCall(file.read_phase(species, next_label, &phase, &placed));
     phase.separate = config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
-    PetscCall(separate_places(grid, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
+    PetscCall(separate_places(domain, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
     if (species.law == Law::rigid) {
       std::string wrong;
       PetscCall(rigid->add(species, config.places[s], next_label, &phase, &wrong));
-      if (wrong.empty() && species.shape == Shape::voxels && species.travels(grid.dimension()))
+      if (wrong.empty() && species.shape == Shape::voxels && species.travels(domain.dimension()))
         wrong = check_path(config, species, *rigid->newest_surface(), {species.centre, {}});
-      PetscCall(fail_together(grid.comm(), wrong));
+      PetscCall(fail_together(domain.comm(), wrong));
     }
     next_label += placed.count;
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
-    solver->bodies().add_phase(grid, config.body_series ? placed : Places());
+    solver->bodies().add_phase(domain, config.body_series ? placed : Places());
     if (!config.body_series) state.phases.back().label = FieldBlock();
   }
   PetscCall(solver->set_rigid(std::move(rigid)));
   for (Phase &phase : more) state.phases.push_back(std::move(phase));
-  if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(grid, state, &solver->bodies()));
+  if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(domain, state, &solver->bodies()));
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason) {
+PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
   BoxSides sides = config.sides;
-  PetscCall(solver->create(grid, {config.method, config.fluid, sides}));
-  PetscCall(catch_together([&] { return fill_state(config, grid, solver); }, reason));
+  PetscCall(solver->create(domain, {config.method, config.fluid, sides}));
+  PetscCall(catch_together([&] { return fill_state(config, domain, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
-  PetscCall(shape_profiles(config, grid, solver->rigid(), solver->state().phases, &sides, reason));
+  PetscCall(shape_profiles(config, domain, solver->rigid(), solver->state().phases, &sides, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   solver->set_profiles(sides);
   PetscCall(solver->prepare());

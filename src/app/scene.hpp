@@ -2,12 +2,14 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "solver/solver.hpp"
 
 namespace eulastic {
 
 /// Makes the solver on `grid` and sets its initial velocity and bodies. A species that cannot be placed makes
 /// `reason` one line.
-PetscErrorCode build_scene(const Config &config, const Grid &grid, Solver *solver, std::string *reason);
+PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *solver, std::string *reason);
 
 }  // namespace eulastic

@@ -41,19 +41,19 @@ SnapshotSelection selection(const Config &config) {
 PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vector<Phase> &phases, Solver *solver,
                                 FieldBlock *solid) {
   PetscFunctionBeginUser;
-  const Grid &grid = solver->grid();
+  const Domain &domain = solver->domain();
   for (const Phase &phase : phases) {
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || (spec->law == Law::rigid) != rigid) continue;
-    if (!*solid) *solid = FieldBlock(grid, 1);
-    for_points(grid.rows(), [&](int i, int j, int k) {
+    if (!*solid) *solid = FieldBlock(domain, 1);
+    for_points(domain.rows(), [&](int i, int j, int k) {
       double &sum = (*solid)[0](i, j, k);
       sum = std::min(1.0, sum + phase.fraction[0](i, j, k));
     });
   }
   if (!*solid) PetscFunctionReturn(0);
   PetscCall(solver->exchange().update(*solid, 3));
-  fill_wall_ghosts_even(grid, at_centre, (*solid)[0], 3);
+  fill_wall_ghosts_even(domain, at_centre, (*solid)[0], 3);
   PetscFunctionReturn(0);
 }
 
@@ -62,7 +62,7 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
 PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
-  const Grid &grid = solver->grid();
+  const Domain &domain = solver->domain();
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver->phases_now(&phases));
   const FieldBlock *viscosity = nullptr;
@@ -72,12 +72,12 @@ PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   std::vector<WallStress> walls;
   FieldBlock rigid, elastic, stress, widened;
   if (wants(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
-    EdgeViscosity of_place{grid, config.fluid.viscosity, config.fluid.density, viscosity};
-    walls = wall_shear_stress(grid, config.sides, state.time, of_place, state.velocity, *phases);
+    EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
+    walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, *phases);
     PetscCall(solid_of_vessels(config, true, *phases, solver, &rigid));
     PetscCall(solid_of_vessels(config, false, *phases, solver, &elastic));
-    if (rigid || elastic) stress = FieldBlock(grid, 3);
-    if (rigid) add_rigid_surface_stress(grid, config.fluid.viscosity, rigid[0], state.velocity, stress);
+    if (rigid || elastic) stress = FieldBlock(domain, 3);
+    if (rigid) add_rigid_surface_stress(domain, config.fluid.viscosity, rigid[0], state.velocity, stress);
     if (elastic && viscosity) {
       widened.copy_from(*viscosity);
       PetscCall(solver->exchange().update(widened, 2));

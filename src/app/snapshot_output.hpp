@@ -2,6 +2,8 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "io/snapshot.hpp"
 #include "io/snapshot_fields.hpp"
 #include "solver/solver.hpp"
@@ -10,8 +12,8 @@ namespace eulastic {
 
 class SnapshotOutput {
 public:
-  SnapshotOutput(const Grid &grid, const std::string &directory, SnapshotFormat shown)
-      : writer_(grid, directory, shown), fields_(grid) {}
+  SnapshotOutput(const Domain &domain, const std::string &directory, SnapshotFormat shown)
+      : writer_(domain, directory, shown), fields_(domain) {}
 
   /// As SnapshotWriter's.
   PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }

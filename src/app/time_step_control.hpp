@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/guards.hpp"
+#include "base/petsc.hpp"
 
 namespace eulastic {
 

@@ -9,6 +9,7 @@
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_sides.hpp"
+#include "grid/domain.hpp"
 #include "pressure/smac.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ std::string check_grid(const Config &config) {
            "ranks a run has";
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
-  if (const std::string reason = Grid::why_not(serial, 1); !reason.empty()) return reason;
+  if (const std::string reason = Domain::why_not(serial, 1); !reason.empty()) return reason;
   for (int d = 0; d < 3; ++d) {
     const std::string name = std::string("-boundary_") + "xyz"[d];
     for (int high = 0; high < 2; ++high)
@@ -124,7 +125,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
 
 // A slab that goes along its axis leaves the fluid on both sides of it where that is, or is carried round.
 bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
-  const GridSpec &grid = config.grid;
+  const DomainShape &grid = config.grid;
   for (int e = 0; e < 3; ++e)
     if (e != slab.axis && (grid.open[e][0] || grid.open[e][1])) return true;
   const auto across = [&](const SpeciesSpec &other) { return other.shape == Shape::slab && other.axis == slab.axis; };

@@ -1,6 +1,7 @@
 #include "app/vessels.hpp"
 
 #include "bodies/shapes.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@ namespace eulastic {
 std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
                                      const std::vector<SideFlow> &sides) {
   std::vector<VesselFlow> flows;
-  const GridSpec &grid = config.grid;
+  const DomainShape &grid = config.grid;
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   for (const SpeciesSpec &spec : config.species) {
     if (!is_tube(spec.shape) || spec.axis >= dimension) continue;
@@ -29,7 +30,7 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
 
 PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
-  const Grid &grid = solver->grid();
+  const Domain &domain = solver->domain();
   loads->clear();
   const BodyTracker &bodies = solver->bodies();
   for (std::size_t s = 0; s < config.species.size(); ++s) {
@@ -40,8 +41,8 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
       SurfaceLoad &load = loads->emplace_back();
       load.label = label;
       const std::vector<NumberedPlace> &places = config.places[s].known;
-      for (int d = 0; d < grid.dimension(); ++d)
-        load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * grid.spec().length[d];
+      for (int d = 0; d < domain.dimension(); ++d)
+        load.centre[d] = n < places.size() ? places[n].centre[d] : 0.5 * domain.domain_shape().length[d];
       ++n;
     });
   }
@@ -57,17 +58,17 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
     const Phase &phase = (*phases)[p];
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
-    labels[p] = FieldBlock(grid, 1);  // not one at rest: all of it is written
-    const Int3 &n = grid.owned();
+    labels[p] = FieldBlock(domain, 1);  // not one at rest: all of it is written
+    const Int3 &n = domain.cells();
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));
     PetscCall(solver->exchange().update(labels[p], 1));
-    fill_wall_ghosts_even(grid, at_centre, labels[p][0], 1);
+    fill_wall_ghosts_even(domain, at_centre, labels[p][0], 1);
     wanted[p] = &labels[p];
   }
   const State &state = solver->state();
-  PetscCall(measure_surface_loads({grid, config.fluid.viscosity, config.fluid.density, viscosity}, state.velocity,
-                                  state.pressure, *phases, wanted, loads));
+  PetscCall(measure_surface_loads(domain.comm(), {domain, config.fluid.viscosity, config.fluid.density, viscosity},
+                                  state.velocity, state.pressure, *phases, wanted, loads));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/config.hpp"
+#include "base/petsc.hpp"
 #include "diagnostics/side_flows.hpp"
 #include "diagnostics/surface_loads.hpp"
 #include "solver/solver.hpp"

@@ -19,7 +19,7 @@ namespace {
 // All members are collective.
 class VoxelBody {
 public:
-  std::string open(const SpeciesSpec &spec, const GridSpec &grid) {
+  std::string open(const SpeciesSpec &spec, const DomainShape &grid) {
     path_ = spec.voxels.path;
     const std::string wrong = on_rank_0([&] { return open_locally(spec, grid); });
     share(&triangles_);
@@ -43,7 +43,7 @@ public:
   }
 
 private:
-  std::string open_locally(const SpeciesSpec &spec, const GridSpec &grid) {
+  std::string open_locally(const SpeciesSpec &spec, const DomainShape &grid) {
     const VoxelSpec &voxels = spec.voxels;
     VolumeFormat format;
     std::string file, dataset, wrong = find_volume(voxels.path, &format, &file, &dataset);
@@ -54,7 +54,7 @@ private:
     return place_volume(voxels, file, grid);
   }
 
-  std::string open_surface(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
+  std::string open_surface(const VoxelSpec &voxels, const std::string &file, const DomainShape &grid) {
     if (std::string wrong = read_stl(file, &triangles_); !wrong.empty()) return wrong;
     if (const std::string wrong = why_not_closed(triangles_); !wrong.empty()) return file + ": " + wrong;
     Real3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
@@ -72,7 +72,7 @@ private:
 
   // What options say comes first, then the file, then: the volume fills the box. The file's origin goes with its own
   // spacing alone. A plane fills the box in z.
-  std::string place_volume(const VoxelSpec &voxels, const std::string &file, const GridSpec &grid) {
+  std::string place_volume(const VoxelSpec &voxels, const std::string &file, const DomainShape &grid) {
     box_.count = volume_->count();
     const bool flat = grid.cells[2] == 1;
     if (flat && box_.count[2] != 1)
@@ -95,7 +95,8 @@ private:
     return why_outside(file, grid, box_.corner, high);
   }
 
-  static std::string why_outside(const std::string &file, const GridSpec &grid, const Real3 &low, const Real3 &high) {
+  static std::string why_outside(const std::string &file, const DomainShape &grid, const Real3 &low,
+                                 const Real3 &high) {
     for (int d = 0; d < 3; ++d)
       if (!(low[d] < grid.length[d] && high[d] > 0)) {
         char text[128];
@@ -126,7 +127,7 @@ bool on_any_rank(bool here) {
 
 }  // namespace
 
-std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, const CellWindow &cells,
+std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const CellWindow &cells,
                         const VisitLayers &visit) {
   const Int3 &n = cells.size;
   const int end = cells.begin[2] + n[2];
@@ -151,7 +152,7 @@ std::string read_voxels(const SpeciesSpec &spec, const GridSpec &grid, const Cel
 namespace {
 
 // The volume does not depend on the cells, so that few will do.
-std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, double *volume) {
+std::string measure(const SpeciesSpec &spec, DomainShape grid, SolidMask *mask, double *volume) {
   if (!mask)
     for (int &n : grid.cells) n = std::min(n, 64);
   const Int3 &n = grid.cells;
@@ -176,7 +177,7 @@ std::string measure(const SpeciesSpec &spec, GridSpec grid, SolidMask *mask, dou
 
 }  // namespace
 
-std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSpec &grid, bool masks,
+std::string measure_voxels(const std::vector<SpeciesSpec> &species, const DomainShape &grid, bool masks,
                            SolidBodies *solids, std::vector<double> *volumes) {
   volumes->assign(species.size(), 0);
   for (std::size_t s = 0; s < species.size(); ++s) {
@@ -189,21 +190,21 @@ std::string measure_voxels(const std::vector<SpeciesSpec> &species, const GridSp
   return {};
 }
 
-PetscErrorCode fill_voxels(const Grid &grid, const SpeciesSpec &spec, int label, Phase *phase, Places *places) {
+PetscErrorCode fill_voxels(const Domain &domain, const SpeciesSpec &spec, int label, Phase *phase, Places *places) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   const View fraction = phase->fraction[0], name = phase->label[0];
   VoxelBody body;
-  PetscCall(fail_together(grid.comm(), about(spec, body.open(spec, grid.spec()))));
-  PetscCall(fail_together(grid.comm(), about(spec, body.fill(grid, fraction))));
-  for_points(grid.rows(), [&](int i, int j, int k) {
+  PetscCall(fail_together(domain.comm(), about(spec, body.open(spec, domain.domain_shape()))));
+  PetscCall(fail_together(domain.comm(), about(spec, body.fill(domain, fraction))));
+  for_points(domain.rows(), [&](int i, int j, int k) {
     double &phi = fraction(i, j, k);
     if (spec.voxels.invert) phi = 1 - phi;
     if (phi > 0) name(i, j, k) = label;
   });
-  stretch_phase(grid, spec, phase);
+  stretch_phase(domain, spec, phase);
   Real3 middle;
-  for (int d = 0; d < 3; ++d) middle[d] = grid.spec().length[d] / 2;
+  for (int d = 0; d < 3; ++d) middle[d] = domain.domain_shape().length[d] / 2;
   *places = {{middle, {}}};
   PetscFunctionReturn(0);
 }

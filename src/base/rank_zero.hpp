@@ -2,6 +2,8 @@
 // ranks at once. Everything here is collective over run_communicator() and needs MPI, but not PETSc.
 #pragma once
 
+#include "base/petsc.hpp"
+
 #include <mpi.h>
 
 #include <cstddef>

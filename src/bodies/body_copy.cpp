@@ -2,6 +2,7 @@
 
 #include "bodies/near_bodies.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -42,8 +43,8 @@ int whose(const Phase &phase, int dimension, const Int3 &c, const std::vector<in
 }
 
 template <class Visit>
-void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, const Int3 &reach, const Visit &visit) {
-  const Int3 &begin = grid.layout().begin, &n = grid.owned();
+void for_owned_cells(const Box &box, const BodyCopy &body, const Int3 &shift, const Int3 &reach, const Visit &visit) {
+  const Int3 &begin = box.layout().begin, &n = box.cells();
   for (const BodyCopy::Cell &cell : body.cells)
     for (int k = -reach[2]; k <= reach[2]; ++k)
       for (int j = -reach[1]; j <= reach[1]; ++j)
@@ -52,7 +53,7 @@ void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, 
           Int3 local;
           bool own = true;
           for (int d = 0; d < 3; ++d) {
-            local[d] = grid.image(d, cell.at[d] + shift[d] + away[d]) - begin[d];
+            local[d] = box.image(d, cell.at[d] + shift[d] + away[d]) - begin[d];
             own = own && local[d] >= 0 && local[d] < n[d];
           }
           if (own) visit(cell, local);
@@ -61,11 +62,11 @@ void for_owned_cells(const Grid &grid, const BodyCopy &body, const Int3 &shift, 
 
 }  // namespace
 
-PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &labels,
+PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const std::vector<int> &labels,
                            std::vector<Phase> *phases, std::vector<BodyCopy> *bodies) {
-  const int dimension = grid.dimension();
+  const int dimension = domain.dimension();
   constexpr int head = 6, width = head + BodyCopy::points;  // label, phase, place, phi, B
-  const Int3 &begin = grid.layout().begin;
+  const Int3 &begin = domain.layout().begin;
   std::vector<double> mine;
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < phases->size(); ++p) {
@@ -74,7 +75,7 @@ PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std:
     if (phase.material.is_membrane()) {
       PetscCall(exchange.update({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
     }
-    for_points(grid.rows(), [&](int i, int j, int k) {
+    for_points(domain.rows(), [&](int i, int j, int k) {
       const Int3 at{i, j, k};
       const int label = whose(phase, dimension, at, labels);
       if (label == 0) return;
@@ -89,13 +90,13 @@ PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std:
     });
   }
   int ranks, count = static_cast<int>(mine.size());
-  PetscCallMPI(MPI_Comm_size(grid.comm(), &ranks));
+  PetscCallMPI(MPI_Comm_size(domain.comm(), &ranks));
   std::vector<int> counts(ranks), begins(ranks + 1, 0);
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, grid.comm()));
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, domain.comm()));
   for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
   std::vector<double> all(begins[ranks]);
   PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE,
-                              grid.comm()));
+                              domain.comm()));
   bodies->assign(labels.size(), {});
   for (std::size_t b = 0; b < labels.size(); ++b) (*bodies)[b].label = labels[b];
   for (const double *v = all.data(); v < all.data() + all.size(); v += width) {
@@ -109,30 +110,30 @@ PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std:
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode find_room(const Grid &grid, const BodyCopy &body, const Int3 &shift, int reach,
+PetscErrorCode find_room(const Domain &domain, const BodyCopy &body, const Int3 &shift, int reach,
                          const std::vector<Phase> &phases, BodyRoom *room) {
   std::vector<double> found(phases.size() + 1, 0);  // whether near; the fullest cell
-  Int3 around{reach, reach, grid.dimension() == 3 ? reach : 0};
+  Int3 around{reach, reach, domain.dimension() == 3 ? reach : 0};
   PetscFunctionBeginUser;
-  for_owned_cells(grid, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+  for_owned_cells(domain, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
     double sum = cell.phi;
     for (const Phase &phase : phases) sum += phase.fraction[0](at[0], at[1], at[2]);
     if (cell.phi > 0) found.back() = std::max(found.back(), sum);
   });
   for (std::size_t p = 0; p < phases.size(); ++p)
-    for_owned_cells(grid, body, shift, around, [&](const BodyCopy::Cell &, const Int3 &at) {
+    for_owned_cells(domain, body, shift, around, [&](const BodyCopy::Cell &, const Int3 &at) {
       if (phases[p].fraction[0](at[0], at[1], at[2]) > BodyCells::threshold) found[p] = 1;
     });
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_MAX, grid.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_MAX, domain.comm()));
   room->fullest = found.back();
   room->near.assign(found.begin(), found.end() - 1);
   PetscFunctionReturn(0);
 }
 
-void put_body(const Grid &grid, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
-  const Int3 &begin = grid.layout().begin;
-  for_owned_cells(grid, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+void put_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
+  const Int3 &begin = box.layout().begin;
+  for_owned_cells(box, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
     if (!(cell.phi > 0)) return;
     phase->fraction[0](at[0], at[1], at[2]) = cell.phi;
     phase->label[0](at[0], at[1], at[2]) = label;
@@ -145,8 +146,8 @@ void put_body(const Grid &grid, const BodyCopy &body, const Int3 &shift, int lab
       const double value = cell.B[point++];
       Int3 at;
       for (int d = 0; d < 3; ++d) {
-        at[d] = grid.image(d, cell.at[d] + shift[d] + offset[d]) - begin[d];
-        if (at[d] < 0 || at[d] >= grid.points_end(d, staggered[d])) return;
+        at[d] = box.image(d, cell.at[d] + shift[d] + offset[d]) - begin[d];
+        if (at[d] < 0 || at[d] >= box.points_end(d, staggered[d])) return;
       }
       phase->tensor.field[c](at[0], at[1], at[2]) = value;
     });

@@ -1,8 +1,10 @@
 // A body as it lies in the grid, on every rank, and the same body put down elsewhere.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 #include <vector>
 
@@ -22,7 +24,7 @@ struct BodyCopy {
 
 /// Collective: the bodies with these labels, in their order; without cells where none is left. Owned phi and B count,
 /// and one ghost of B.
-PetscErrorCode copy_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &labels,
+PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const std::vector<int> &labels,
                            std::vector<Phase> *phases, std::vector<BodyCopy> *bodies);
 
 /// What lies where a body is to be put.
@@ -31,11 +33,11 @@ struct BodyRoom {
   double fullest = 0;     ///< largest sum of its phi and that of all phases in a cell
 };
 /// Collective: `body` moved by `shift` cells.
-PetscErrorCode find_room(const Grid &grid, const BodyCopy &body, const Int3 &shift, int reach,
+PetscErrorCode find_room(const Domain &domain, const BodyCopy &body, const Int3 &shift, int reach,
                          const std::vector<Phase> &phases, BodyRoom *room);
 
 /// Writes owned phi, labels and B of `body`, moved by `shift` cells and called `label`. Ghosts, B around it and rows
 /// are the caller's.
-void put_body(const Grid &grid, const BodyCopy &body, const Int3 &shift, int label, Phase *phase);
+void put_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase);
 
 }  // namespace eulastic

@@ -32,18 +32,18 @@ private:
   alignas(64) double term_[ExactSums::block + lanes];
 };
 
-EULASTIC_CLONES void add_up(const Grid &grid, const Run &run, const Int3 &reference, const FieldBlock *velocity,
+EULASTIC_CLONES void add_up(const Box &box, const Run &run, const Int3 &reference, const FieldBlock *velocity,
                             RunSums *sums) {
   const int n = run.size();
   const double *phi = run.of(run.phase.fraction, 0);
   alignas(64) double x[ExactSums::block];
-  for (int i = 0; i < n; ++i) x[i] = offset(grid, 0, reference[0], run.begin + i);
-  Lanes lane((grid.layout().begin[0] + run.begin) % lanes, n);
+  for (int i = 0; i < n; ++i) x[i] = offset(box, 0, reference[0], run.begin + i);
+  Lanes lane((box.layout().begin[0] + run.begin) % lanes, n);
   sums->fraction = lane.sum([=](int i) EULASTIC_BODY { return phi[i]; });
   sums->first_moment = lane.sum([=, &x](int i) EULASTIC_BODY { return phi[i] * x[i]; });
   sums->second_moment = lane.sum([=, &x](int i) EULASTIC_BODY { return phi[i] * (x[i] * x[i]); });
   if (!velocity) return;
-  for (int d = 0; d < grid.dimension(); ++d) {
+  for (int d = 0; d < box.dimension(); ++d) {
     const double *face = run.of(*velocity, d), *next = face + (*velocity)[d].stride(d);
     sums->momentum[d] = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * (0.5 * (face[i] + next[i])); });
   }
@@ -64,15 +64,15 @@ EULASTIC_CLONES void add_up(const Grid &grid, const Run &run, const Int3 &refere
 
 }  // namespace
 
-RunSums sum_positions(const Grid &grid, const Run &run, const Int3 &reference) {
+RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference) {
   RunSums sums;
-  add_up(grid, run, reference, nullptr, &sums);
+  add_up(box, run, reference, nullptr, &sums);
   return sums;
 }
 
-RunSums sum_all(const Grid &grid, const Run &run, const Int3 &reference, const FieldBlock &velocity) {
+RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const FieldBlock &velocity) {
   RunSums sums;
-  add_up(grid, run, reference, &velocity, &sums);
+  add_up(box, run, reference, &velocity, &sums);
   return sums;
 }
 

@@ -6,6 +6,7 @@
 #include "field/exact_sum.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/box.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -25,12 +26,12 @@ struct Run {
 
 /// Calls visit(run) for all runs of a part, and start(phase, piece of a row) before those of that piece.
 template <class Start, class Visit>
-void for_each_run(const Grid &grid, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
+void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> &phases, const BodyOwners &owners,
                   Start &&start, Visit &&visit) {
-  const int first = grid.layout().begin[0];
+  const int first = box.layout().begin[0];
   for (const Phase &phase : phases) {
     const ConstView label = phase.label[0];
-    for (const Segment &whole : part.rows(grid)) {
+    for (const Segment &whole : part.rows(box)) {
       const Segment row = phase.rows.within(whole, label);
       if (row.i_begin < row.i_end) start(phase, row);
       const double *own = label.row(row.j, row.k);
@@ -54,8 +55,8 @@ struct RunSums {
   std::array<double, 6> tensor{};
 };
 /// The first three sums.
-RunSums sum_positions(const Grid &grid, const Run &run, const Int3 &reference);
+RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference);
 /// All of them; one ghost of velocity and B.
-RunSums sum_all(const Grid &grid, const Run &run, const Int3 &reference, const FieldBlock &velocity);
+RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const FieldBlock &velocity);
 
 }  // namespace eulastic

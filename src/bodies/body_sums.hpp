@@ -1,6 +1,7 @@
 // Exact sums per body over all ranks: fixed point in 128-bit integers.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 
 #include <cmath>

@@ -29,12 +29,12 @@ private:
 };
 
 // `tensor`: the component in the phase that `ways` lead away from, before any body has moved.
-void copy_component(const Grid &grid, const Ways &ways, const BodyCells &cells, const TensorComponent &c, int f,
+void copy_component(const Box &box, const Ways &ways, const BodyCells &cells, const TensorComponent &c, int f,
                     ConstView tensor, std::vector<Phase> *phases) {
   const std::ptrdiff_t a = c.on_edge() ? cells.label.stride(c.a) : 0, b = c.on_edge() ? cells.label.stride(c.b) : 0;
-  for (int k = 0; k < grid.points_end(2, c.at[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, c.at[1]); ++j)
-      for (int i = 0; i < grid.points_end(0, c.at[0]); ++i) {
+  for (int k = 0; k < box.points_end(2, c.at[2]); ++k)
+    for (int j = 0; j < box.points_end(1, c.at[1]); ++j)
+      for (int i = 0; i < box.points_end(0, c.at[0]); ++i) {
         const double *name = &cells.label.row(j, k)[i], *phi = &cells.fraction.row(j, k)[i];
         for (const std::ptrdiff_t cell : {std::ptrdiff_t(0), -a, -b, -a - b}) {
           const int to = phi[cell] > BodyCells::threshold && name[cell] > 0 ? ways.of(name[cell]) : -1;
@@ -54,7 +54,7 @@ std::vector<FieldBlock> copies(const std::vector<Ways> &ways, std::vector<Phase>
 
 }  // namespace
 
-void add_colour(const Grid &grid, int like, std::vector<Phase> *phases) {
+void add_colour(const Box &box, int like, std::vector<Phase> *phases) {
   const Phase &phase = (*phases)[like];
   Phase colour;
   colour.species = phase.species;
@@ -62,7 +62,7 @@ void add_colour(const Grid &grid, int like, std::vector<Phase> *phases) {
   for (const Phase &other : *phases) colour.colour += other.species == phase.species;
   colour.separate = phase.separate;
   colour.tensor.rule = phase.tensor.rule;
-  colour.empty(grid, bool(phase.label));
+  colour.empty(box, bool(phase.label));
   phases->push_back(std::move(colour));
 }
 
@@ -76,36 +76,36 @@ std::vector<long> species_of_colours(const std::vector<Phase> &phases) {
   return first;
 }
 
-bool set_colours(const Grid &grid, const std::vector<long> &first, std::vector<Phase> *phases) {
+bool set_colours(const Box &box, const std::vector<long> &first, std::vector<Phase> *phases) {
   const auto is_colour = [](const Phase &phase) { return phase.colour > 0; };
   phases->erase(std::remove_if(phases->begin(), phases->end(), is_colour), phases->end());
   const long species = static_cast<long>(phases->size());
   if (static_cast<long>(first.size()) > (most_colours - 1) * species) return false;
   for (const long p : first) {
     if (p < 0 || p >= species || !(*phases)[p].separate) return false;
-    add_colour(grid, static_cast<int>(p), phases);
+    add_colour(box, static_cast<int>(p), phases);
   }
   return true;
 }
 
 // Bodies may change places: every field is copied before it is written.
-void move_bodies(const Grid &grid, const std::vector<BodyMove> &moves, std::vector<Phase> *phases) {
+void move_bodies(const Box &box, const std::vector<BodyMove> &moves, std::vector<Phase> *phases) {
   const int count = static_cast<int>(phases->size());
   std::vector<Ways> ways;
   for (int from = 0; from < count; ++from) ways.emplace_back(moves, from);
   const auto label = copies(ways, phases, [](Phase &phase) { return phase.label.part(0, 1); });
   const auto fraction = copies(ways, phases, [](Phase &phase) { return phase.fraction.part(0, 1); });
-  for (int c = 0; c < static_cast<int>(tensor_components(grid.dimension()).size()); ++c) {
+  for (int c = 0; c < static_cast<int>(tensor_components(box.dimension()).size()); ++c) {
     const auto tensor = copies(ways, phases, [c](Phase &phase) { return phase.tensor.field.part(c, 1); });
     for (int from = 0; from < count; ++from)
       if (!ways[from].empty())
-        copy_component(grid, ways[from], {label[from][0], fraction[from][0]}, (*phases)[from].tensor.components()[c], c,
+        copy_component(box, ways[from], {label[from][0], fraction[from][0]}, (*phases)[from].tensor.components()[c], c,
                        tensor[from][0], phases);
   }
   for (const bool arrive : {false, true})
     for (int from = 0; from < count; ++from) {
       if (ways[from].empty()) continue;
-      for_points(grid.rows(), [&](int i, int j, int k) {
+      for_points(box.rows(), [&](int i, int j, int k) {
         const double name = label[from][0](i, j, k), phi = fraction[from][0](i, j, k);
         const int to = name > 0 ? ways[from].of(name) : -1;
         if (to < 0) return;

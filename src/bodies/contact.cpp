@@ -4,6 +4,7 @@
 #include "bodies/colouring.hpp"
 #include "bodies/colours.hpp"
 #include "bodies/near_groups.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -39,12 +40,12 @@ PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vect
 }
 
 // The phases of the bodies in `colours` that this rank sees, as moves without an end.
-PetscErrorCode find_homes(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
+PetscErrorCode find_homes(const Box &box, const std::vector<Phase> &phases, const std::vector<int> &colours,
                           const NearGroups &groups, std::vector<BodyMove> *moves) {
   PetscFunctionBeginUser;
   std::vector<NearBodies> found;
   for (const int p : colours)
-    for (const int label : labels_in(grid, phases[p].label[0])) found.push_back({label, 0, p});
+    for (const int label : labels_in(box, phases[p].label[0])) found.push_back({label, 0, p});
   PetscCall(groups.gather(&found));
   moves->clear();
   for (const NearBodies &home : found)
@@ -62,7 +63,7 @@ struct ContactSurvey {
 };
 
 // One Allreduce for all species.
-PetscErrorCode survey_contacts(const Grid &grid, GhostExchange &exchange, std::vector<Phase> *phases,
+PetscErrorCode survey_contacts(const Domain &domain, GhostExchange &exchange, std::vector<Phase> *phases,
                                ContactSurvey *survey) {
   PetscFunctionBeginUser;
   *survey = {};
@@ -72,14 +73,14 @@ PetscErrorCode survey_contacts(const Grid &grid, GhostExchange &exchange, std::v
     PetscCall(update_ghosts(exchange, contact_reach, colours, phases));
     std::vector<NearBodies> &pairs = survey->pairs[first];
     for (const int p : colours) {
-      if (p != first) found[p] = !labels_in(grid, (*phases)[p].label[0]).empty();
-      find_near_in_phase(grid, cells_of((*phases)[p]), p, contact_reach, &pairs);
+      if (p != first) found[p] = !labels_in(domain, (*phases)[p].label[0]).empty();
+      find_near_in_phase(domain, cells_of((*phases)[p]), p, contact_reach, &pairs);
     }
     found.push_back(!pairs.empty());
   }
   if (survey->colours.empty()) PetscFunctionReturn(0);
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, grid.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, domain.comm()));
   std::size_t next = phases->size();
   for (const auto &[first, colours] : survey->colours) survey->near[first] = found[next++];
   found.resize(phases->size());
@@ -107,7 +108,7 @@ std::vector<BodyMove> choose_bodies(const std::vector<NearBodies> &pairs) {
 
 // Adds to the pairs that this rank has found all that is near the bodies that move, in the other phases of their
 // species; `moves` of those that it sees. Then both are those of the groups that it decides on.
-PetscErrorCode find_neighbours(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &colours,
+PetscErrorCode find_neighbours(const Box &box, const std::vector<Phase> &phases, const std::vector<int> &colours,
                                const NearGroups &groups, int reach, std::vector<BodyMove> *moves,
                                std::vector<NearBodies> *pairs) {
   PetscFunctionBeginUser;
@@ -117,7 +118,7 @@ PetscErrorCode find_neighbours(const Grid &grid, const std::vector<Phase> &phase
       if (move.from == p) labels.push_back(move.label);
     for (const int q : colours)
       if (q != p && !labels.empty())
-        find_near_others(grid, cells_of(phases[p]), labels, cells_of(phases[q]), q, reach, pairs);
+        find_near_others(box, cells_of(phases[p]), labels, cells_of(phases[q]), q, reach, pairs);
   }
   for (const BodyMove &move : *moves) pairs->push_back({move.label, 0, move.from});
   PetscCall(groups.gather(pairs));
@@ -148,28 +149,28 @@ bool choose_own(const std::vector<int> &colours, const std::vector<NearBodies> &
 }
 
 // The same, and false if one of any rank has none.
-PetscErrorCode choose_colours(const Grid &grid, const std::vector<int> &colours, const std::vector<NearBodies> &pairs,
-                              std::vector<BodyMove> *moves, bool *all) {
+PetscErrorCode choose_colours(const Domain &domain, const std::vector<int> &colours,
+                              const std::vector<NearBodies> &pairs, std::vector<BodyMove> *moves, bool *all) {
   PetscFunctionBeginUser;
   int chosen = choose_own(colours, pairs, moves);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chosen, 1, MPI_INT, MPI_MIN, grid.comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &chosen, 1, MPI_INT, MPI_MIN, domain.comm()));
   *all = chosen > 0;
   PetscFunctionReturn(0);
 }
 
 // Colours for all bodies of a species anew, in place of `moves`.
-PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, const NearGroups &groups,
+PetscErrorCode recolour(const Domain &domain, std::vector<int> colours, const NearGroups &groups,
                         std::vector<NearBodies> pairs, std::vector<Phase> *phases, std::vector<BodyMove> *moves,
                         std::string *crowded) {
   PetscFunctionBeginUser;
-  PetscCall(find_homes(grid, *phases, colours, groups, moves));
-  PetscCall(find_neighbours(grid, *phases, colours, groups, contact_reach, moves, &pairs));
+  PetscCall(find_homes(domain, *phases, colours, groups, moves));
+  PetscCall(find_neighbours(domain, *phases, colours, groups, contact_reach, moves, &pairs));
   std::vector<int> bodies;
   for (const BodyMove &move : *moves) bodies.push_back(move.label);
   const std::vector<int> chosen = colour_bodies(bodies, pairs);
   int needed = 0;
   for (const int colour : chosen) needed = std::max(needed, colour + 1);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &needed, 1, MPI_INT, MPI_MAX, grid.comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &needed, 1, MPI_INT, MPI_MAX, domain.comm()));
   if (needed > most_colours) {
     char text[200];
     std::snprintf(text, sizeof text,
@@ -180,7 +181,7 @@ PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, const NearGr
   }
   while (static_cast<int>(colours.size()) < needed) {
     colours.push_back(static_cast<int>(phases->size()));
-    add_colour(grid, colours[0], phases);
+    add_colour(domain, colours[0], phases);
   }
   for (std::size_t b = 0; b < chosen.size(); ++b) (*moves)[b].to = colours[chosen[b]];
   const auto stays = [](const BodyMove &move) { return move.from == move.to; };
@@ -190,21 +191,21 @@ PetscErrorCode recolour(const Grid &grid, std::vector<int> colours, const NearGr
 
 // Moves of all bodies of the last phase of a species to others, none if one cannot. From one cell further than the
 // distance that would send them away again.
-PetscErrorCode empty_last_colour(const Grid &grid, const std::vector<int> &colours, const NearGroups &groups, int reach,
-                                 const std::vector<Phase> &phases, std::vector<BodyMove> *moves) {
+PetscErrorCode empty_last_colour(const Domain &domain, const std::vector<int> &colours, const NearGroups &groups,
+                                 int reach, const std::vector<Phase> &phases, std::vector<BodyMove> *moves) {
   PetscFunctionBeginUser;
   bool all = false;
   const int last = colours.back();
-  for (const int label : labels_in(grid, phases[last].label[0])) moves->push_back({label, last, -1});
+  for (const int label : labels_in(domain, phases[last].label[0])) moves->push_back({label, last, -1});
   std::vector<NearBodies> pairs;
-  PetscCall(find_neighbours(grid, phases, colours, groups, reach, moves, &pairs));
-  PetscCall(choose_colours(grid, {colours.begin(), colours.end() - 1}, pairs, moves, &all));
+  PetscCall(find_neighbours(domain, phases, colours, groups, reach, moves, &pairs));
+  PetscCall(choose_colours(domain, {colours.begin(), colours.end() - 1}, pairs, moves, &all));
   if (!all) moves->clear();
   PetscFunctionReturn(0);
 }
 
 // Of every two near bodies the higher label to the first phase that is free for it, or all bodies to other phases.
-PetscErrorCode part_near_bodies(const Grid &grid, const std::vector<int> &colours, const NearGroups &groups,
+PetscErrorCode part_near_bodies(const Domain &domain, const std::vector<int> &colours, const NearGroups &groups,
                                 const std::vector<NearBodies> &found, std::vector<Phase> *phases,
                                 std::vector<BodyMove> *moves, std::string *crowded) {
   PetscFunctionBeginUser;
@@ -214,21 +215,21 @@ PetscErrorCode part_near_bodies(const Grid &grid, const std::vector<int> &colour
   *moves = choose_bodies(pairs);
   PetscCall(groups.spread(moves));
   pairs = found;
-  PetscCall(find_neighbours(grid, *phases, colours, groups, contact_reach, moves, &pairs));
-  PetscCall(choose_colours(grid, colours, pairs, moves, &all));
-  if (!all) PetscCall(recolour(grid, colours, groups, found, phases, moves, crowded));
+  PetscCall(find_neighbours(domain, *phases, colours, groups, contact_reach, moves, &pairs));
+  PetscCall(choose_colours(domain, colours, pairs, moves, &all));
+  if (!all) PetscCall(recolour(domain, colours, groups, found, phases, moves, crowded));
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &also,
+PetscErrorCode separate_bodies(const Domain &domain, GhostExchange &exchange, const std::vector<int> &also,
                                std::vector<Phase> *phases, Separation *result) {
   PetscFunctionBeginUser;
   *result = {};
   VerbScope scope(Verb::contact);
   ContactSurvey survey;
-  do PetscCall(survey_contacts(grid, exchange, phases, &survey));
+  do PetscCall(survey_contacts(domain, exchange, phases, &survey));
   while (remove_empty_colours(survey, phases));  // positions have changed
   std::vector<BodyMove> &moves = result->moves;
   for (const auto &[first, colours] : survey.colours) {
@@ -238,14 +239,14 @@ PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const 
     if (!near) PetscCall(update_ghosts(exchange, reach, colours, phases));
     std::set<int> seen(also.begin(), also.end());
     for (const int p : colours)
-      for (const int label : labels_in(grid, (*phases)[p].label[0], reach)) seen.insert(label);
+      for (const int label : labels_in(domain, (*phases)[p].label[0], reach)) seen.insert(label);
     NearGroups groups;
-    PetscCall(groups.connect(grid.comm(), {seen.begin(), seen.end()}));
+    PetscCall(groups.connect(domain.comm(), {seen.begin(), seen.end()}));
     std::vector<BodyMove> own;
     if (near)
-      PetscCall(part_near_bodies(grid, colours, groups, survey.pairs[first], phases, &own, &result->crowded));
+      PetscCall(part_near_bodies(domain, colours, groups, survey.pairs[first], phases, &own, &result->crowded));
     else
-      PetscCall(empty_last_colour(grid, colours, groups, reach, *phases, &own));
+      PetscCall(empty_last_colour(domain, colours, groups, reach, *phases, &own));
     PetscCall(groups.spread(&own));
     moves.insert(moves.end(), own.begin(), own.end());
     if (result->crowded.empty()) continue;
@@ -256,11 +257,11 @@ PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const 
   std::vector<int> changed(phases->size(), 0);
   for (const BodyMove &move : moves) changed[move.from] = changed[move.to] = 1;
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, changed.data(), static_cast<int>(changed.size()), MPI_INT, MPI_MAX, grid.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, changed.data(), static_cast<int>(changed.size()), MPI_INT, MPI_MAX, domain.comm()));
   for (std::size_t p = 0; p < changed.size(); ++p)
     if (changed[p]) result->changed.insert(static_cast<int>(p));
   std::sort(moves.begin(), moves.end(), [](const BodyMove &a, const BodyMove &b) { return a.label < b.label; });
-  if (!moves.empty()) move_bodies(grid, moves, phases);
+  if (!moves.empty()) move_bodies(domain, moves, phases);
   PetscFunctionReturn(0);
 }
 

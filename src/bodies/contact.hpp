@@ -5,8 +5,10 @@
 // near bodies apart keep them apart for ever.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 #include <set>
 
@@ -36,7 +38,7 @@ struct Separation {
 /// phi, B and label of a body go as they are, edges of B with them; points of B around it and all ghosts are the
 /// caller's. Needs owned labels and phi. `also`: ascending labels whose moves are wanted here, although there may be no
 /// cell of theirs.
-PetscErrorCode separate_bodies(const Grid &grid, GhostExchange &exchange, const std::vector<int> &also,
+PetscErrorCode separate_bodies(const Domain &domain, GhostExchange &exchange, const std::vector<int> &also,
                                std::vector<Phase> *phases, Separation *result);
 
 }  // namespace eulastic

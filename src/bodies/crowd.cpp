@@ -5,7 +5,7 @@
 
 namespace eulastic {
 
-Crowd::Crowd(const GridSpec &grid, double diameter, std::size_t expected)
+Crowd::Crowd(const DomainShape &grid, double diameter, std::size_t expected)
     : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), widest_(diameter / 2) {
   const double most = std::max(8.0, std::pow(double(expected), 1.0 / dimension_) * 2);
   double count = 1;

@@ -10,7 +10,7 @@ namespace eulastic {
 class Crowd {
 public:
   /// `diameter`: at least that of the largest body; `expected`: about how many there will be.
-  Crowd(const GridSpec &grid, double diameter, std::size_t expected);
+  Crowd(const DomainShape &grid, double diameter, std::size_t expected);
 
   std::size_t size() const { return bodies_.size(); }
   const PlacedConvex &operator[](std::size_t b) const { return bodies_[b]; }
@@ -43,7 +43,7 @@ private:
   template <class Stop>
   bool any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const;
 
-  GridSpec grid_;
+  DomainShape grid_;
   int dimension_;
   Int3 bins_{1, 1, 1};
   double widest_;  ///< no outer radius is larger

@@ -8,7 +8,7 @@
 
 namespace eulastic {
 
-int expected_colours(const SpeciesSpec &spec, const GridSpec &grid, const Places &places) {
+int expected_colours(const SpeciesSpec &spec, const DomainShape &grid, const Places &places) {
   constexpr int corners = 3;  // cells: those that surfaces cut, and what lies within the reach along a diagonal
   if (spec.shape != Shape::sphere && spec.shape != Shape::ellipsoid && spec.shape != Shape::biconcave) return 1;
   const int dimension = grid.cells[2] == 1 ? 2 : 3;

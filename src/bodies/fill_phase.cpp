@@ -4,6 +4,7 @@
 #include "bodies/near_places.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 namespace eulastic {
 namespace {
 
-void add_body(const Grid &grid, const PlacedBody &body, double name, View fraction, View label) {
-  const Int3 &first = grid.layout().begin;
-  const auto owned = [&](int d) { return body.ranges(d, first[d], first[d] + grid.owned()[d]); };
+void add_body(const Box &box, const PlacedBody &body, double name, View fraction, View label) {
+  const Int3 &first = box.layout().begin;
+  const auto owned = [&](int d) { return body.ranges(d, first[d], first[d] + box.cells()[d]); };
   const auto add_plane = [&](const PlacedBody::Range &x, const PlacedBody::Range &y, int shift, int k) {
     for (int j = y.begin; j < y.end; ++j)
       for (int i = x.begin; i < x.end; ++i) {
@@ -28,30 +29,30 @@ void add_body(const Grid &grid, const PlacedBody &body, double name, View fracti
   for (const PlacedBody::Range &z : owned(2))
     for (const PlacedBody::Range &y : owned(1))
       for (const PlacedBody::Range &x : owned(0))
-        in_parallel(row_parts(grid), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
+        in_parallel(row_parts(box), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
 }
 
 // Body b of the species goes to *phase_of(b).
 template <class PhaseOf>
-void add_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, PhaseOf phase_of) {
+void add_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, PhaseOf phase_of) {
   for (const NumberedPlace &place : places.known) {
-    if (!is_near(grid, grid.rank(), surface, place)) continue;
+    if (!is_near(domain, domain.rank(), surface, place)) continue;
     Phase *phase = phase_of(place.index);
-    add_body(grid, PlacedBody(surface, grid.spec(), place), first_label + place.index, phase->fraction[0],
+    add_body(domain, PlacedBody(surface, domain.domain_shape(), place), first_label + place.index, phase->fraction[0],
              phase->label[0]);
   }
 }
 
 // The points of a staggering that have a cell of the body beside them: f(local point, the same global and unwrapped).
 template <class F>
-void for_points_of(const Grid &grid, const PlacedBody &body, const Staggering &at, const F &f) {
+void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at, const F &f) {
   const auto ranges = [&](int d) {
-    const int first = grid.layout().begin[d], end = first + grid.points_end(d, at[d]);
+    const int first = box.layout().begin[d], end = first + box.points_end(d, at[d]);
     std::vector<PlacedBody::Range> found = body.ranges(d, first - at[d], end);
     for (PlacedBody::Range &r : found) r = {std::max(r.begin, first), std::min(r.end + at[d], end), r.shift};
     return found;
   };
-  const Int3 &first = grid.layout().begin;
+  const Int3 &first = box.layout().begin;
   for (const PlacedBody::Range &z : ranges(2))
     for (const PlacedBody::Range &y : ranges(1))
       for (const PlacedBody::Range &x : ranges(0))
@@ -64,14 +65,15 @@ void for_points_of(const Grid &grid, const PlacedBody &body, const Staggering &a
 // B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
 // that has a part of them.
 template <class PhaseOf>
-void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label, PhaseOf phase_of) {
+void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
+                  PhaseOf phase_of) {
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
-  const Surface surface(spec, grid.dimension());
+  const Surface surface(spec, domain.dimension());
   for (const NumberedPlace &place : places.known) {
-    if (place.orientation == Real3{} || !is_near(grid, grid.rank(), surface, place)) continue;
+    if (place.orientation == Real3{} || !is_near(domain, domain.rank(), surface, place)) continue;
     const Rotation R = rotation(place.orientation);
-    const PlacedBody body(surface, grid.spec(), place);
+    const PlacedBody body(surface, domain.domain_shape(), place);
     Phase &phase = *phase_of(place.index);
     for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const TensorComponent &component = phase.tensor.components()[c];
@@ -79,7 +81,7 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &place
       double turned = 0;
       for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
       const View B = phase.tensor.field[c], label = phase.label[0];
-      for_points_of(grid, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
+      for_points_of(domain, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
         if (!component.on_edge()) {
           if (label(p[0], p[1], p[2]) == first_label + place.index) value = turned;
@@ -100,47 +102,47 @@ void turn_stretch(const Grid &grid, const SpeciesSpec &spec, const Places &place
 
 }  // namespace
 
-void fill_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, Phase *phase) {
+void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase) {
   VerbScope scope(Verb::bodies);
-  phase->empty(grid, true);
-  add_bodies(grid, surface, places, first_label, [phase](int) { return phase; });
+  phase->empty(domain, true);
+  add_bodies(domain, surface, places, first_label, [phase](int) { return phase; });
 }
 
-void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase) {
-  phase->tensor.field = tensor_at_rest(grid);
+void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase) {
+  phase->tensor.field = tensor_at_rest(box);
   if (!phase->material.carries_tensor()) return;
   const ConstView fraction = phase->fraction[0];
-  for (int d = 0; d < grid.dimension(); ++d) {
+  for (int d = 0; d < box.dimension(); ++d) {
     const double stretch = spec.initial_stretch[d];
     const View tensor = phase->tensor.field[d];
-    for_points(grid.rows(), [&](int i, int j, int k) {
+    for_points(box.rows(), [&](int i, int j, int k) {
       if (fraction(i, j, k) > 0) tensor(i, j, k) = stretch * stretch;
     });
   }
 }
 
-PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   phase->species = spec.name;
   phase->material = spec.material();
-  fill_bodies(grid, Surface(spec, grid.dimension()), places, first_label, phase);
-  stretch_phase(grid, spec, phase);
-  turn_stretch(grid, spec, places, first_label, [phase](int) { return phase; });
+  fill_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase);
+  stretch_phase(domain, spec, phase);
+  turn_stretch(domain, spec, places, first_label, [phase](int) { return phase; });
   PetscFunctionReturn(0);
 }
 
-void refill_phases(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+void refill_phases(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                    const std::map<int, int> &colour, std::vector<Phase> *phases) {
-  for (Phase &phase : *phases) phase.empty(grid, true);
+  for (Phase &phase : *phases) phase.empty(domain, true);
   const auto phase_of = [&](int b) {
     const auto found = colour.find(b);
     return &(*phases)[found == colour.end() ? 0 : found->second];
   };
-  add_bodies(grid, Surface(spec, grid.dimension()), places, first_label, phase_of);
-  for (Phase &phase : *phases) stretch_phase(grid, spec, &phase);
-  turn_stretch(grid, spec, places, first_label, phase_of);
+  add_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase_of);
+  for (Phase &phase : *phases) stretch_phase(domain, spec, &phase);
+  turn_stretch(domain, spec, places, first_label, phase_of);
 }
 
 }  // namespace eulastic

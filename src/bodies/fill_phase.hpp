@@ -1,9 +1,11 @@
 // A phase at the start: solid fraction, left Cauchy-Green tensor and labels of placed bodies.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/placement.hpp"
 #include "bodies/shapes.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 #include <map>
 
@@ -14,18 +16,18 @@ namespace eulastic {
 /// Tensor: B = R diag(initial_stretch^2) R^T, R the body's orientation, in cells with phi > 0 and on edges beside them,
 /// I elsewhere. Label: first_label + index of the fullest body (first_label >= 1) where phi > 0, the first of equals;
 /// else 0.
-PetscErrorCode fill_phase(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase);
 
 /// Of bodies that carry no B: the fraction and the label.
-void fill_bodies(const Grid &grid, const Surface &surface, const Places &places, int first_label, Phase *phase);
+void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase);
 
 /// Fills phi, B and label of phases that fill_phase() has made anew: body b goes to phases[colour[b]], or to the
 /// first.
-void refill_phases(const Grid &grid, const SpeciesSpec &spec, const Places &places, int first_label,
+void refill_phases(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                    const std::map<int, int> &colour, std::vector<Phase> *phases);
 
 /// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere and in bodies without modulus.
-void stretch_phase(const Grid &grid, const SpeciesSpec &spec, Phase *phase);
+void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase);
 
 }  // namespace eulastic

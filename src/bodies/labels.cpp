@@ -35,11 +35,11 @@ struct Open {
 struct Reach {
   Int3 from{}, to{};
 
-  explicit Reach(const Grid &grid) {
+  explicit Reach(const Box &box) {
     for (int d = 0; d < 3; ++d) {
-      const bool ghosts = grid.layout().ghosts[d] > 0;
-      from[d] = ghosts && !grid.touches_low(d) ? -1 : 0;
-      to[d] = grid.owned()[d] - (ghosts && !grid.touches_high(d) ? 0 : 1);
+      const bool ghosts = box.layout().ghosts[d] > 0;
+      from[d] = ghosts && !box.touches_low(d) ? -1 : 0;
+      to[d] = box.cells()[d] - (ghosts && !box.touches_high(d) ? 0 : 1);
     }
   }
 };
@@ -73,9 +73,9 @@ struct OpenCells {
   std::vector<Int3> emptied;  // tell their neighbours whose they were: a body may have left all of its cells
 };
 
-OpenCells open_cells(const Grid &grid, const RowPart &part, ConstView phi, View label) {
+OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View label) {
   OpenCells cells;
-  for (const Segment &row : part.rows(grid)) {
+  for (const Segment &row : part.rows(box)) {
     const double *fraction = phi.row(row.j, row.k);
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -93,9 +93,9 @@ OpenCells open_cells(const Grid &grid, const RowPart &part, ConstView phi, View 
 }
 
 // Those alone that have none.
-OpenCells new_cells(const Grid &grid, const RowPart &part, const OccupiedRows &rows, ConstView phi, View label) {
+OpenCells new_cells(const Box &box, const RowPart &part, const OccupiedRows &rows, ConstView phi, View label) {
   OpenCells cells;
-  for (const Segment &whole : part.rows(grid)) {
+  for (const Segment &whole : part.rows(box)) {
     const Segment row = rows.within(whole);
     const double *fraction = phi.row(row.j, row.k), *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i)
@@ -104,27 +104,26 @@ OpenCells new_cells(const Grid &grid, const RowPart &part, const OccupiedRows &r
   return cells;
 }
 
-PetscErrorCode carry(const Grid &grid, GhostExchange &exchange, bool new_alone, Phase *phase) {
+PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool new_alone, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   PetscCall(exchange.update(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
-  std::vector<OpenCells> cells(row_parts(grid));
-  in_row_parts(grid, [&](const RowPart &part) {
-    cells[part.number] =
-        new_alone ? new_cells(grid, part, phase->rows, phi, label) : open_cells(grid, part, phi, label);
+  std::vector<OpenCells> cells(row_parts(box));
+  in_row_parts(box, [&](const RowPart &part) {
+    cells[part.number] = new_alone ? new_cells(box, part, phase->rows, phi, label) : open_cells(box, part, phi, label);
   });
-  const Reach reach(grid);
+  const Reach reach(box);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update(phase->label, 1, &phase->rows));
-    in_row_parts(grid, [&](const RowPart &part) {
+    in_row_parts(box, [&](const RowPart &part) {
       for (Open &o : cells[part.number].open) {
         const Candidate best = best_neighbour(o.cell, reach, phi, label);
         if (best.label > 0 || o.label == 0) o.label = best.label;
       }
     });
-    in_row_parts(grid, [&](const RowPart &part) {
+    in_row_parts(box, [&](const RowPart &part) {
       std::vector<Open> &own = cells[part.number].open;
       for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
       own.erase(std::remove_if(own.begin(), own.end(), [](const Open &o) { return o.label > 0; }), own.end());
@@ -139,12 +138,12 @@ PetscErrorCode carry(const Grid &grid, GhostExchange &exchange, bool new_alone, 
 
 }  // namespace
 
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase) {
-  return carry(grid, exchange, false, phase);
+PetscErrorCode carry_labels(const Box &box, GhostExchange &exchange, Phase *phase) {
+  return carry(box, exchange, false, phase);
 }
 
-PetscErrorCode label_new_cells(const Grid &grid, GhostExchange &exchange, Phase *phase) {
-  return carry(grid, exchange, true, phase);
+PetscErrorCode label_new_cells(const Box &box, GhostExchange &exchange, Phase *phase) {
+  return carry(box, exchange, true, phase);
 }
 
 }  // namespace eulastic

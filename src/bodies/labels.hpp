@@ -4,6 +4,7 @@
 // by layer, so that the labels between two bodies move with them. Synchronous, hence free of sweep order and ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 
@@ -15,8 +16,8 @@ inline constexpr double label_threshold = 1e-12;  ///< a cell with less phi has 
 /// the run, before the interface has moved by more than half a cell since the last call. Layers taken anew: four. A
 /// cell takes the label of a face neighbour before that of an edge or corner neighbour, then of the one with the
 /// largest phi, then the smallest label; beyond four layers it keeps its own, if it has one.
-PetscErrorCode carry_labels(const Grid &grid, GhostExchange &exchange, Phase *phase);
+PetscErrorCode carry_labels(const Box &box, GhostExchange &exchange, Phase *phase);
 /// The same for cells alone that have no label yet, which the surface has reached since.
-PetscErrorCode label_new_cells(const Grid &grid, GhostExchange &exchange, Phase *phase);
+PetscErrorCode label_new_cells(const Box &box, GhostExchange &exchange, Phase *phase);
 
 }  // namespace eulastic

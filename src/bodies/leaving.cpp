@@ -5,9 +5,9 @@
 #include <algorithm>
 
 namespace eulastic {
-bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than) {
+bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers, double more_than) {
   bool any = false;
-  for_points(grid.cells_at(d, high, layers), [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
+  for_points(box.cells_at(d, high, layers), [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
   return any;
 }
 
@@ -15,13 +15,13 @@ bool leave_whole(const Material &material) {
   return material.is_membrane() || material.surface_tension > 0 || material.viscosity > 0;
 }
 
-void mark_staying(const Grid &grid, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
+void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
   const BodyCells cells{phase.label[0], phase.fraction[0]};
-  Int3 begin{}, end = grid.owned();
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const int first = grid.layout().begin[d], last = grid.cells()[d] - layers - first;
-    if (grid.is_open(d, false)) begin[d] = std::max(begin[d], layers - first);
-    if (grid.is_open(d, true)) end[d] = std::min(end[d], last);
+  Int3 begin{}, end = box.cells();
+  for (int d = 0; d < box.dimension(); ++d) {
+    const int first = box.layout().begin[d], last = box.domain_cells()[d] - layers - first;
+    if (box.is_open(d, false)) begin[d] = std::max(begin[d], layers - first);
+    if (box.is_open(d, true)) end[d] = std::min(end[d], last);
   }
   for (int k = begin[2]; k < end[2]; ++k)
     for (int j = begin[1]; j < end[1]; ++j)
@@ -30,10 +30,10 @@ void mark_staying(const Grid &grid, int layers, const Phase &phase, std::map<int
           if (const auto found = leaves->find(label); found != leaves->end()) found->second = Leaving::stays;
 }
 
-void mark_leaving(const Grid &grid, int d, bool high, int layers, bool whole, Phase *phase,
+void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phase *phase,
                   std::map<int, Leaving> *leaves) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for_points(grid.cells_at(d, high, layers), [&](int i, int j, int k) {
+  for_points(box.cells_at(d, high, layers), [&](int i, int j, int k) {
     if (!(fraction(i, j, k) > 0)) return;
     if (label(i, j, k) > 0)
       (*leaves)[static_cast<int>(label(i, j, k))] = Leaving::leaves;
@@ -42,9 +42,9 @@ void mark_leaving(const Grid &grid, int d, bool high, int layers, bool whole, Ph
   });
 }
 
-void take_out(const Grid &grid, const std::map<int, Leaving> &leaves, Phase *phase) {
+void take_out(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for_points(grid.rows(), [&](int i, int j, int k) {
+  for_points(box.rows(), [&](int i, int j, int k) {
     double &name = label(i, j, k);
     if (!(name > 0)) return;
     const auto found = leaves.find(static_cast<int>(name));

@@ -11,7 +11,7 @@ namespace eulastic {
 constexpr int free_layers = 2;
 
 /// Whether this rank has more phi than that in any cell within `layers` of a side.
-bool has_solid(const Grid &grid, ConstView fraction, int d, bool high, int layers, double more_than);
+bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers, double more_than);
 /// Whether bodies are taken out, all of each, when they come there: what is on their surface, and another viscosity,
 /// is not followed through a side. All others flow out, and what is left within `free_layers` is taken out.
 bool leave_whole(const Material &material);
@@ -19,11 +19,11 @@ bool leave_whole(const Material &material);
 enum class Leaving { no, leaves, stays };
 /// Marks the labels of solid that this rank has at a side. Where they leave whole, what has no label (less than
 /// label_threshold) is gone at once.
-void mark_leaving(const Grid &grid, int d, bool high, int layers, bool whole, Phase *phase,
+void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phase *phase,
                   std::map<int, Leaving> *leaves);
 /// Those stay, of bodies that are marked on any rank, of which this one has BodyCells at no open side.
-void mark_staying(const Grid &grid, int layers, const Phase &phase, std::map<int, Leaving> *leaves);
+void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves);
 /// Takes the bodies that leave out of owned cells. What is around them is the caller's.
-void take_out(const Grid &grid, const std::map<int, Leaving> &leaves, Phase *phase);
+void take_out(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase);
 
 }  // namespace eulastic

@@ -2,7 +2,7 @@
 // is 0 on its surface, on that lattice, so that it can be turned and moved.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <vector>
 

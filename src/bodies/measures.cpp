@@ -5,6 +5,7 @@
 #include "bodies/body_sums.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -35,13 +36,13 @@ double largest_trace(const Run &run, int dimension, double so_far) {
 }
 
 // Solid of a run in cells at sides that bodies flow out through.
-double at_open_side(const Grid &grid, const Run &run, double all) {
+double at_open_side(const Box &box, const Run &run, double all) {
   const Int3 cell{run.begin, run.j, run.k};
   const auto is_at = [&](int d, int i) {
-    const int global = i + grid.layout().begin[d];
-    return (global == 0 && grid.is_open(d, false)) || (global == grid.cells()[d] - 1 && grid.is_open(d, true));
+    const int global = i + box.layout().begin[d];
+    return (global == 0 && box.is_open(d, false)) || (global == box.domain_cells()[d] - 1 && box.is_open(d, true));
   };
-  for (int d = 1; d < grid.dimension(); ++d)
+  for (int d = 1; d < box.dimension(); ++d)
     if (is_at(d, cell[d])) return all;
   const double *phi = run.of(run.phase.fraction, 0);
   double sum = is_at(0, run.begin) ? phi[0] : 0;
@@ -52,11 +53,11 @@ double at_open_side(const Grid &grid, const Run &run, double all) {
 // Sums of owned bodies, of what add(part, sums) adds in every part of the owned rows to those that are here.
 // Collective.
 template <class Add>
-PetscErrorCode sum_bodies(const Grid &grid, const BodyOwners &owners, const Add &add, BodySums *sums) {
+PetscErrorCode sum_bodies(const Box &box, const BodyOwners &owners, const Add &add, BodySums *sums) {
   PetscFunctionBeginUser;
-  const int parts = row_parts(grid);
+  const int parts = row_parts(box);
   std::vector<BodySums> others(parts - 1, *sums);
-  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), part == 0 ? *sums : others[part - 1]); });
+  in_parallel(parts, parts, [&](int part) { add(row_part(box, part, parts), part == 0 ? *sums : others[part - 1]); });
   for (const BodySums &some : others) sums->add(some);
   PetscCall(sums->reduce(owners));
   PetscFunctionReturn(0);
@@ -146,35 +147,35 @@ struct Largest {
 };
 
 // Scales, the largest tr B of every body, and energy densities along the pieces of rows of every part. Collective.
-PetscErrorCode find_largest(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
                             const BodyOwners &owners, const RowEnergy &energy,
                             std::vector<std::vector<double>> *energies, Largest *largest) {
   PetscFunctionBeginUser;
-  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(2, 0.0)),
+  std::vector<std::vector<double>> found(row_parts(domain), std::vector<double>(2, 0.0)),
       traces(found.size(), std::vector<double>(owners.here().size(), 0.0));
   energies->resize(found.size());
-  in_row_parts(grid, [&](const RowPart &part) {
+  in_row_parts(domain, [&](const RowPart &part) {
     std::vector<double> &some = found[part.number], &trace_of = traces[part.number],
                         &density = (*energies)[part.number];
-    std::vector<double> of_row(grid.owned()[0]);
+    std::vector<double> of_row(domain.cells()[0]);
     for_each_run(
-        grid, part, phases, owners,
+        domain, part, phases, owners,
         [&](const Phase &phase, const Segment &row) {
-          energy(grid, phase, row, of_row.data());
+          energy(domain, phase, row, of_row.data());
           density.insert(density.end(), of_row.begin() + row.i_begin, of_row.begin() + row.i_end);
         },
         [&](const Run &run) {
-          for (int d = 0; d < grid.dimension(); ++d) {
+          for (int d = 0; d < domain.dimension(); ++d) {
             const double *face = run.of(velocity, d);
             some[0] = largest_of(face, run.size(), some[0]);
             some[0] = largest_of(face + velocity[d].stride(d), run.size(), some[0]);
           }
           some[1] = largest_of(of_row.data() + run.begin, run.size(), some[1]);
-          trace_of[run.body] = largest_trace(run, grid.dimension(), trace_of[run.body]);
+          trace_of[run.body] = largest_trace(run, domain.dimension(), trace_of[run.body]);
         });
   });
   std::vector<double> most;
-  PetscCall(reduce_maxima(grid.comm(), found, &most));
+  PetscCall(reduce_maxima(domain.comm(), found, &most));
   *largest = {most[0], most[1], std::vector<double>(static_cast<std::size_t>(owners.owned().size()), 0.0)};
   for (const std::vector<double> &some : traces)
     for (std::size_t b = 0; b < some.size(); ++b) traces[0][b] = std::max(traces[0][b], some[b]);
@@ -182,57 +183,57 @@ PetscErrorCode find_largest(const Grid &grid, const std::vector<Phase> &phases, 
   PetscFunctionReturn(0);
 }
 
-BodyMeasure evaluate(const Grid &grid, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
+BodyMeasure evaluate(const Box &box, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
   BodyMeasure body;
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const double cells = sums.value(b, 0);
-  body.volume = cells * grid.cell_volume();
-  body.leaves = grid.any_open() && (body.volume == 0 || sums.value(b, on_open_side) > 0);
+  body.volume = cells * box.cell_volume();
+  body.leaves = box.any_open() && (body.volume == 0 || sums.value(b, on_open_side) > 0);
   Real3 mean{};
   for (int d = 0; d < 3; ++d) {
     mean[d] = cells > 0 ? sums.value(b, first_moment + d) / cells : 0;
     body.centroid[d] = (reference[d] + 0.5 + mean[d]) * h[d];
     body.velocity[d] = cells > 0 ? sums.value(b, momentum + d) / cells * largest.speed : 0;
   }
-  body.elastic_energy = sums.value(b, strain) * largest.energy * grid.cell_volume();
+  body.elastic_energy = sums.value(b, strain) * largest.energy * box.cell_volume();
   body.trace_max = std::max(largest.trace[b], 3.0);  // det B = 1
   if (!(cells > 0)) return body;
   std::array<double, 6> moments{}, B{1, 1, 1, 0, 0, 0};
   const double full = sums.value(b, full_cells);
   for (int c = 0; c < 6; ++c) {
     const int p = pairs[c][0], q = pairs[c][1];
-    if (std::max(p, q) >= grid.dimension()) continue;
+    if (std::max(p, q) >= box.dimension()) continue;
     if (full > 0) B[c] = sums.value(b, mean_tensor + c) / full;
     const double central = sums.value(b, second_moment + c) / cells - mean[p] * mean[q];
     moments[c] = (central - (p == q ? 1.0 / 12 : 0.0)) * h[p] * h[q];
   }
-  set_lengths(moments, B, grid.dimension(), &body);
+  set_lengths(moments, B, box.dimension(), &body);
   return body;
 }
 
 }  // namespace
 
-PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &phases) {
+PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   BodyOwners owners;
   std::vector<Int3> references;
-  PetscCall(connect(grid, phases, {}, &owners, &references));
+  PetscCall(connect(domain, phases, {}, &owners, &references));
   BodySums sums(references.size(), position_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     for_each_run(
-        grid, part, phases, owners, [](const Phase &, const Segment &) {},
+        domain, part, phases, owners, [](const Phase &, const Segment &) {},
         [&](const Run &run) {
-          const Real3 x = offset(grid, references[run.body], {run.begin, run.j, run.k});
-          const RunSums of_run = sum_positions(grid, run, references[run.body]);
+          const Real3 x = offset(domain, references[run.body], {run.begin, run.j, run.k});
+          const RunSums of_run = sum_positions(domain, run, references[run.body]);
           some.add(run.body, 0, of_run.fraction);
           some.add(run.body, first_moment, of_run.first_moment);
           for (int d = 1; d < 3; ++d) some.add(run.body, first_moment + d, of_run.fraction * x[d]);
         });
   };
-  PetscCall(sum_bodies(grid, owners, add, &sums));
+  PetscCall(sum_bodies(domain, owners, add, &sums));
   for (int b = 0; b < owners.owned().size(); ++b)
-    for (int d = 0; d < grid.dimension(); ++d) {
+    for (int d = 0; d < domain.dimension(); ++d) {
       const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
       // A body that fills a periodic direction has a mean of -1/2 there and must stay.
       if (std::abs(mean) > 0.75 && std::abs(mean) < 0x1p20) references_[b][d] += static_cast<int>(std::lround(mean));
@@ -240,18 +241,18 @@ PetscErrorCode BodyTracker::follow(const Grid &grid, const std::vector<Phase> &p
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
                                     const RowEnergy &energy, std::vector<BodyMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dimension = grid.dimension();
+  const int dimension = domain.dimension();
   BodyOwners owners;
   std::vector<Int3> references;
-  PetscCall(connect(grid, phases, {}, &owners, &references));
+  PetscCall(connect(domain, phases, {}, &owners, &references));
   std::vector<std::vector<double>> energies;
   Largest largest;
-  PetscCall(find_largest(grid, phases, velocity, owners, energy, &energies, &largest));
-  const bool opens = grid.any_open();
+  PetscCall(find_largest(domain, phases, velocity, owners, energy, &energies, &largest));
+  const bool opens = domain.any_open();
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     const double *density = energies[part.number].data(), *of_row = nullptr;  // of cell 0 of the row
@@ -259,10 +260,10 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
       of_row = density - row.i_begin;
       density += row.size();
     };
-    for_each_run(grid, part, phases, owners, start, [&](const Run &run) {
+    for_each_run(domain, part, phases, owners, start, [&](const Run &run) {
       const int b = run.body;
-      const Real3 begin = offset(grid, references[b], {run.begin, run.j, run.k});
-      const RunSums of_run = sum_all(grid, run, references[b], velocity);
+      const Real3 begin = offset(domain, references[b], {run.begin, run.j, run.k});
+      const RunSums of_run = sum_all(domain, run, references[b], velocity);
       const double cells = of_run.fraction, x = of_run.first_moment, y = begin[1], z = begin[2];
       const std::array first{x, cells * y, cells * z};
       const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
@@ -273,19 +274,19 @@ PetscErrorCode BodyTracker::measure(const Grid &grid, const std::vector<Phase> &
         some.add(b, momentum + d, of_run.momentum[d] / largest.speed);
       if (largest.energy > 0)
         some.add(b, strain,
-                 lane_sum(of_row + run.begin, run.size(), grid.layout().begin[0] + run.begin) / largest.energy);
+                 lane_sum(of_row + run.begin, run.size(), domain.layout().begin[0] + run.begin) / largest.energy);
       some.add(b, full_cells, of_run.full_cells);
       for (int f = 0; f < run.phase.tensor.field.count() && of_run.full_cells > 0; ++f) {
         const auto [p, q, at] = run.phase.tensor.components()[f];
         some.add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
       }
-      if (opens) some.add(b, on_open_side, at_open_side(grid, run, cells));
+      if (opens) some.add(b, on_open_side, at_open_side(domain, run, cells));
     });
   };
-  PetscCall(sum_bodies(grid, owners, add, &sums));
+  PetscCall(sum_bodies(domain, owners, add, &sums));
   result->clear();
   for (int b = 0; b < owners.owned().size(); ++b) {
-    result->push_back(evaluate(grid, sums, b, references_[b], largest));
+    result->push_back(evaluate(domain, sums, b, references_[b], largest));
     result->back().label = owners.owned().begin + b + 1;
     result->back().species = species(result->back().label);
   }

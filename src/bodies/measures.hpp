@@ -6,9 +6,11 @@
 // averaged over a cell): it is subtracted.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 #include "bodies/placement.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -34,14 +36,14 @@ struct BodyMeasure {
 };
 
 /// phi W of the cells of a row, into out[0 .. cells); defined where the law is.
-using RowEnergy = std::function<void(const Grid &, const Phase &, const Segment &, double *out)>;
+using RowEnergy = std::function<void(const Box &, const Phase &, const Segment &, double *out)>;
 
 class BodyTracker {
 public:
   /// Adds the bodies of the next phase, placed as the labels run: body b of all has label b + 1.
-  void add_phase(const Grid &grid, const Places &places);
+  void add_phase(const Domain &domain, const Places &places);
   /// Another body, like the one with this label, as many cells away. Collective.
-  PetscErrorCode add_like(const Grid &grid, int label, const Int3 &shift);
+  PetscErrorCode add_like(const Domain &domain, int label, const Int3 &shift);
   /// Labels of placed bodies that others were made like; those others come last, in this order.
   const std::vector<int> &like() const { return like_; }
   /// All of them again, to be followed by set_known().
@@ -60,25 +62,25 @@ public:
 
   /// Who owns the bodies of which a rank has labelled cells, or that it names in `more`; `references`: of these, within
   /// the box. Collective.
-  PetscErrorCode connect(const Grid &grid, const std::vector<Phase> &phases, const std::vector<int> &more,
+  PetscErrorCode connect(const Domain &domain, const std::vector<Phase> &phases, const std::vector<int> &more,
                          BodyOwners *owners, std::vector<Int3> *references);
 
   /// Moves the reference cells to the centroids. Call after carry_labels(), on its schedule and nowhere else: then
   /// the unwrapping never depends on how often bodies are measured. Collective.
-  PetscErrorCode follow(const Grid &grid, const std::vector<Phase> &phases);
+  PetscErrorCode follow(const Domain &domain, const std::vector<Phase> &phases);
   /// Measures all bodies, changing nothing; every rank gets those that it owns. `velocity`: u, v (, w) on faces with
   /// one valid ghost layer, as phi and B. Collective.
-  PetscErrorCode measure(const Grid &grid, const std::vector<Phase> &phases, const FieldBlock &velocity,
+  PetscErrorCode measure(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
                          const RowEnergy &energy, std::vector<BodyMeasure> *bodies);
 
   /// Moves reference cells into the box, where it is new.
-  void wrap(const Grid &grid);
+  void wrap(const Box &box);
   /// Volumes at t = 0 of the bodies that this rank owns; empty before set_first_volumes(), which comes after measure().
   const std::vector<double> &first_volumes() const { return first_volumes_; }
   void set_first_volumes(std::vector<double> owned) { first_volumes_ = std::move(owned); }
   /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
   /// Collective.
-  PetscErrorCode known(const Grid &grid, std::vector<Int3> *references, std::vector<double> *first_volumes);
+  PetscErrorCode known(const Domain &domain, std::vector<Int3> *references, std::vector<double> *first_volumes);
   /// The same, of the bodies that this rank owns.
   void set_known(std::vector<Int3> owned_references, std::vector<double> owned_first_volumes);
 
@@ -88,8 +90,8 @@ private:
     Int3 reference;
     double first_volume;
   };
-  PetscErrorCode give_to_owners(const Grid &grid, std::vector<Known> known);
-  PetscErrorCode settle(const Grid &grid);
+  PetscErrorCode give_to_owners(const Domain &domain, std::vector<Known> known);
+  PetscErrorCode settle(const Domain &domain);
 
   std::vector<Known> placed_;     ///< until they are given to their owners
   std::vector<Int3> references_;  ///< of the bodies that this rank owns

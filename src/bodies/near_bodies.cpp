@@ -9,37 +9,37 @@ namespace {
 constexpr double nobody = std::numeric_limits<double>::infinity();
 
 // The owned cells and `reach` layers of those around them.
-struct Box {
+struct CellRange {
   Int3 begin{}, end{};
-  Box(const Grid &grid, int reach) {
+  CellRange(const Box &box, int reach) {
     for (int d = 0; d < 3; ++d) {
-      const Grid::Range near = grid.points_near(d, false, reach);
+      const Box::Range near = box.points_near(d, false, reach);
       begin[d] = near.begin;
       end[d] = near.end;
     }
   }
-  Box around(const Int3 &cell, int reach) const {
-    Box box = *this;
+  CellRange around(const Int3 &cell, int reach) const {
+    CellRange range = *this;
     for (int d = 0; d < 3; ++d) {
-      box.begin[d] = std::max(begin[d], cell[d] - reach);
-      box.end[d] = std::min(end[d], cell[d] + reach + 1);
+      range.begin[d] = std::max(begin[d], cell[d] - reach);
+      range.end[d] = std::min(end[d], cell[d] + reach + 1);
     }
-    return box;
+    return range;
   }
 };
 
 // Smallest and largest label in blocks of `size` cells each way; the blocks begin with the box.
 struct Blocks {
   int size;
-  Box box;
+  CellRange range;
   Int3 count{};
   std::vector<double> low, high;
 
-  Blocks(const Box &cells, const BodyCells &bodies, int block_size) : size(block_size), box(cells) {
-    for (int d = 0; d < 3; ++d) count[d] = (box.end[d] - box.begin[d] + size - 1) / size;
+  Blocks(const CellRange &cells, const BodyCells &bodies, int block_size) : size(block_size), range(cells) {
+    for (int d = 0; d < 3; ++d) count[d] = (range.end[d] - range.begin[d] + size - 1) / size;
     low.assign(std::size_t(count[0]) * count[1] * count[2], nobody);
     high.assign(low.size(), 0);
-    const int width = box.end[0] - box.begin[0];
+    const int width = range.end[0] - range.begin[0];
     std::vector<double> row_low(width), row_high(width);
     for (int bk = 0; bk < count[2]; ++bk)
       for (int bj = 0; bj < count[1]; ++bj) {
@@ -47,7 +47,8 @@ struct Blocks {
         std::fill(row_high.begin(), row_high.end(), 0);
         for (int k = first(2, bk); k < last(2, bk); ++k)
           for (int j = first(1, bj); j < last(1, bj); ++j) {
-            const double *q = bodies.label.row(j, k) + box.begin[0], *phi = bodies.fraction.row(j, k) + box.begin[0];
+            const double *q = bodies.label.row(j, k) + range.begin[0],
+                         *phi = bodies.fraction.row(j, k) + range.begin[0];
             double *const least = row_low.data(), *const most = row_high.data();
 #pragma omp simd
             for (int i = 0; i < width; ++i) {
@@ -63,8 +64,8 @@ struct Blocks {
         }
       }
   }
-  int first(int d, int block) const { return box.begin[d] + block * size; }
-  int last(int d, int block) const { return std::min(first(d, block) + size, box.end[d]); }
+  int first(int d, int block) const { return range.begin[d] + block * size; }
+  int last(int d, int block) const { return std::min(first(d, block) + size, range.end[d]); }
   // Whether a block and those around it hold labels of more than one body.
   bool is_mixed(int bi, int bj, int bk) const {
     double least = nobody, most = 0;
@@ -80,9 +81,9 @@ struct Blocks {
 };
 
 // On the skin of its body, where the cell of it that is nearest to anything is.
-bool is_skin(const Grid &grid, const BodyCells &cells, const Int3 &c) {
+bool is_skin(const Box &box, const BodyCells &cells, const Int3 &c) {
   const double own = cells(c[0], c[1], c[2]);
-  for (int d = 0; d < grid.dimension(); ++d)
+  for (int d = 0; d < box.dimension(); ++d)
     for (const int side : {-1, 1}) {
       Int3 next = c;
       next[d] += side;
@@ -92,7 +93,8 @@ bool is_skin(const Grid &grid, const BodyCells &cells, const Int3 &c) {
 }
 
 // Adds the pairs of body `own` of a cell with the other labels in a box around it.
-void look_around(const BodyCells &cells, const Box &window, double own, int phase, std::vector<NearBodies> *found) {
+void look_around(const BodyCells &cells, const CellRange &window, double own, int phase,
+                 std::vector<NearBodies> *found) {
   for (int k = window.begin[2]; k < window.end[2]; ++k)
     for (int j = window.begin[1]; j < window.end[1]; ++j)
       for (int i = window.begin[0]; i < window.end[0]; ++i) {
@@ -110,8 +112,8 @@ void sort_out(std::vector<NearBodies> *found) {
 
 }  // namespace
 
-std::vector<int> labels_in(const Grid &grid, ConstView label, int reach) {
-  const Box box(grid, reach);
+std::vector<int> labels_in(const Box &box, ConstView label, int reach) {
+  const CellRange range(box, reach);
   std::vector<int> labels;
   double last = 0;
   std::size_t sorted = 64;
@@ -119,10 +121,10 @@ std::vector<int> labels_in(const Grid &grid, ConstView label, int reach) {
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   };
-  for (int k = box.begin[2]; k < box.end[2]; ++k)
-    for (int j = box.begin[1]; j < box.end[1]; ++j) {
+  for (int k = range.begin[2]; k < range.end[2]; ++k)
+    for (int j = range.begin[1]; j < range.end[1]; ++j) {
       const double *names = label.row(j, k);
-      for (int i = box.begin[0]; i < box.end[0]; ++i) {
+      for (int i = range.begin[0]; i < range.end[0]; ++i) {
         if (names[i] > 0 && names[i] != last) labels.push_back(static_cast<int>(names[i]));
         last = names[i];
       }
@@ -135,9 +137,8 @@ std::vector<int> labels_in(const Grid &grid, ConstView label, int reach) {
   return labels;
 }
 
-void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int reach,
-                        std::vector<NearBodies> *found) {
-  const Box all(grid, reach), owned(grid, 0);
+void find_near_in_phase(const Box &box, const BodyCells &cells, int phase, int reach, std::vector<NearBodies> *found) {
+  const CellRange all(box, reach), owned(box, 0);
   const Blocks blocks(all, cells, reach);
   std::vector<NearBodies> pairs;
   for (int bk = 0; bk < blocks.count[2]; ++bk)
@@ -147,7 +148,7 @@ void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int
         for (int k = std::max(blocks.first(2, bk), 0); k < std::min(blocks.last(2, bk), owned.end[2]); ++k)
           for (int j = std::max(blocks.first(1, bj), 0); j < std::min(blocks.last(1, bj), owned.end[1]); ++j)
             for (int i = std::max(blocks.first(0, bi), 0); i < std::min(blocks.last(0, bi), owned.end[0]); ++i)
-              if (cells(i, j, k) > 0 && is_skin(grid, cells, {i, j, k}))
+              if (cells(i, j, k) > 0 && is_skin(box, cells, {i, j, k}))
                 look_around(cells, all.around({i, j, k}, reach), cells(i, j, k), phase, &pairs);
         sort_out(&pairs);
       }
@@ -157,15 +158,15 @@ void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int
   found->insert(found->end(), pairs.begin(), pairs.end());
 }
 
-void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
+void find_near_others(const Box &box, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
                       int phase, int reach, std::vector<NearBodies> *found) {
-  const Box all(grid, reach);
+  const CellRange all(box, reach);
   std::vector<NearBodies> pairs;
-  for (const Segment &row : grid.rows()) {
+  for (const Segment &row : box.rows()) {
     for (int i = row.i_begin; i < row.i_end; ++i) {
       const double label = own(i, row.j, row.k);
       if (label <= 0 || !std::binary_search(labels.begin(), labels.end(), static_cast<int>(label))) continue;
-      if (is_skin(grid, own, {i, row.j, row.k}))
+      if (is_skin(box, own, {i, row.j, row.k}))
         look_around(others, all.around({i, row.j, row.k}, reach), label, phase, &pairs);
     }
     sort_out(&pairs);

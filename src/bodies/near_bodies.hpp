@@ -23,15 +23,15 @@ struct BodyCells {
 };
 
 /// Local: the labels of owned cells and `reach` ghosts, ascending, each once.
-std::vector<int> labels_in(const Grid &grid, ConstView label, int reach = 0);
+std::vector<int> labels_in(const Box &box, ConstView label, int reach = 0);
 
 /// Local: pairs in one phase, body > other, found from owned cells. `reach` ghosts. One pass over the cells, and a
 /// closer look only where blocks of reach^3 cells see several labels.
-void find_near_in_phase(const Grid &grid, const BodyCells &cells, int phase, int reach, std::vector<NearBodies> *found);
+void find_near_in_phase(const Box &box, const BodyCells &cells, int phase, int reach, std::vector<NearBodies> *found);
 
 /// Local: pairs of a body of `labels` (ascending), whose owned cells `own` holds, and any body that `others`, those of
 /// another phase, has. `reach` ghosts of both.
-void find_near_others(const Grid &grid, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
+void find_near_others(const Box &box, const BodyCells &own, const std::vector<int> &labels, const BodyCells &others,
                       int phase, int reach, std::vector<NearBodies> *found);
 
 }  // namespace eulastic

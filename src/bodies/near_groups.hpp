@@ -1,6 +1,7 @@
 // Groups of bodies that are near each other, directly or through others: one rank knows all of a group and decides.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 #include "bodies/contact.hpp"
 #include "bodies/near_bodies.hpp"

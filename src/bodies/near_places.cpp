@@ -1,6 +1,7 @@
 #include "bodies/near_places.hpp"
 
 #include "base/deliver.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,45 +16,45 @@ double reach(const Surface &surface, const BodyPlace &place, int d) {
 }
 
 // The places along d of ranks that a body comes near.
-std::vector<int> parts_near(const Grid &grid, int d, const Surface &surface, const BodyPlace &place) {
-  const int cells = grid.cells()[d];
-  const double h = grid.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
+std::vector<int> parts_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
+  const int cells = domain.domain_cells()[d];
+  const double h = domain.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
   int first = 0, last = cells - 1;
-  if (d < grid.dimension() && 2 * far + h < grid.spec().length[d]) {
+  if (d < domain.dimension() && 2 * far + h < domain.domain_shape().length[d]) {
     first = static_cast<int>(std::floor((centre - far) / h));
     last = static_cast<int>(std::floor((centre + far) / h));
-    if (grid.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
+    if (domain.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
   }
   std::vector<int> parts;
   for (int i = first; i <= last;) {
-    const int cell = (i + cells) % cells, part = grid.owner_along(d, cell);
+    const int cell = (i + cells) % cells, part = domain.owner_along(d, cell);
     if (parts.empty() || part != parts.front()) parts.push_back(part);
-    i += grid.first_cell(d, part + 1) - cell;
+    i += domain.first_cell(d, part + 1) - cell;
   }
   return parts;
 }
 
 }  // namespace
 
-bool is_near(const Grid &grid, int rank, const Surface &surface, const BodyPlace &place) {
-  const Int3 at = grid.place_of(rank);
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const std::vector<int> parts = parts_near(grid, d, surface, place);
+bool is_near(const Domain &domain, int rank, const Surface &surface, const BodyPlace &place) {
+  const Int3 at = domain.place_of(rank);
+  for (int d = 0; d < domain.dimension(); ++d) {
+    const std::vector<int> parts = parts_near(domain, d, surface, place);
     if (std::find(parts.begin(), parts.end(), at[d]) == parts.end()) return false;
   }
   return true;
 }
 
-std::vector<int> ranks_near(const Grid &grid, const Surface &surface, const BodyPlace &place) {
+std::vector<int> ranks_near(const Domain &domain, const Surface &surface, const BodyPlace &place) {
   std::vector<int> ranks;
-  const std::vector<int> x = parts_near(grid, 0, surface, place), y = parts_near(grid, 1, surface, place);
-  for (const int k : parts_near(grid, 2, surface, place))
+  const std::vector<int> x = parts_near(domain, 0, surface, place), y = parts_near(domain, 1, surface, place);
+  for (const int k : parts_near(domain, 2, surface, place))
     for (const int j : y)
-      for (const int i : x) ranks.push_back(grid.rank_at({i, j, k}));
+      for (const int i : x) ranks.push_back(domain.rank_at({i, j, k}));
   return ranks;
 }
 
-PetscErrorCode bring_near(MPI_Comm comm, const Grid &grid, const SpeciesSpec &spec, const Places &places,
+PetscErrorCode bring_near(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
                           Places *here) {
   int rank;
   std::vector<int> ranks;
@@ -63,10 +64,10 @@ PetscErrorCode bring_near(MPI_Comm comm, const Grid &grid, const SpeciesSpec &sp
   here->everywhere = false;
   here->known.clear();
   if (places.count == 0) PetscFunctionReturn(0);
-  const Surface surface(spec, grid.dimension());
+  const Surface surface(spec, domain.dimension());
   for (const NumberedPlace &place : places.known) {
-    const std::vector<int> near = places.everywhere ? std::vector<int>() : ranks_near(grid, surface, place);
-    if (places.everywhere && is_near(grid, rank, surface, place)) here->known.push_back(place);
+    const std::vector<int> near = places.everywhere ? std::vector<int>() : ranks_near(domain, surface, place);
+    if (places.everywhere && is_near(domain, rank, surface, place)) here->known.push_back(place);
     here->known.insert(here->known.end(), near.size(), place);
     ranks.insert(ranks.end(), near.begin(), near.end());
   }

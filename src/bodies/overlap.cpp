@@ -57,7 +57,7 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
 // Of the bodies that a rank knows of, in the order of their labels.
 class Search {
 public:
-  Search(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const GridSpec &grid)
+  Search(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const DomainShape &grid)
       : species_(species), grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3) {
     double spacing = grid.length[0] / grid.cells[0];
     for (int d = 1; d < dimension_; ++d) spacing = std::min(spacing, grid.length[d] / grid.cells[d]);
@@ -163,7 +163,7 @@ private:
   }
 
   const std::vector<SpeciesSpec> &species_;
-  GridSpec grid_;
+  DomainShape grid_;
   int dimension_;
   std::vector<Surface> surfaces_;   // of species
   std::vector<ConvexBody> shapes_;  // of species
@@ -190,7 +190,7 @@ bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Plac
 }
 
 std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
-                               const GridSpec &grid, Overlap *first) {
+                               const DomainShape &grid, Overlap *first) {
   *first = {};
   std::pair<int, int> found;
   bool same_place = false;
@@ -212,7 +212,7 @@ std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const st
   return overlaps;
 }
 
-void add_shared(const SpeciesSpec &spec, const Places &places, const GridSpec &grid, const CellWindow &cells,
+void add_shared(const SpeciesSpec &spec, const Places &places, const DomainShape &grid, const CellWindow &cells,
                 ConstView fraction, std::map<int, SharedVolume> *shared) {
   const Surface surface(spec, grid.cells[2] == 1 ? 2 : 3);
   const Int3 &first = cells.begin;

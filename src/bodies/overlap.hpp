@@ -30,7 +30,7 @@ bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Plac
 /// one; a body at random and one before it; bodies from files (add_shared). Where ranks know what comes near their
 /// boxes (bring_near), together they find all.
 std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
-                               const GridSpec &grid, Overlap *first);
+                               const DomainShape &grid, Overlap *first);
 
 /// What a body shares with a solid: volume in 2^-30 cells, to be added without round-off, and whether they overlap.
 struct SharedVolume {
@@ -39,7 +39,7 @@ struct SharedVolume {
 };
 
 /// Adds what the known bodies of a species share with the solid of `fraction` in some cells of the box, by their index.
-void add_shared(const SpeciesSpec &spec, const Places &places, const GridSpec &grid, const CellWindow &cells,
+void add_shared(const SpeciesSpec &spec, const Places &places, const DomainShape &grid, const CellWindow &cells,
                 ConstView fraction, std::map<int, SharedVolume> *shared);
 
 }  // namespace eulastic

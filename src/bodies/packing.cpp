@@ -33,8 +33,8 @@ std::vector<Style> styles(const PlacedConvex &body, int dimension) {
 
 class Lattice {
 public:
-  Lattice(const Region &region, const GridSpec &grid, const PlacedConvex &body, const Style &style, const Int3 &offset,
-          double stretch)
+  Lattice(const Region &region, const DomainShape &grid, const PlacedConvex &body, const Style &style,
+          const Int3 &offset, double stretch)
       : region_(region), grid_(grid), body_(body), style_(style), stretch_(stretch) {
     for (int d = 0; d < 3; ++d) {
       x_[d] = {body.centre[d]};
@@ -78,7 +78,7 @@ private:
   }
 
   const Region &region_;
-  const GridSpec &grid_;
+  const DomainShape &grid_;
   const PlacedConvex &body_;
   Style style_;
   double stretch_;
@@ -95,7 +95,7 @@ double stretch_for(const Region &region, const PlacedConvex &body, int dimension
 
 }  // namespace
 
-std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, const GridSpec &grid,
+std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, const DomainShape &grid,
                                     const ConvexBody &shape, const std::vector<Real3> &orientations,
                                     std::size_t enough) {
   std::vector<BodyPlace> best, sites;

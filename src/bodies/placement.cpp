@@ -34,7 +34,7 @@ std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPl
 }
 
 // Why the lumen of a tube is not in the box.
-std::string why_no_lumen(const SpeciesSpec &spec, const GridSpec &grid, const Real3 &centre) {
+std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const Real3 &centre) {
   const double throat = spec.shape == Shape::constricted_tube ? spec.throat_length / 2 : 0;
   for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) {
     const double half = d == spec.axis ? throat : spec.radius, slack = 1e-5 * grid.length[d];
@@ -46,7 +46,7 @@ std::string why_no_lumen(const SpeciesSpec &spec, const GridSpec &grid, const Re
 }
 
 // Why `place` cannot be in the box.
-std::string why_not(const SpeciesSpec &spec, const Surface &surface, const GridSpec &grid, const BodyPlace &place) {
+std::string why_not(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "turns only about z in 2-D";
   const bool may_cross = spec.shape == Shape::cylinder || is_attached(spec.shape);
@@ -73,7 +73,7 @@ std::string why_not(const SpeciesSpec &spec, const Surface &surface, const GridS
 // Takes the bodies of a species as they come.
 class Placing {
 public:
-  Placing(const SpeciesSpec &spec, const GridSpec &grid, const KeptBodies &kept, Places *places)
+  Placing(const SpeciesSpec &spec, const DomainShape &grid, const KeptBodies &kept, Places *places)
       : spec_(spec), grid_(grid), surface_(spec, grid.cells[2] == 1 ? 2 : 3), kept_(kept), places_(*places) {}
 
   void expect(int count) {
@@ -97,7 +97,7 @@ public:
 
 private:
   const SpeciesSpec &spec_;
-  const GridSpec &grid_;
+  const DomainShape &grid_;
   Surface surface_;
   KeptBodies kept_;
   Places &places_;
@@ -121,7 +121,7 @@ std::string place_list(const SpeciesSpec &spec, int dimension, Placing *placing)
   return {};
 }
 
-std::string make_lattice(const SpeciesSpec &spec, const GridSpec &grid, Placing *placing) {
+std::string make_lattice(const SpeciesSpec &spec, const DomainShape &grid, Placing *placing) {
   const Int3 &n = spec.count;
   if (n[0] < 1 || n[1] < 1 || n[2] < 1) return "a lattice needs at least one body in every direction";
   if (grid.cells[2] == 1 && n[2] != 1) return "a lattice has one layer in z in 2-D";
@@ -166,7 +166,7 @@ void Places::share_among(int rank, int ranks) {
   everywhere = ranks == 1;
 }
 
-std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, Places *places, const KeptBodies &kept) {
+std::string place_bodies(const SpeciesSpec &spec, const DomainShape &grid, Places *places, const KeptBodies &kept) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   *places = {};
   if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files

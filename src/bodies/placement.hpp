@@ -45,6 +45,6 @@ struct KeptBodies {
 /// x,y,z,angle_x,angle_y,angle_z (base/number_rows.hpp), the number of rows first or not; angles of a row replace the
 /// species' orientation. Lattice: centres at (i + 1/2) L/n, and jitter. A slab lies where its interval says; shapes
 /// from files place nothing. Collective over all ranks of the program where there is a list, which rank 0 reads.
-std::string place_bodies(const SpeciesSpec &spec, const GridSpec &grid, Places *places, const KeptBodies &kept = {});
+std::string place_bodies(const SpeciesSpec &spec, const DomainShape &grid, Places *places, const KeptBodies &kept = {});
 
 }  // namespace eulastic

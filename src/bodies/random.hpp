@@ -1,7 +1,7 @@
 // Random numbers that depend on the seed alone: the same on every rank.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cmath>
 #include <cstdint>

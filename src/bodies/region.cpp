@@ -6,7 +6,7 @@
 namespace eulastic {
 
 Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
-               const SolidBodies &solids, const GridSpec &grid, double margin)
+               const SolidBodies &solids, const DomainShape &grid, double margin)
     : grid_(grid),
       dimension_(grid.cells[2] == 1 ? 2 : 3),
       vessel_(vessel),

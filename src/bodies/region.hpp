@@ -14,7 +14,7 @@ public:
   /// All slabs of `species` and the cylinders among those with `places`. `vessel`: one of the tubes, or null. All must
   /// stay. `margin`: what bodies keep free beside sides of the box, slabs and the lumen's wall.
   Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
-         const SolidBodies &solids, const GridSpec &grid, double margin);
+         const SolidBodies &solids, const DomainShape &grid, double margin);
 
   /// Volume (area in 2-D) of the lumen, or of the box less slabs; less bodies from files.
   double volume() const { return volume_; }
@@ -30,7 +30,7 @@ private:
   bool clear_of_slabs(const PlacedConvex &body) const;
   bool clear_of_cylinders(const PlacedConvex &body) const;
 
-  GridSpec grid_;
+  DomainShape grid_;
   int dimension_;
   const SpeciesSpec *vessel_;
   const SolidBodies &solids_;

@@ -34,7 +34,7 @@ double overlap(const std::vector<Penetration> &contacts) {
 
 class Relaxation {
 public:
-  Relaxation(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, const Crowd &others,
+  Relaxation(const SpeciesSpec &spec, const DomainShape &grid, const Region &region, const Crowd &others,
              const std::vector<Real3> &orientations, std::size_t count)
       : spec_(spec),
         grid_(grid),
@@ -241,7 +241,7 @@ private:
   }
 
   const SpeciesSpec &spec_;
-  const GridSpec &grid_;
+  const DomainShape &grid_;
   int dimension_;
   const Region &region_;
   const Crowd &others_;
@@ -256,7 +256,7 @@ private:
 
 }  // namespace
 
-std::size_t relax_crowd(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, const Crowd &others,
+std::size_t relax_crowd(const SpeciesSpec &spec, const DomainShape &grid, const Region &region, const Crowd &others,
                         const std::vector<Real3> &orientations, std::size_t count, std::vector<BodyPlace> *places) {
   return Relaxation(spec, grid, region, others, orientations, count).run(places);
 }

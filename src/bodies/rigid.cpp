@@ -20,14 +20,14 @@ int RigidBodies::image_of(int body, const Int3 &shift) {
   return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1);
 }
 
-RigidBodies::RigidBodies(const Grid &grid, GhostExchange &exchange) : grid_(grid), exchange_(exchange) {}
+RigidBodies::RigidBodies(const Domain &domain, GhostExchange &exchange) : domain_(domain), exchange_(exchange) {}
 
 PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase,
                                 std::string *wrong) {
   PetscFunctionBeginUser;
-  const int dimension = grid_.dimension(), motion = static_cast<int>(faces_.motions.size());
+  const int dimension = domain_.dimension(), motion = static_cast<int>(faces_.motions.size());
   if (!exist())
-    for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(grid_, 1);
+    for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(domain_, 1);
   faces_.motions.push_back(spec.motion);
   faces_.motions.back().travelling = spec.travelling(dimension);
   faces_.motions.back().turning = spec.turns(dimension);
@@ -42,14 +42,14 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
     if (!wrong->empty()) PetscFunctionReturn(0);
   } else if (file) {
     PetscCall(exchange_.update(phase->fraction, 1));
-    fill_wall_ghosts_even(grid_, at_centre, phase->fraction[0], 1);
+    fill_wall_ghosts_even(domain_, at_centre, phase->fraction[0], 1);
   } else {
     surface = std::make_shared<const Surface>(spec, dimension);
   }
   if (turns && !file)
     mass = moments(*surface, dimension);
   else if (travels && !file)
-    mass.volume = volume_in_box(spec, grid_.spec());
+    mass.volume = volume_in_box(spec, domain_.domain_shape());
   species_.push_back({spec, file ? Places{{spec.centre, {}}} : places, first_label, surface, mass});
   for (const NumberedPlace &place : species_.back().places.known) {
     const int index = faces_.count++;
@@ -70,32 +70,33 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
 // visit(mark, image, place) for the owned faces that a body may touch.
 template <class Visit>
 void RigidBodies::for_faces(int a, int index, const Visit &visit) {
-  const Layout &own = grid_.layout();
+  const Layout &own = domain_.layout();
   const PlacedBody &body = *sources_[index].body;
   std::array<std::vector<PlacedBody::Range>, 3> pieces;
   for (int d = 0; d < 3; ++d) {
-    const int first = own.begin[d], last = first + grid_.faces_end(a, d);
-    pieces[d] = d < grid_.dimension() && body.ends(d) ? body.ranges(d, first, last)
-                                                      : std::vector<PlacedBody::Range>{{first, last, 0}};
+    const int first = own.begin[d], last = first + domain_.faces_end(a, d);
+    pieces[d] = d < domain_.dimension() && body.ends(d) ? body.ranges(d, first, last)
+                                                        : std::vector<PlacedBody::Range>{{first, last, 0}};
   }
   const View inside = inside_[a][0];
   for (const auto &z : pieces[2])
     for (const auto &y : pieces[1])
       for (const auto &x : pieces[0]) {
-        const Int3 shift{x.shift / grid_.cells()[0], y.shift / grid_.cells()[1], z.shift / grid_.cells()[2]};
+        const Int3 shift{x.shift / domain_.domain_cells()[0], y.shift / domain_.domain_cells()[1],
+                         z.shift / domain_.domain_cells()[2]};
         const int image = image_of(index, shift);
         for (int k = z.begin; k < z.end; ++k)
           for (int j = y.begin; j < y.end; ++j)
             for (int i = x.begin; i < x.end; ++i) {
               const Int3 local{i - own.begin[0], j - own.begin[1], k - own.begin[2]};
-              Real3 place = place_of_face(grid_, a, local[0], local[1], local[2]);
+              Real3 place = place_of_face(domain_, a, local[0], local[1], local[2]);
               place[0] += x.shift;
               place[1] += y.shift;
               place[2] += z.shift;
               // A body that begins on a side of the box covers it.
               const int at = own.begin[a] + local[a];
-              if (grid_.is_wall(a) && at == 0) place[a] += inward;
-              if (grid_.is_wall(a) && at == grid_.cells()[a]) place[a] -= inward;
+              if (domain_.is_wall(a) && at == 0) place[a] += inward;
+              if (domain_.is_wall(a) && at == domain_.domain_cells()[a]) place[a] -= inward;
               visit(inside(local[0], local[1], local[2]), image, place);
             }
       }
@@ -104,8 +105,8 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
 void RigidBodies::mark(int a, int index) {
   const PlacedBody &body = *sources_[index].body;
   // Faces on a surface are fluid, whatever round-off makes of them.
-  const Real3 &h = grid_.spacing();
-  const double least = on_surface * (grid_.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
+  const Real3 &h = domain_.spacing();
+  const double least = on_surface * (domain_.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
   for_faces(a, index, [&](double &mark, int image, const Real3 &place) {
     if (!(body.level(place) < -least)) return;
     if (mark == 0)
@@ -133,12 +134,12 @@ void RigidBodies::note_contact(int image, int other) {
 
 // Of a file a face is inside where phi, averaged to it, is above 1/2.
 void RigidBodies::mark_file(int a, ConstView phi, int index) {
-  if (!level_[a]) level_[a] = FieldBlock(grid_, 1);
+  if (!level_[a]) level_[a] = FieldBlock(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
-  for (int k = 0; k < grid_.faces_end(a, 2); ++k)
-    for (int j = 0; j < grid_.faces_end(a, 1); ++j)
-      for (int i = 0; i < grid_.faces_end(a, 0); ++i) {
+  for (int k = 0; k < domain_.faces_end(a, 2); ++k)
+    for (int j = 0; j < domain_.faces_end(a, 1); ++j)
+      for (int i = 0; i < domain_.faces_end(a, 0); ++i) {
         const double *q = phi.row(j, k) + i;
         const double here = 0.5 - 0.5 * (q[0] + q[-step]);
         if (inside(i, j, k) != 0) continue;
@@ -168,20 +169,20 @@ double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &insid
 
 // What a fluid face sees of the bodies around it; not cut where it sees none.
 RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
-  const Int3 &N = grid_.cells(), &begin = grid_.layout().begin, local{i, j, k};
+  const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin, local{i, j, k};
   const double *inside = inside_[a][0].row(j, k) + i;
   const double *level = level_[a] ? level_[a][0].row(j, k) + i : nullptr;
   RigidFaces::Cut cut;
   cut.i = i;
   double diagonal = 0, regular = 0;
   Real3 least{}, place{};  // wrapped into the box, like that of the owner
-  for (int d = 0; d < grid_.dimension(); ++d) {
+  for (int d = 0; d < domain_.dimension(); ++d) {
     least[d] = (d == a ? 0 : 0.5) - 0.5 * N[d];
-    place[d] = least[d] + grid_.image(d, begin[d] + local[d]);
+    place[d] = least[d] + domain_.image(d, begin[d] + local[d]);
   }
-  for (int d = 0; d < grid_.dimension(); ++d)
+  for (int d = 0; d < domain_.dimension(); ++d)
     for (int high = 0; high < 2; ++high) {
-      const double h = grid_.spacing()[d], one = high ? 1 : -1;
+      const double h = domain_.spacing()[d], one = high ? 1 : -1;
       const std::ptrdiff_t step = high ? inside_[a][0].stride(d) : -inside_[a][0].stride(d);
       const int link = 2 * d + high, body = static_cast<int>(inside[step]) - 1;
       cut.link[link] = 1 / (h * h);
@@ -190,8 +191,8 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
         // The neighbour's own place is in the box: its image may be that of another side.
         Real3 neighbour = place, here = place;
         neighbour[d] += one;
-        if (!grid_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
-        if (!grid_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
+        if (!domain_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
+        if (!domain_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
         here[d] = neighbour[d] - one;
         const double part = crossing(body, here, neighbour, level ? level[0] : 0, level ? level[step] : 0);
         if (cut.walls != 0) note_contact(cut.body, body);
@@ -199,8 +200,8 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
         cut.body = body;
         cut.link[link] /= part;
         here[d] += one * part;
-        for (int e = 0; e < grid_.dimension(); ++e) here[e] += faces_.ahead[faces_.bodies[body].motion][e];
-        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, grid_.spacing(), 0, 1);
+        for (int e = 0; e < domain_.dimension(); ++e) here[e] += faces_.ahead[faces_.bodies[body].motion][e];
+        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, domain_.spacing(), 0, 1);
       }
       diagonal += cut.link[link];
     }
@@ -214,7 +215,7 @@ RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
   struct Span {
     int begin, end;
   };
-  const Int3 &n = grid_.owned(), &ghosts = grid_.layout().ghosts;
+  const Int3 &n = domain_.cells(), &ghosts = domain_.layout().ghosts;
   const View inside = inside_[a][0];
   const int first = -ghosts[0], last = n[0] + ghosts[0], rows = n[1] + 2 * ghosts[1];
   std::vector<Span> marked;

@@ -2,10 +2,12 @@
 // at the start and, where bodies travel, for every step.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -14,7 +16,7 @@ namespace eulastic {
 /// alone: nothing of it needs to be saved.
 class RigidBodies {
 public:
-  RigidBodies(const Grid &grid, GhostExchange &exchange);
+  RigidBodies(const Domain &domain, GhostExchange &exchange);
   /// Owned cells of `phase` are set, and all `places` are known. Collective. Bodies get their indices as they come;
   /// `first_label`: of the first. `wrong`: one line on a body from a file that cannot travel, or nothing.
   PetscErrorCode add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase, std::string *wrong);
@@ -69,7 +71,7 @@ private:
   void note_contact(int image, int other);
   void say_touching(const std::array<int, 2> &bodies, double time);
 
-  const Grid &grid_;
+  const Domain &domain_;
   GhostExchange &exchange_;
   RigidFaces faces_;
   std::vector<Source> sources_;       ///< of every body

@@ -13,24 +13,24 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
   if (!exist() || travel()) PetscFunctionReturn(0);
   constexpr int per_component = 4, per_body = 3 * per_component;
-  const int dimension = grid_.dimension(), cells = grid_.owned()[0];
+  const int dimension = domain_.dimension(), cells = domain_.cells()[0];
   ExactSums sums(per_body * faces_.count);
   faces_.footprints.clear();
   const auto add = [&](int image, int a, const Int3 &cell, int high, double part, bool nearest) {
-    const int index = faces_.bodies[image].index, side = grid_.layout().begin[a] + cell[a] + high;
+    const int index = faces_.bodies[image].index, side = domain_.layout().begin[a] + cell[a] + high;
     Int3 face = cell;
     face[a] += high;
-    const Real3 place = place_of_face(grid_, a, face[0], face[1], face[2]);
-    if (grid_.is_wall(a) && (side == 0 || side == grid_.cells()[a]))
+    const Real3 place = place_of_face(domain_, a, face[0], face[1], face[2]);
+    if (domain_.is_wall(a) && (side == 0 || side == domain_.domain_cells()[a]))
       faces_.footprints.push_back({cell, a, high > 0, image, 2 * part});
     const PlacedBody *body = sources_[index].body.get();
     const Real3 &centre = faces_.bodies[image].centre;
     sums.add(per_body * index + per_component * a, part);
     for (int d = 0; d < dimension; ++d) {
       double arm = place[d] - centre[d];
-      if (nearest && body && body->ends(d) && !grid_.is_wall(d))
-        arm -= grid_.cells()[d] * std::round(arm / grid_.cells()[d]);
-      sums.add(per_body * index + per_component * a + 1 + d, part * arm * grid_.spacing()[d]);
+      if (nearest && body && body->ends(d) && !domain_.is_wall(d))
+        arm -= domain_.domain_cells()[d] * std::round(arm / domain_.domain_cells()[d]);
+      sums.add(per_body * index + per_component * a + 1 + d, part * arm * domain_.spacing()[d]);
     }
   };
   const auto index_of = [&](const Phase &phase, int label) {
@@ -42,7 +42,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     return -1;
   };
   std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
-  for (const Segment &row : grid_.rows())
+  for (const Segment &row : domain_.rows())
     for (int a = 0; a < dimension; ++a) {
       for (const int high : {0, 1}) faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
       for (int i = 0; i < cells; ++i) {
@@ -67,13 +67,13 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
       }
     }
   std::vector<double> total(per_body * faces_.count);
-  PetscCall(sums.reduce(grid_.comm(), total.data()));
+  PetscCall(sums.reduce(domain_.comm(), total.data()));
   faces_.gaps.assign(faces_.count, {});
   for (int index = 0; index < faces_.count; ++index)
     for (int a = 0; a < 3; ++a) {
       const double *found = &total[per_body * index + per_component * a];
-      faces_.gaps[index].volume[a] = found[0] * grid_.cell_volume();
-      for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * grid_.cell_volume();
+      faces_.gaps[index].volume[a] = found[0] * domain_.cell_volume();
+      for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * domain_.cell_volume();
     }
   PetscFunctionReturn(0);
 }

@@ -34,17 +34,17 @@ RigidMass turned(const RigidMass &mass, const Rotation &R) {
 PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase,
                                      std::shared_ptr<const Surface> *surface, RigidMass *mass, std::string *wrong) {
   PetscFunctionBeginUser;
-  const int dimension = grid_.dimension();
-  const Int3 &N = grid_.cells(), &begin = grid_.layout().begin;
+  const int dimension = domain_.dimension();
+  const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin;
   std::array<int, 6> ends{N[0], N[1], N[2], 1, 1, 1};  // first cells, and -last ones
-  for_points(grid_.rows(), [&](int i, int j, int k) {
+  for_points(domain_.rows(), [&](int i, int j, int k) {
     const Int3 local{i, j, k};
     for (int d = 0; d < 3 && phase.fraction[0](i, j, k) > 0; ++d) {
       ends[d] = std::min(ends[d], begin[d] + local[d]);
       ends[3 + d] = std::min(ends[3 + d], -(begin[d] + local[d]));
     }
   });
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends.data(), 6, MPI_INT, MPI_MIN, grid_.comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends.data(), 6, MPI_INT, MPI_MIN, domain_.comm()));
   FractionBox box;
   box.size = {1, 1, 1};
   std::ptrdiff_t count = 1;
@@ -55,13 +55,13 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
                ", and what moves there needs fluid around it; accepted: a cell of it, or no motion";
     first[d] = ends[d] - LevelMap::margin;
     box.size[d] = -ends[3 + d] - ends[d] + 1 + 2 * LevelMap::margin;
-    box.spacing[d] = grid_.spacing()[d];
-    box.first[d] = (first[d] + 0.5) * grid_.spacing()[d] - spec.centre[d];
+    box.spacing[d] = domain_.spacing()[d];
+    box.first[d] = (first[d] + 0.5) * domain_.spacing()[d] - spec.centre[d];
     count *= box.size[d];
   }
   if (!wrong->empty()) PetscFunctionReturn(0);
   box.fraction.resize(count);
-  for_points(grid_.rows(), [&](int i, int j, int k) {
+  for_points(domain_.rows(), [&](int i, int j, int k) {
     const double phi = phase.fraction[0](i, j, k);
     if (phi > 0)
       box.fraction[(begin[0] + i - first[0]) +
@@ -69,11 +69,11 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
                        ((begin[1] + j - first[1]) + std::ptrdiff_t(box.size[1]) * (begin[2] + k - first[2]))] = phi;
   });
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, box.fraction.data(), static_cast<int>(count), MPI_DOUBLE, MPI_SUM, grid_.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, box.fraction.data(), static_cast<int>(count), MPI_DOUBLE, MPI_SUM, domain_.comm()));
   *surface = std::make_shared<const Surface>(LevelMap(box, dimension));
   *mass = moments(**surface, dimension);
   const double cells = std::accumulate(box.fraction.begin(), box.fraction.end(), 0.0),
-               seen = mass->volume / grid_.cell_volume();
+               seen = mass->volume / domain_.cell_volume();
   if (std::fabs(seen - cells) > most_lost * cells) {
     char text[160];
     std::snprintf(text, sizeof text,
@@ -88,10 +88,10 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
 void RigidBodies::put(int index, const BodyPlace &place) {
   Source &source = sources_[index];
   Real3 centre{};
-  for (int d = 0; d < grid_.dimension(); ++d)
-    centre[d] = (place.centre[d] - grid_.spec().length[d] / 2) / grid_.spacing()[d];
+  for (int d = 0; d < domain_.dimension(); ++d)
+    centre[d] = (place.centre[d] - domain_.domain_shape().length[d] / 2) / domain_.spacing()[d];
   if (source.surface) {
-    source.body = std::make_unique<PlacedBody>(*source.surface, grid_.spec(), place);
+    source.body = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
     centre = source.body->centre();
   }
   const int motion = faces_.bodies[images * index].motion;
@@ -100,7 +100,7 @@ void RigidBodies::put(int index, const BodyPlace &place) {
     const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
     Real3 &there = faces_.bodies[images * index + image].centre;
     there = centre;
-    for (int d = 0; d < grid_.dimension(); ++d) there[d] -= shift[d] * grid_.cells()[d];
+    for (int d = 0; d < domain_.dimension(); ++d) there[d] -= shift[d] * domain_.domain_cells()[d];
   }
 }
 
@@ -109,10 +109,10 @@ BodyPlace RigidBodies::place_of(const BodyPlace &start, const RigidMotion &motio
   BodyPlace place = start;
   const Real3 shift = motion.shift(time);
   place.orientation = turned(start.orientation, motion.angle(time));
-  for (int d = 0; d < grid_.dimension(); ++d) {
-    const double length = grid_.spec().length[d];
+  for (int d = 0; d < domain_.dimension(); ++d) {
+    const double length = domain_.domain_shape().length[d];
     place.centre[d] += shift[d];
-    if (shift[d] != 0 && !grid_.is_wall(d)) place.centre[d] -= length * std::floor(place.centre[d] / length);
+    if (shift[d] != 0 && !domain_.is_wall(d)) place.centre[d] -= length * std::floor(place.centre[d] / length);
   }
   return place;
 }
@@ -122,14 +122,14 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
   contact_ = {};
   faces_.ahead.assign(faces_.motions.size(), {});
   for (std::size_t m = 0; m < faces_.ahead.size(); ++m)
-    for (int d = 0; d < grid_.dimension(); ++d) {
+    for (int d = 0; d < domain_.dimension(); ++d) {
       const RigidMotion &motion = faces_.motions[m];
-      faces_.ahead[m][d] = (motion.shift(time)[d] - motion.shift(surface_time)[d]) / grid_.spacing()[d];
+      faces_.ahead[m][d] = (motion.shift(time)[d] - motion.shift(surface_time)[d]) / domain_.spacing()[d];
     }
   for (int index = 0; index < faces_.count; ++index) {
     const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
     if (!motion.travels()) continue;
-    for (int a = 0; a < grid_.dimension(); ++a) clear(a, index);
+    for (int a = 0; a < domain_.dimension(); ++a) clear(a, index);
   }
   for (int index = 0; index < faces_.count; ++index) {
     const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
@@ -139,19 +139,19 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
     put(index, place);
     if (motion.turning && surface_time != time) {
       place.orientation = place_of(source.start, motion, surface_time).orientation;
-      source.before = std::make_unique<PlacedBody>(*source.surface, grid_.spec(), place);
+      source.before = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
     } else {
       source.before.reset();
     }
-    for (int a = 0; a < grid_.dimension(); ++a) mark(a, index);
+    for (int a = 0; a < domain_.dimension(); ++a) mark(a, index);
   }
   Int3 layers{};
-  for (int d = 0; d < grid_.dimension(); ++d) layers[d] = grid_.layout().ghosts[d] - 1;
+  for (int d = 0; d < domain_.dimension(); ++d) layers[d] = domain_.layout().ghosts[d] - 1;
   std::array<RigidFaces::Component, 3> components;
   faces_.speed = {};
-  for (int a = 0; a < grid_.dimension(); ++a) {
-    PetscCall(exchange_.update(inside_[a], grid_.layout().ghosts[a]));
-    if (level_[a]) PetscCall(exchange_.update(level_[a], grid_.layout().ghosts[a]));
+  for (int a = 0; a < domain_.dimension(); ++a) {
+    PetscCall(exchange_.update(inside_[a], domain_.layout().ghosts[a]));
+    if (level_[a]) PetscCall(exchange_.update(level_[a], domain_.layout().ghosts[a]));
     components[a] = component(a, layers);
     for (const RigidFaces::Cut &cut : components[a].cuts) {
       const double along = std::fabs(faces_.motions[faces_.bodies[cut.body].motion].velocity[a]);
@@ -163,9 +163,9 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
   }
   const double count = faces_.count;
   std::array<double, 4> most{faces_.speed[0], faces_.speed[1], faces_.speed[2], contact_[0] * count + contact_[1]};
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), 4, MPI_DOUBLE, MPI_MAX, grid_.comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), 4, MPI_DOUBLE, MPI_MAX, domain_.comm()));
   std::copy_n(most.begin(), 3, faces_.speed.begin());
-  faces_.set(layers, grid_.owned()[1] + 2 * layers[1], std::move(components));
+  faces_.set(layers, domain_.cells()[1] + 2 * layers[1], std::move(components));
   touching_.clear();
   if (most[3] != 0)
     say_touching({static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))}, time);
@@ -175,19 +175,19 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
 void RigidBodies::say_touching(const std::array<int, 2> &bodies, double time) {
   const auto species = [&](int index) { return species_[faces_.bodies[images * index].motion].spec; };
   const SpeciesSpec first = species(bodies[0]), second = species(bodies[1]),
-                    mover = first.travels(grid_.dimension()) ? first : second;
+                    mover = first.travels(domain_.dimension()) ? first : second;
   char text[320];
   std::snprintf(text, sizeof text,
                 "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
                 "paths with fluid between the bodies",
-                mover.name.c_str(), mover.turns(grid_.dimension()) ? "angular_" : "", first.name.c_str(),
+                mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(),
                 second.name.c_str(), time);
   touching_ = text;
 }
 
 bool RigidBodies::travels(const Phase &phase) const {
   return std::any_of(species_.begin(), species_.end(), [&](const Species &s) {
-    return s.spec.name == phase.species && s.spec.travels(grid_.dimension());
+    return s.spec.name == phase.species && s.spec.travels(domain_.dimension());
   });
 }
 
@@ -200,7 +200,7 @@ PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const 
       Places places = species_[s].places;
       for (BodyPlace &place : places.known) place = place_of(place, motion, time);
       Phase filled;
-      fill_bodies(grid_, *species_[s].surface, places, species_[s].first_label, &filled);
+      fill_bodies(domain_, *species_[s].surface, places, species_[s].first_label, &filled);
       phase.fraction = std::move(filled.fraction);
       if (phase.label) phase.label = std::move(filled.label);
     }

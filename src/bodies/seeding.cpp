@@ -43,13 +43,13 @@ std::vector<Real3> orientations(const SpeciesSpec &spec, int dimension) {
 }
 
 // As seed_bodies(); `dense`: what does not fit at random is relaxed.
-std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                  const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
                  std::vector<BodyPlace> *places);
 
 class Seeding {
 public:
-  Seeding(const SpeciesSpec &spec, const GridSpec &grid, const Region &region, Crowd *crowd, const ConvexBody &shape)
+  Seeding(const SpeciesSpec &spec, const DomainShape &grid, const Region &region, Crowd *crowd, const ConvexBody &shape)
       : spec_(spec),
         grid_(grid),
         dimension_(grid.cells[2] == 1 ? 2 : 3),
@@ -118,7 +118,7 @@ private:
   std::vector<BodyPlace> repeat_block(std::size_t count) const {
     const double share = std::min(1.0, block_bodies / double(count)), least = 6 * shape_.outer_radius();
     const double side = std::pow(share * region_.volume(), 1.0 / dimension_);
-    GridSpec block = grid_;
+    DomainShape block = grid_;
     Int3 copies{1, 1, 1};
     double volume = 1;
     for (int d = 0; d < dimension_; ++d) {
@@ -169,7 +169,7 @@ private:
   }
 
   const SpeciesSpec &spec_;
-  const GridSpec &grid_;
+  const DomainShape &grid_;
   int dimension_;
   const Region &region_;
   Crowd &crowd_;
@@ -191,7 +191,7 @@ std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t pla
   return text;
 }
 
-std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                  const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
                  std::vector<BodyPlace> *places) {
   const SpeciesSpec &spec = species[which];
@@ -242,7 +242,7 @@ std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, con
 
 }  // namespace
 
-std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                         const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places) {
   return seed(species, which, grid, solids, earlier, true, places);
 }

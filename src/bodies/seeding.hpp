@@ -14,7 +14,7 @@ namespace eulastic {
 /// the species before, all known); membranes by a cell at least, which the film beside walls takes. Depends on nothing
 /// but the arguments: every rank finds the same. Returns an empty string, or one sentence on what is wrong; where they
 /// do not fit, with how many could be placed.
-std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const GridSpec &grid,
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                         const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places);
 
 }  // namespace eulastic

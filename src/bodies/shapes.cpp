@@ -169,7 +169,7 @@ double lumen_radius(const SpeciesSpec &spec, double s) {
   return spec.radius - (constricted ? narrowing(spec.radius - spec.throat_radius, spec.throat_length, s) : 0);
 }
 
-double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid) {
+double lumen_volume(const SpeciesSpec &spec, const DomainShape &grid) {
   const bool flat = grid.cells[2] == 1;
   const double r = spec.radius, length = flat && spec.axis == 2 ? 1 : grid.length[spec.axis];
   const double depth = r - lumen_radius(spec, 0), throat = spec.throat_length;
@@ -177,7 +177,7 @@ double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid) {
   return pi * (r * r * length - depth * throat * (r - 3 * depth / 8));  // means of (1 + cos)/2 and its square: 1/2, 3/8
 }
 
-double lumen_resistance(const SpeciesSpec &spec, const GridSpec &grid) {
+double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid) {
   const bool flat = grid.cells[2] == 1;
   const auto inverse = [flat](double r) { return flat ? 1.5 / (r * r * r) : 8 / (pi * r * r * r * r); };
   const double length = grid.length[spec.axis];
@@ -188,7 +188,7 @@ double lumen_resistance(const SpeciesSpec &spec, const GridSpec &grid) {
   return (length - spec.throat_length) * inverse(spec.radius) + spec.throat_length * (sum / pieces);
 }
 
-double volume_in_box(const SpeciesSpec &spec, const GridSpec &grid) {
+double volume_in_box(const SpeciesSpec &spec, const DomainShape &grid) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   double box = 1, factor = 1;
   for (int d = 0; d < dimension; ++d) box *= grid.length[d];

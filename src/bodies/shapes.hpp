@@ -53,12 +53,12 @@ double lumen_radius(const SpeciesSpec &spec, double s);
 /// 0.
 double shape_volume(const SpeciesSpec &spec, int dimension);
 /// Of the part inside the box: of one body, of all of a slab or tube (area in 2-D).
-double volume_in_box(const SpeciesSpec &spec, const GridSpec &grid);
+double volume_in_box(const SpeciesSpec &spec, const DomainShape &grid);
 /// Inside a tube, between the sides of the box (area in 2-D).
-double lumen_volume(const SpeciesSpec &spec, const GridSpec &grid);
+double lumen_volume(const SpeciesSpec &spec, const DomainShape &grid);
 /// Pressure drop along a tube from side to side of the box, per flow rate and viscosity, by Poiseuille's law in every
 /// section: 8/pi times the integral of R^-4; in 2-D, a channel, 3/2 times that of R^-3, per depth.
-double lumen_resistance(const SpeciesSpec &spec, const GridSpec &grid);
+double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid);
 /// Empty, or one sentence on why the sizes of this shape make no body in `dimension` dimensions.
 std::string why_no_shape(const SpeciesSpec &spec, int dimension);
 

@@ -5,7 +5,7 @@
 namespace eulastic {
 namespace {
 
-ConvexBody cell_of(const GridSpec &grid) {
+ConvexBody cell_of(const DomainShape &grid) {
   Real3 half{};
   for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) half[d] = grid.length[d] / grid.cells[d] / 2;
   return ConvexBody(half);
@@ -13,7 +13,7 @@ ConvexBody cell_of(const GridSpec &grid) {
 
 }  // namespace
 
-SolidMask::SolidMask(const GridSpec &grid)
+SolidMask::SolidMask(const DomainShape &grid)
     : grid_(grid),
       dimension_(grid.cells[2] == 1 ? 2 : 3),
       words_((std::size_t(grid.cells[0]) + 63) / 64),

@@ -13,7 +13,7 @@ namespace eulastic {
 class SolidMask {
 public:
   /// One bit per cell, none set.
-  explicit SolidMask(const GridSpec &grid);
+  explicit SolidMask(const DomainShape &grid);
 
   /// Sets those of `window` where `fraction` is not 0.
   void add(const CellWindow &window, ConstView fraction);
@@ -25,7 +25,7 @@ private:
   std::size_t word(int i, int j, int k) const { return (std::size_t(k) * grid_.cells[1] + j) * words_ + i / 64; }
   bool row_touches(const PlacedConvex &body, int j, int k, const Real3 &centre, int begin, int end) const;
 
-  GridSpec grid_;
+  DomainShape grid_;
   int dimension_;
   std::size_t words_;  // of a row
   Real3 spacing_{};

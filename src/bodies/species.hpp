@@ -3,7 +3,7 @@
 
 #include "field/material.hpp"
 #include "field/rigid_faces.hpp"
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <array>
 #include <limits>

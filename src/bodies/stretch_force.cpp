@@ -42,25 +42,25 @@ void StretchForces::for_cells(const std::vector<Phase> &phases, const Visit &vis
   for (const Phase &phase : phases) {
     if (!(phase.material.stretch_force.force > 0) || !phase.label) continue;
     const ConstView label = phase.label[0];
-    for (const Segment &whole : grid_->rows()) {
+    for (const Segment &whole : domain_->rows()) {
       const Segment row = phase.rows.within(whole, label);
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int b = owners_->slot(static_cast<int>(label(i, row.j, row.k)) - 1);
         if (b < 0) continue;
-        const int low = grid_->is_wall(0) ? -near_[b][0] : -(grid_->cells()[0] / 2);  // of offset()
-        visit(phase, b, static_cast<int>(offset(*grid_, near_[b], {i, row.j, row.k})[0]) - low, i, row.j, row.k);
+        const int low = domain_->is_wall(0) ? -near_[b][0] : -(domain_->domain_cells()[0] / 2);  // of offset()
+        visit(phase, b, static_cast<int>(offset(*domain_, near_[b], {i, row.j, row.k})[0]) - low, i, row.j, row.k);
       }
     }
   }
 }
 
-PetscErrorCode StretchForces::find(const Grid &grid, const std::vector<Phase> &phases, const BodyOwners &owners,
+PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
                                    const std::vector<Int3> &references) {
   PetscFunctionBeginUser;
-  grid_ = &grid;
+  domain_ = &domain;
   owners_ = &owners;
   near_ = references;
-  const int columns = grid.cells()[0];
+  const int columns = domain.domain_cells()[0];
   BodySums sums(near_.size(), columns);
   std::vector<double> part(near_.size(), 0), owned, volumes(near_.size() * columns);
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
@@ -76,7 +76,7 @@ PetscErrorCode StretchForces::find(const Grid &grid, const std::vector<Phase> &p
     if (part[b] == 0) continue;
     const auto first = volumes.begin() + static_cast<std::ptrdiff_t>(b * columns);
     pull_[b] = pull_of({first, first + columns}, part[b]);
-    for (double &pull : pull_[b]) pull /= grid.cell_volume();
+    for (double &pull : pull_[b]) pull /= domain.cell_volume();
   }
   PetscFunctionReturn(0);
 }
@@ -90,7 +90,7 @@ PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Pha
     force(i, j, k) += phase.material.stretch_force.force * pull_[body][column] * phase.fraction[0](i, j, k);
   });
   PetscCall(exchange.update(scratch, 1));
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     const double *f = force.row(row.j, row.k);
     double *out = rate[0].row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) out[i] += 0.5 * scale * (f[i - 1] + f[i]);
@@ -106,8 +106,8 @@ PetscErrorCode StretchForces::power(const std::vector<Phase> &phases, const Fiel
     const double force = phase.material.stretch_force.force * pull_[body][column] * phase.fraction[0](i, j, k);
     sum.add(0, 0.5 * force * (v(i, j, k) + v(i + 1, j, k)));
   });
-  PetscCall(sum.reduce(grid_->comm(), power));
-  *power *= grid_->cell_volume();
+  PetscCall(sum.reduce(domain_->comm(), power));
+  *power *= domain_->cell_volume();
   PetscFunctionReturn(0);
 }
 

@@ -1,9 +1,11 @@
 // -NAME_stretch_force: both ends of a body are pulled apart along x, as optical tweezers do; docs/method.md, (27a).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -12,9 +14,9 @@ public:
   /// Whether any phase is pulled.
   static bool exist(const std::vector<Phase> &phases);
 
-  /// Finds the ends of the bodies that are here; `owners` stays, `references`: BodyTracker::connect. Exact sums, one per
-  /// cell along x and body. Collective.
-  PetscErrorCode find(const Grid &grid, const std::vector<Phase> &phases, const BodyOwners &owners,
+  /// Finds the ends of the bodies that are here; `owners` stays, `references`: BodyTracker::connect. Exact sums, one
+  /// per cell along x and body. Collective.
+  PetscErrorCode find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
                       const std::vector<Int3> &references);
   /// rate += scale times the force per volume at owned faces. `scratch`: a field.
   PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale, FieldBlock &scratch,
@@ -26,7 +28,7 @@ private:
   template <class Visit>
   void for_cells(const std::vector<Phase> &phases, const Visit &visit) const;
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   const BodyOwners *owners_ = nullptr;
   std::vector<Int3> near_;                 ///< references of bodies that are here
   std::vector<std::vector<double>> pull_;  ///< of these, by column of cells across x: w_+ - w_- over a V

@@ -4,6 +4,7 @@
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 #include "kernels/plane_area.hpp"
 
 #include <algorithm>
@@ -79,13 +80,13 @@ double scaled(double value, double scale) { return scale > 0 ? value / scale : 0
 
 }  // namespace
 
-PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
+PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &phases,
                                 const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
                                 const std::vector<Int3> &references, std::vector<SurfaceMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dim = grid.dimension();
-  const Real3 &h = grid.spacing();
+  const int dim = domain.dimension();
+  const Real3 &h = domain.spacing();
   const double face = *std::min_element(h.begin(), h.begin() + dim);
   double unit = 1;  // of areas
   for (int d = 0; d < dim - 1; ++d) unit *= face;
@@ -97,14 +98,14 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
     found[0][3] = std::max(found[0][3], std::fabs(s.bending_energy));
   }
   std::vector<double> most;
-  PetscCall(reduce_maxima(grid.comm(), found, &most));
+  PetscCall(reduce_maxima(domain.comm(), found, &most));
   const Scales scale(most);
   BodySums sums(references.size(), all_sums);
   std::vector<double> stretch(references.size(), 1.0), largest_stretch;
   for (const SurfaceSample &s : samples) {
     const int b = owners.slot(s.label - 1);
     if (b < 0) continue;
-    const Real3 x = offset(grid, references[b], s.place);
+    const Real3 x = offset(domain, references[b], s.place);
     const double w = s.delta * face;
     sums.add(b, weight, w);
     sums.add(b, weight_at_rest, s.rest * face);
@@ -123,7 +124,7 @@ PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phas
   for (const Phase &phase : phases) {
     if (!phase.material.is_membrane() || !phase.label) continue;
     const ConstView phi = phase.fraction[0], label = phase.label[0];
-    for (const Segment &row : grid.rows()) {
+    for (const Segment &row : domain.rows()) {
       if (phase.rows.idle(row.j, row.k)) continue;
       const double *q = phi.row(row.j, row.k);
       for (int i = row.i_begin; i < row.i_end; ++i) {

@@ -1,9 +1,11 @@
 // What is known of the surface of every membrane: its area, energies, and how fast it goes round.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 #include "field/phase.hpp"
 #include "field/surface_sample.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -20,7 +22,7 @@ struct SurfaceMeasure {
 
 /// Of the bodies that this rank owns; `references`: cells near the bodies that are here (BodyTracker::connect). One
 /// ghost of phi. Exact sums. Collective.
-PetscErrorCode measure_surfaces(const Grid &grid, const std::vector<Phase> &phases,
+PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &phases,
                                 const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
                                 const std::vector<Int3> &references, std::vector<SurfaceMeasure> *bodies);
 

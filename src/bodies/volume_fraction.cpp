@@ -40,7 +40,7 @@ double half_space_fraction(double level, const Real3 &slopes) noexcept {
   return level < 0 ? 1 - v : v;
 }
 
-PlacedBody::PlacedBody(const Surface &surface, const GridSpec &grid, const BodyPlace &place)
+PlacedBody::PlacedBody(const Surface &surface, const DomainShape &grid, const BodyPlace &place)
     : surface_(surface),
       dimension_(grid.cells[2] == 1 ? 2 : 3),
       cells_(grid.cells),
@@ -134,7 +134,7 @@ double PlacedBody::fraction(const Int3 &cell) const noexcept {
 // Exact fractions of the cells of a box around it.
 RigidMass moments(const Surface &surface, int dimension) {
   constexpr int cells = 96;
-  GridSpec box;
+  DomainShape box;
   box.cells = {1, 1, 1};
   box.boundary = {Boundary::wall, Boundary::wall, Boundary::wall};
   Real3 h{};

@@ -19,7 +19,7 @@ double half_space_fraction(double level, const Real3 &slopes) noexcept;
 
 class PlacedBody {
 public:
-  PlacedBody(const Surface &surface, const GridSpec &grid, const BodyPlace &place);
+  PlacedBody(const Surface &surface, const DomainShape &grid, const BodyPlace &place);
 
   /// Cells of the box; the body has them at begin + shift, not wrapped into a periodic box.
   struct Range {

@@ -4,6 +4,7 @@
 #include "field/law.hpp"
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
+#include "grid/box.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -19,12 +20,12 @@ struct CellTensor {
 };
 
 /// sigma_ab on the low edge of cell (i, j, k) normal to the directions a and b. One ghost layer of phi and B.
-inline double edge_stress(const Grid &grid, const Phase &phase, int a, int b, int i, int j, int k) {
+inline double edge_stress(const Box &box, const Phase &phase, int a, int b, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
   const CellTensor B(phase.tensor.field, i, j, k);
   const double *fraction = &phi(i, j, k);
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const int c = 3 - a - b;
   const kernels::Directions d{stride[a], stride[b], stride[c], 1 / h[a], 1 / h[b], 1 / h[c]};
   const auto stress = [&](auto dimension) {
@@ -35,7 +36,7 @@ inline double edge_stress(const Grid &grid, const Phase &phase, int a, int b, in
              return law.shear_stress(fraction, kernels::tensor_at<dim>(B.component, stride, a, b), 0);
            });
   };
-  return grid.dimension() == 2 ? stress(std::integral_constant<int, 2>{}) : stress(std::integral_constant<int, 3>{});
+  return box.dimension() == 2 ? stress(std::integral_constant<int, 2>{}) : stress(std::integral_constant<int, 3>{});
 }
 
 /// sigma_aa at the centre of cell (i, j, k), without its mean over the directions. B of its edges too.
@@ -60,21 +61,21 @@ struct WholeStress {
   double normal(int a, const Int3 &cell) const {
     const ConstView u = velocity[a];
     const double *v = &u(cell[0], cell[1], cell[2]);
-    double sum = 2 * viscosity.at_centre(cell) * (v[u.stride(a)] - v[0]) / viscosity.grid.spacing()[a];
+    double sum = 2 * viscosity.at_centre(cell) * (v[u.stride(a)] - v[0]) / viscosity.box.spacing()[a];
     for (const Phase &phase : phases)
       if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
-        sum += centre_stress(viscosity.grid.dimension(), phase, a, cell[0], cell[1], cell[2]);
+        sum += centre_stress(viscosity.box.dimension(), phase, a, cell[0], cell[1], cell[2]);
     return sum;
   }
   /// On the low edge of a cell.
   double shear(int a, int b, const Int3 &cell) const {
     const ConstView u = velocity[a], w = velocity[b];
     const double *ua = &u(cell[0], cell[1], cell[2]), *ub = &w(cell[0], cell[1], cell[2]);
-    const Real3 &h = viscosity.grid.spacing();
+    const Real3 &h = viscosity.box.spacing();
     double sum = viscosity.at(a, b, cell) * ((ua[0] - ua[-u.stride(b)]) / h[b] + (ub[0] - ub[-w.stride(a)]) / h[a]);
     for (const Phase &phase : phases)
       if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
-        sum += edge_stress(viscosity.grid, phase, a, b, cell[0], cell[1], cell[2]);
+        sum += edge_stress(viscosity.box, phase, a, b, cell[0], cell[1], cell[2]);
     return sum;
   }
 };

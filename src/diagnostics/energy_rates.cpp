@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "diagnostics/edge_stress.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -87,42 +88,42 @@ EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out
   power_of_law<3>(row, inverse, out);
 }
 
-void stress_power(const Grid &grid, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
+void stress_power(const Box &box, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
   Row at(phase, row);
-  for (int d = 0; d < grid.dimension(); ++d) at.v[d] = velocity[d].row(row.j, row.k);
-  const Real3 &h = grid.spacing();
+  for (int d = 0; d < box.dimension(); ++d) at.v[d] = velocity[d].row(row.j, row.k);
+  const Real3 &h = box.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
-  (grid.dimension() == 2 ? power_2d : power_3d)(at, inverse, out);
+  (box.dimension() == 2 ? power_2d : power_3d)(at, inverse, out);
 }
 
 // Speed times traction of every tangential face beside a moving wall.
 class WallPower {
 public:
-  WallPower(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+  WallPower(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
             const EdgeViscosity &viscosity)
-      : grid_(grid), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
+      : domain_(domain), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
 
   void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
-    for (int c = 0; c < grid_.dimension(); ++c)
+    for (int c = 0; c < domain_.dimension(); ++c)
       if (c != d && speed[c] != 0) add(d, high, c, speed[c], sums);
   }
 
 private:
   void add(int d, bool high, int c, double speed, ExactSums *sums) const {
-    Int3 begin{}, end = grid_.owned();
+    Int3 begin{}, end = domain_.cells();
     begin[d] = high ? end[d] - 1 : 0;
     end[d] = begin[d] + 1;
     // A face on another wall does not move: no shear of the fluid, but solids have the stress of the edge, whose
     // control volume is half of that of others.
     for (const bool corner_high : {false, true}) {
-      if (!grid_.touches(c, corner_high) || grid_.is_open(c, corner_high)) continue;
+      if (!domain_.touches(c, corner_high) || domain_.is_open(c, corner_high)) continue;
       Int3 first = begin, last = end;
-      first[c] = corner_high ? grid_.owned()[c] : 0;
+      first[c] = corner_high ? domain_.cells()[c] : 0;
       last[c] = first[c] + 1;
       for_cells(first, last,
                 [&](const Int3 &cell) { sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, cell)); });
     }
-    if (grid_.touches_low(c)) begin[c] = 1;
+    if (domain_.touches_low(c)) begin[c] = 1;
     for_cells(begin, end, [&](const Int3 &cell) { sums->add(wall_power, speed * traction(d, high, c, cell)); });
   }
 
@@ -142,7 +143,8 @@ private:
   double traction(int d, bool high, int c, const Int3 &cell) const {
     const ConstView q = velocity_[c];
     const double *inside = &q(cell[0], cell[1], cell[2]), *ghost = inside + (high ? q.stride(d) : -q.stride(d));
-    const double h = grid_.spacing()[d], viscous = viscosity_.at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
+    const double h = domain_.spacing()[d],
+                 viscous = viscosity_.at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
     return viscous / h + elastic_traction(d, high, c, cell);
   }
 
@@ -150,28 +152,27 @@ private:
     const Int3 edge = edge_of(d, high, cell);
     double sum = 0;
     for (const Phase &phase : phases_)
-      if (phase.material.elastic()) sum += edge_stress(grid_, phase, c, d, edge[0], edge[1], edge[2]);
-    return (high ? sum : -sum) / grid_.spacing()[d];
+      if (phase.material.elastic()) sum += edge_stress(domain_, phase, c, d, edge[0], edge[1], edge[2]);
+    return (high ? sum : -sum) / domain_.spacing()[d];
   }
 
-  const Grid &grid_;
+  const Domain &domain_;
   const FieldBlock &velocity_;
   const std::vector<Phase> &phases_;
   EdgeViscosity viscosity_;
 };
 
-void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &velocity, const Phase &phase,
-                 ExactSums *sums) {
+void add_elastic(const Box &box, const RowPart &part, const FieldBlock &velocity, const Phase &phase, ExactSums *sums) {
   if (!phase.material.elastic()) return;
-  std::vector<double> power(grid.owned()[0]), energy(power.size());
-  for (const Segment &whole : part.rows(grid)) {
+  std::vector<double> power(box.cells()[0]), energy(power.size());
+  for (const Segment &whole : part.rows(box)) {
     const Segment row = phase.rows.within(whole, phase.fraction[0]);
     const double *phi = phase.fraction[0].row(row.j, row.k);
-    const auto add = [&, first = grid.layout().begin[0] + row.i_begin](int s, const std::vector<double> &values) {
+    const auto add = [&, first = box.layout().begin[0] + row.i_begin](int s, const std::vector<double> &values) {
       sums->add_row(s, values.data() + row.i_begin, row.size(), first);
     };
-    strain_energy(grid, phase, row, energy.data());
-    stress_power(grid, phase, velocity, row, power.data());
+    strain_energy(box, phase, row, energy.data());
+    stress_power(box, phase, velocity, row, power.data());
     add(elastic_power, power);
     for (int i = row.i_begin; i < row.i_end; ++i)
       if (phi[i] >= phase.tensor.rule.centre) power[i] = energy[i] = 0;
@@ -182,28 +183,30 @@ void add_elastic(const Grid &grid, const RowPart &part, const FieldBlock &veloci
 
 }  // namespace
 
-void strain_energy(const Grid &grid, const Phase &phase, const Segment &row, double *out) {
-  (grid.dimension() == 2 ? energy_2d : energy_3d)(Row(phase, row), out);
+void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out) {
+  (box.dimension() == 2 ? energy_2d : energy_3d)(Row(phase, row), out);
 }
 
-PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_energy_rates(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                     const EnergyNumbers &numbers, EnergyRates *rates) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
   const auto add = [&](const RowPart &part, ExactSums &all) {
-    const int n = grid.owned()[0], first = grid.layout().begin[0];
-    for (int c = 0; c < grid.dimension(); ++c)
+    const int n = domain.cells()[0], first = domain.layout().begin[0];
+    for (int c = 0; c < domain.dimension(); ++c)
       if (numbers.force[c] != 0)
-        for (const Segment &row : part.rows(grid)) all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
-    for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(grid, part, velocity, phases[p], &all);
-    const WallPower walls(grid, velocity, phases, {grid, numbers.viscosity, numbers.density, numbers.local_viscosity});
+        for (const Segment &row : part.rows(domain))
+          all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
+    for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(domain, part, velocity, phases[p], &all);
+    const WallPower walls(domain, velocity, phases,
+                          {domain, numbers.viscosity, numbers.density, numbers.local_viscosity});
     if (!part.first || !numbers.sides) return;
-    for (const auto [d, high] : grid.sides())
-      if (grid.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
+    for (const auto [d, high] : domain.sides())
+      if (domain.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
   };
   double sum[sums];
-  PetscCall(sum_row_parts(grid, sums, add, sum));
-  const double volume = grid.cell_volume();
+  PetscCall(sum_row_parts(domain, sums, add, sum));
+  const double volume = domain.cell_volume();
   rates->force_power = 0;
   for (int c = 0; c < 3; ++c) rates->force_power += numbers.density * numbers.force[c] * sum[momentum_x + c] * volume;
   rates->wall_power = sum[wall_power] * volume;

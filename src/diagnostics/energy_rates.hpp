@@ -4,9 +4,11 @@
 // the walls do is what viscosity and solids on them take (docs/method.md). Exact sums: the same bits on any ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -30,10 +32,10 @@ struct EnergyRates {
 };
 
 /// phi W (energy per volume) of the cells of a row, into out[0 .. cells).
-void strain_energy(const Grid &grid, const Phase &phase, const Segment &row, double *out);
+void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out);
 
 /// `velocity` (of `time`), phi and B with one ghost layer. One Allreduce.
-PetscErrorCode measure_energy_rates(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_energy_rates(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                     const EnergyNumbers &numbers, EnergyRates *rates);
 
 }  // namespace eulastic

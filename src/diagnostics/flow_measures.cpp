@@ -4,6 +4,7 @@
 #include "diagnostics/energy_rates.hpp"
 #include "diagnostics/viscous_dissipation.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,8 @@ double square(double x) { return x * x; }
 // One row at a time: each measure of its cells, ready to be added up.
 class RowMeasures {
 public:
-  RowMeasures(const Grid &grid, const FieldBlock &velocity)
-      : grid_(grid), velocity_(velocity), dimension_(grid.dimension()), n_(grid.owned()[0]), values_(n_) {}
+  RowMeasures(const Box &box, const FieldBlock &velocity)
+      : box_(box), velocity_(velocity), dimension_(box.dimension()), n_(box.cells()[0]), values_(n_) {}
 
   const double *squared_speed(const Segment &row) {
     start();
@@ -35,7 +36,7 @@ public:
     start();
     for (int c = 0; c < dimension_; ++c) {
       const ConstView view = velocity_[c];
-      const double *q = view.row(row.j, row.k), *next = q + view.stride(c), inverse_h = 1 / grid_.spacing()[c];
+      const double *q = view.row(row.j, row.k), *next = q + view.stride(c), inverse_h = 1 / box_.spacing()[c];
       for (int i = 0; i < n_; ++i) values_[i] += (next[i] - q[i]) * inverse_h;
     }
     return values_.data();
@@ -74,17 +75,17 @@ private:
 
   void add_difference(const Segment &row, int a, int b, int side, int begin, int end, double weight) {
     const ConstView view = velocity_[a];
-    const double *q = view.row(row.j, row.k), *other = q + side * view.stride(b), inverse_h = 1 / grid_.spacing()[b];
+    const double *q = view.row(row.j, row.k), *other = q + side * view.stride(b), inverse_h = 1 / box_.spacing()[b];
     for (int i = begin; i < end; ++i) values_[i] += weight * square((other[i] - q[i]) * inverse_h);
   }
 
   // The edges on a wall normal to b own half a cell; those on the high wall count with the last cell.
   // A face that lies on a wall does not move: where that wall meets a moving one there is no shear.
   void add_cross_differences(const Segment &row, int a, int b) {
-    const int last = grid_.owned()[b] - 1, index = b == 1 ? row.j : row.k;
-    if (a != 0 && grid_.touches_low(a) && (a == 1 ? row.j : row.k) == 0) return;
-    const int begin = a == 0 && grid_.touches_low(0) ? 1 : 0;
-    const bool low = grid_.touches_low(b), high = grid_.touches_high(b);
+    const int last = box_.cells()[b] - 1, index = b == 1 ? row.j : row.k;
+    if (a != 0 && box_.touches_low(a) && (a == 1 ? row.j : row.k) == 0) return;
+    const int begin = a == 0 && box_.touches_low(0) ? 1 : 0;
+    const bool low = box_.touches_low(b), high = box_.touches_high(b);
     if (b == 0) {
       if (low) add_difference(row, a, b, -1, 0, 1, 0.5);
       add_difference(row, a, b, -1, low ? 1 : 0, n_, 1);
@@ -95,7 +96,7 @@ private:
     }
   }
 
-  const Grid &grid_;
+  const Box &box_;
   const FieldBlock &velocity_;
   int dimension_, n_;
   std::vector<double> values_;
@@ -106,30 +107,30 @@ private:
 class SideFaces {
 public:
   /// `viscosity`: that the squares of gradients are weighted with.
-  SideFaces(const Grid &grid, const FieldBlock &velocity, double viscosity, ExactSums *sums)
-      : grid_(grid), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
+  SideFaces(const Box &box, const FieldBlock &velocity, double viscosity, ExactSums *sums)
+      : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
 
   void add(int d, bool high) const {
     const ConstView v = velocity_[d];
-    for_points(grid_.faces_on(d, high), [&](int i, int j, int k) {
+    for_points(box_.faces_on(d, high), [&](int i, int j, int k) {
       const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
       sums_->add(speed_squared, half * q[0] * q[0]);
       sums_->add(momentum_x + d, half * q[0]);
-      for (int e = 0; e < grid_.dimension(); ++e)
+      for (int e = 0; e < box_.dimension(); ++e)
         if (e != d) add_shear(q, v.stride(e), e, Int3{i, j, k}[e]);
     });
   }
 
 private:
   void add_shear(const double *q, std::ptrdiff_t step, int e, int index) const {
-    const double inverse_h = 1 / grid_.spacing()[e];
-    const bool at_low = index == 0 && grid_.touches_low(e);
+    const double inverse_h = 1 / box_.spacing()[e];
+    const bool at_low = index == 0 && box_.touches_low(e);
     sums_->add(gradient_squared, viscosity_ * (at_low ? 0.25 : 0.5) * square((q[0] - q[-step]) * inverse_h));
-    if (index == grid_.owned()[e] - 1 && grid_.touches_high(e))
+    if (index == box_.cells()[e] - 1 && box_.touches_high(e))
       sums_->add(gradient_squared, viscosity_ * 0.25 * square((q[step] - q[0]) * inverse_h));
   }
 
-  const Grid &grid_;
+  const Box &box_;
   const FieldBlock &velocity_;
   double viscosity_;
   ExactSums *sums_;
@@ -141,17 +142,17 @@ double largest(const double *values, int n, double so_far) {
 }
 
 // `sum`, `maximum`: of all ranks, as the enumerations above number them.
-FlowMeasures evaluate(const Grid &grid, const FlowNumbers &numbers, const double *sum,
+FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *sum,
                       const std::vector<double> &maximum) {
   FlowMeasures m;
-  const double volume = grid.cell_volume(), cells = grid.cell_count();
+  const double volume = box.cell_volume(), cells = box.domain_cell_count();
   m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
   for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
   // Maxima drop NaN; 0 * sum brings it back.
   for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
   m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
-  const Real3 &h = grid.spacing();
-  const double smallest = *std::min_element(h.begin(), h.begin() + grid.dimension());
+  const Real3 &h = box.spacing();
+  const double smallest = *std::min_element(h.begin(), h.begin() + box.dimension());
   const double speed = std::max(m.speed_max, numbers.force * numbers.dt);
   const double scale = speed > 0 ? smallest / speed : 0;
   m.divergence_rms = std::sqrt(sum[divergence_squared] / cells) * scale;
@@ -163,17 +164,17 @@ FlowMeasures evaluate(const Grid &grid, const FlowNumbers &numbers, const double
 
 }  // namespace
 
-PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const FieldBlock &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
-  const int dimension = grid.dimension(), n = grid.owned()[0], first = grid.layout().begin[0];
-  std::vector<std::vector<double>> found(row_parts(grid), std::vector<double>(maxima, 0.0));
+  const int dimension = domain.dimension(), n = domain.cells()[0], first = domain.layout().begin[0];
+  std::vector<std::vector<double>> found(row_parts(domain), std::vector<double>(maxima, 0.0));
   const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
     std::vector<double> &most = found[part.number];
-    RowMeasures measure(grid, velocity);
+    RowMeasures measure(domain, velocity);
     std::vector<double> dissipated(n);
-    for (const Segment &row : part.rows(grid)) {
+    for (const Segment &row : part.rows(domain)) {
       for (int c = 0; c < dimension; ++c) {
         const double *q = velocity[c].row(row.j, row.k);
         sums.add_row(momentum_x + c, q, n, first);
@@ -185,7 +186,7 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
       most[max_divergence] = largest(divergence, n, most[max_divergence]);
       sums.add_row(divergence_squared, measure.squared(divergence), n, first);
       if (numbers.local_viscosity)
-        viscous_dissipation(grid, *numbers.local_viscosity, velocity, row, dissipated.data());
+        viscous_dissipation(domain, *numbers.local_viscosity, velocity, row, dissipated.data());
       sums.add_row(gradient_squared, numbers.local_viscosity ? dissipated.data() : measure.squared_gradient(row), n,
                    first);
     }
@@ -193,48 +194,48 @@ PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const 
   const auto add_all = [&](const RowPart &part, ExactSums &sums) {
     add(part, sums);
     if (!part.first || !numbers.sides) return;
-    for (const auto [d, high] : grid.sides())
+    for (const auto [d, high] : domain.sides())
       if (volume_crosses((*numbers.sides)[d][high].kind))
-        SideFaces(grid, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
+        SideFaces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
             .add(d, high);
   };
-  scope.flops(grid.owned_count() * dimension * (10 + 4 * dimension));
+  scope.flops(domain.cell_count() * dimension * (10 + 4 * dimension));
   double sum[flow_sums];
-  PetscCall(sum_row_parts(grid, flow_sums, add_all, sum));
+  PetscCall(sum_row_parts(domain, flow_sums, add_all, sum));
   std::vector<double> maximum;
-  PetscCall(reduce_maxima(grid.comm(), found, &maximum));
+  PetscCall(reduce_maxima(domain.comm(), found, &maximum));
 
-  *measures = evaluate(grid, numbers, sum, maximum);
+  *measures = evaluate(domain, numbers, sum, maximum);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode measure_phases(const Grid &grid, const std::vector<Phase> &phases, FlowMeasures *measures) {
+PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures) {
   enum { volume, energy, sums_of_phase };
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
-  const int first = grid.layout().begin[0];
+  const int first = domain.layout().begin[0];
   const auto add = [&](const RowPart &part, ExactSums &sums) {
-    std::vector<double> density(grid.owned()[0]);
-    for (const Segment &row : part.rows(grid))
+    std::vector<double> density(domain.cells()[0]);
+    for (const Segment &row : part.rows(domain))
       for (std::size_t p = 0; p < phases.size(); ++p) {
         const ConstView phi = phases[p].fraction[0];
         const Segment held = phases[p].rows.within(row, phi);
         const int sum_of_phase = sums_of_phase * static_cast<int>(p), i = held.i_begin;
-        strain_energy(grid, phases[p], held, density.data());
+        strain_energy(domain, phases[p], held, density.data());
         sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first + i);
         sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first + i);
       }
   };
   double flops = 0;
-  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * grid.dimension() + 3);
+  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * domain.dimension() + 3);
   scope.flops(flops);
   std::vector<double> sum(sums_of_phase * phases.size());
-  PetscCall(sum_row_parts(grid, static_cast<int>(sum.size()), add, sum.data()));
+  PetscCall(sum_row_parts(domain, static_cast<int>(sum.size()), add, sum.data()));
   measures->elastic_energy = 0;
   measures->phase_volume.clear();
   for (std::size_t p = 0; p < phases.size(); ++p) {
-    measures->phase_volume.push_back(sum[sums_of_phase * p + volume] * grid.cell_volume());
-    measures->elastic_energy += sum[sums_of_phase * p + energy] * grid.cell_volume();
+    measures->phase_volume.push_back(sum[sums_of_phase * p + volume] * domain.cell_volume());
+    measures->elastic_energy += sum[sums_of_phase * p + energy] * domain.cell_volume();
   }
   PetscFunctionReturn(0);
 }

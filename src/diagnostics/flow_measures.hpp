@@ -4,8 +4,10 @@
 // depth. Control volumes are the points' own: half a cell for velocity gradients on a wall.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -30,9 +32,9 @@ struct FlowMeasures {
 };
 
 /// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
-PetscErrorCode measure_flow(const Grid &grid, const FieldBlock &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const FieldBlock &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures);
 /// The last two of the measures.
-PetscErrorCode measure_phases(const Grid &grid, const std::vector<Phase> &phases, FlowMeasures *measures);
+PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures);
 
 }  // namespace eulastic

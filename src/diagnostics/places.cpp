@@ -1,4 +1,5 @@
 #include "diagnostics/places.hpp"
+#include "grid/domain.hpp"
 
 #include <cmath>
 #include <limits>
@@ -8,51 +9,51 @@ namespace {
 
 // value(i, j, k): of a cell, not negative.
 template <class Value>
-PetscErrorCode largest(const Grid &grid, Value value, Real3 *place) {
+PetscErrorCode largest(const Domain &domain, Value value, Real3 *place) {
   PetscFunctionBeginUser;
-  const Int3 &begin = grid.layout().begin, &N = grid.cells();
+  const Int3 &begin = domain.layout().begin, &N = domain.domain_cells();
   double most = -1, here = -1, first = std::numeric_limits<double>::infinity();
-  for_points(grid.rows(), [&](int i, int j, int k) {
+  for_points(domain.rows(), [&](int i, int j, int k) {
     const double q = value(i, j, k);
     if (!(q > here)) return;
     here = q;
     first = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
   });
-  PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, grid.comm()));
+  PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
   if (here < most) first = std::numeric_limits<double>::infinity();
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, grid.comm()));
-  *place = std::isfinite(first) ? place_of_cell(grid, first) : Real3{};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, domain.comm()));
+  *place = std::isfinite(first) ? place_of_cell(domain, first) : Real3{};
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode place_of_speed(const Grid &grid, const FieldBlock &velocity, Real3 *place) {
+PetscErrorCode place_of_speed(const Domain &domain, const FieldBlock &velocity, Real3 *place) {
   PetscFunctionBeginUser;
   const auto rate = [&](int i, int j, int k) {
     double sum = 0;
-    for (int d = 0; d < velocity.count(); ++d) sum += std::fabs(velocity[d](i, j, k)) / grid.spacing()[d];
+    for (int d = 0; d < velocity.count(); ++d) sum += std::fabs(velocity[d](i, j, k)) / domain.spacing()[d];
     return sum;
   };
-  PetscCall(largest(grid, rate, place));
+  PetscCall(largest(domain, rate, place));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode place_of_divergence(const Grid &grid, const FieldBlock &velocity, Real3 *place) {
+PetscErrorCode place_of_divergence(const Domain &domain, const FieldBlock &velocity, Real3 *place) {
   PetscFunctionBeginUser;
   const auto divergence = [&](int i, int j, int k) {
     double sum = 0;
     for (int d = 0; d < velocity.count(); ++d)
-      sum += (velocity[d](i + (d == 0), j + (d == 1), k + (d == 2)) - velocity[d](i, j, k)) / grid.spacing()[d];
+      sum += (velocity[d](i + (d == 0), j + (d == 1), k + (d == 2)) - velocity[d](i, j, k)) / domain.spacing()[d];
     return std::fabs(sum);
   };
-  PetscCall(largest(grid, divergence, place));
+  PetscCall(largest(domain, divergence, place));
   PetscFunctionReturn(0);
 }
 
-Real3 place_of_cell(const Grid &grid, double index) {
-  const Int3 &n = grid.cells();
-  const Real3 &h = grid.spacing();
+Real3 place_of_cell(const Box &box, double index) {
+  const Int3 &n = box.domain_cells();
+  const Real3 &h = box.spacing();
   const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
   return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
 }

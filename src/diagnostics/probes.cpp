@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,26 +17,26 @@ static_assert(sizeof(Sample) == values * sizeof(double), "reduced as doubles");
 // The cell that holds a point, and whether this rank owns it.
 class Place {
 public:
-  Place(const Grid &grid, const Real3 &point) : grid_(grid) {
-    for (int d = 0; d < grid.dimension(); ++d) {
-      cells_[d] = point[d] / grid.spacing()[d];
-      cell_[d] = std::clamp(static_cast<int>(std::floor(cells_[d])), 0, grid.cells()[d] - 1);
+  Place(const Domain &domain, const Real3 &point) : domain_(domain) {
+    for (int d = 0; d < domain.dimension(); ++d) {
+      cells_[d] = point[d] / domain.spacing()[d];
+      cell_[d] = std::clamp(static_cast<int>(std::floor(cells_[d])), 0, domain.domain_cells()[d] - 1);
     }
   }
-  bool is_here() const { return grid_.owner(cell_[0], cell_[1], cell_[2]) == grid_.rank(); }
+  bool is_here() const { return domain_.owner(cell_[0], cell_[1], cell_[2]) == domain_.rank(); }
 
   /// Linear in every direction. `extrapolate`: a centred field is never looked up behind a wall.
   double interpolate(ConstView q, const Staggering &at, bool extrapolate) const {
     Int3 base{};
     Real3 weight{};
-    for (int d = 0; d < grid_.dimension(); ++d) {
+    for (int d = 0; d < domain_.dimension(); ++d) {
       const double s = cells_[d] - (at[d] ? 0 : 0.5);
       int low = at[d] || s >= cell_[d] ? cell_[d] : cell_[d] - 1;
-      if (extrapolate && grid_.is_wall(d)) low = std::clamp(low, 0, grid_.cells()[d] - 2);
-      base[d] = low - grid_.layout().begin[d];
+      if (extrapolate && domain_.is_wall(d)) low = std::clamp(low, 0, domain_.domain_cells()[d] - 2);
+      base[d] = low - domain_.layout().begin[d];
       weight[d] = s - low;
     }
-    return along(grid_.dimension() - 1, &q(base[0], base[1], base[2]), q, weight);
+    return along(domain_.dimension() - 1, &q(base[0], base[1], base[2]), q, weight);
   }
 
 private:
@@ -44,23 +45,23 @@ private:
     return (1 - weight[d]) * along(d - 1, p, q, weight) + weight[d] * along(d - 1, p + q.stride(d), q, weight);
   }
 
-  const Grid &grid_;
+  const Domain &domain_;
   Real3 cells_{};
   Int3 cell_{};
 };
 
 }  // namespace
 
-PetscErrorCode sample_points(const Grid &grid, const SampledFields &fields, const std::vector<Real3> &points,
+PetscErrorCode sample_points(const Domain &domain, const SampledFields &fields, const std::vector<Real3> &points,
                              std::vector<Sample> *samples) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
   samples->assign(points.size(), {});
   for (std::size_t n = 0; n < points.size(); ++n) {
-    const Place place(grid, points[n]);
+    const Place place(domain, points[n]);
     if (!place.is_here()) continue;
     Sample &sample = (*samples)[n];
-    for (int c = 0; c < grid.dimension(); ++c)
+    for (int c = 0; c < domain.dimension(); ++c)
       sample.velocity[c] = place.interpolate(fields.velocity[c], at_face[c], false);
     sample.pressure = place.interpolate(fields.pressure[0], at_centre, true);
     for (const Phase &phase : fields.phases)
@@ -68,16 +69,16 @@ PetscErrorCode sample_points(const Grid &grid, const SampledFields &fields, cons
     sample.solid_fraction = std::min(sample.solid_fraction, 1.0);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, samples->data(), static_cast<int>(values * points.size()), MPI_DOUBLE,
-                             MPI_SUM, grid.comm()));
+                             MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode sample_planes(const Grid &grid, const SampledFields &fields, int direction,
+PetscErrorCode sample_planes(const Domain &domain, const SampledFields &fields, int direction,
                              std::vector<Sample> *samples) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
-  const int planes = grid.cells()[direction], n = grid.owned()[0], dimension = grid.dimension();
-  const Int3 &begin = grid.layout().begin;
+  const int planes = domain.domain_cells()[direction], n = domain.cells()[0], dimension = domain.dimension();
+  const Int3 &begin = domain.layout().begin;
   ExactSums sums(values * planes);
   std::vector<double> row(n);
   const auto add = [&](const Segment &at, int value) {
@@ -87,7 +88,7 @@ PetscErrorCode sample_planes(const Grid &grid, const SampledFields &fields, int 
     else
       for (int i = 0; i < n; ++i) sums.add(values * (begin[0] + i) + value, row[i]);
   };
-  for (const Segment &at : grid.rows()) {
+  for (const Segment &at : domain.rows()) {
     for (int c = 0; c < dimension; ++c) {
       const ConstView view = fields.velocity[c];
       const double *q = view.row(at.j, at.k), *next = q + view.stride(c);
@@ -105,8 +106,8 @@ PetscErrorCode sample_planes(const Grid &grid, const SampledFields &fields, int 
   }
   samples->assign(planes, {});
   std::vector<double> sum(values * planes);
-  PetscCall(sums.reduce(grid.comm(), sum.data()));
-  const double cells = grid.cell_count() / planes;
+  PetscCall(sums.reduce(domain.comm(), sum.data()));
+  const double cells = domain.domain_cell_count() / planes;
   for (int plane = 0; plane < planes; ++plane) {
     const double *s = &sum[values * plane];
     (*samples)[plane] = {{s[0] / cells, s[1] / cells, s[2] / cells}, s[3] / cells, s[4] / cells};

@@ -2,7 +2,9 @@
 // over planes of cells. The same bits on any number of ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -20,11 +22,11 @@ struct SampledFields {
 
 /// At `points` of the box; z counts for nothing in 2-D. Second order; between a wall and the first centre the
 /// pressure is extrapolated and the fraction constant. One Allreduce.
-PetscErrorCode sample_points(const Grid &grid, const SampledFields &fields, const std::vector<Real3> &points,
+PetscErrorCode sample_points(const Domain &domain, const SampledFields &fields, const std::vector<Real3> &points,
                              std::vector<Sample> *samples);
 
 /// Means over the planes of cells normal to `direction`, one per cell of it; velocities of the cells' centres.
-PetscErrorCode sample_planes(const Grid &grid, const SampledFields &fields, int direction,
+PetscErrorCode sample_planes(const Domain &domain, const SampledFields &fields, int direction,
                              std::vector<Sample> *samples);
 
 }  // namespace eulastic

@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 namespace {
@@ -11,13 +12,13 @@ enum Sum { into_box, pressure_sum, power_sum, faces_sum, sums };
 // Sums over the faces of one side, if this rank has any.
 class SideSums {
 public:
-  SideSums(const Grid &grid, double density, const FieldBlock &velocity, const FieldBlock &pressure)
-      : grid_(grid), density_(density), velocity_(velocity), pressure_(pressure) {}
+  SideSums(const Box &box, double density, const FieldBlock &velocity, const FieldBlock &pressure)
+      : box_(box), density_(density), velocity_(velocity), pressure_(pressure) {}
 
   /// `profile`: of an inflow side, 0 where it is covered; or null.
   void add(const SideFlow &side, const SideProfile *profile, int first, ExactSums *all) const {
     const int d = side.direction;
-    for_points(grid_.cells_at(d, side.high, 1), [&](int i, int j, int k) {
+    for_points(box_.cells_at(d, side.high, 1), [&](int i, int j, int k) {
       const double along = (&velocity_[d](i, j, k))[side.high ? velocity_[d].stride(d) : 0];
       const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
       const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
@@ -43,13 +44,13 @@ private:
   /// x before y before z, over all cells of a side of direction d.
   std::size_t index_on_side(int d, const Int3 &cell) const {
     const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
-    const Int3 &begin = grid_.layout().begin;
-    return (begin[a] + cell[a]) + std::size_t(grid_.cells()[a]) * (begin[b] + cell[b]);
+    const Int3 &begin = box_.layout().begin;
+    return (begin[a] + cell[a]) + std::size_t(box_.domain_cells()[a]) * (begin[b] + cell[b]);
   }
 
   double tangential_squared(int d, const Int3 &cell) const {
     double sum = 0;
-    for (int c = 0; c < grid_.dimension(); ++c) {
+    for (int c = 0; c < box_.dimension(); ++c) {
       if (c == d) continue;
       const double *v = &velocity_[c](cell[0], cell[1], cell[2]), mean = 0.5 * (v[0] + v[velocity_[c].stride(c)]);
       sum += mean * mean;
@@ -57,16 +58,16 @@ private:
     return sum;
   }
 
-  const Grid &grid_;
+  const Box &box_;
   double density_;
   const FieldBlock &velocity_, &pressure_;
 };
 
 }  // namespace
 
-std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Grid &grid) {
+std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box) {
   std::vector<SideFlow> flows;
-  for (const auto [d, high] : grid.sides()) {
+  for (const auto [d, high] : box.sides()) {
     const SideKind kind = sides[d][high].kind;
     if (!volume_crosses(kind)) continue;
     SideFlow flow;
@@ -78,26 +79,26 @@ std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Grid &grid) {
   return flows;
 }
 
-PetscErrorCode measure_side_flows(const Grid &grid, const BoxSides &sides, double time, double density,
+PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
                                   const FieldBlock &velocity, const FieldBlock &pressure,
                                   std::vector<SideFlow> *flows) {
   PetscFunctionBeginUser;
-  *flows = crossed_sides(sides, grid);
+  *flows = crossed_sides(sides, domain);
   if (flows->empty()) PetscFunctionReturn(0);
   VerbScope scope(Verb::sums);
   ExactSums all(sums * static_cast<int>(flows->size()));
   std::vector<double> result(sums * flows->size());
-  const SideSums add(grid, density, velocity, pressure);
+  const SideSums add(domain, density, velocity, pressure);
   int first = 0;
   for (SideFlow &flow : *flows) {
     if (flow.kind == SideKind::pressure) flow.pressure = sides[flow.direction][flow.high].given.at(time);
     add.add(flow, sides[flow.direction][flow.high].profile.get(), first, &all);
     first += sums;
   }
-  PetscCall(all.reduce(grid.comm(), result.data()));
+  PetscCall(all.reduce(domain.comm(), result.data()));
   const double *sum = result.data();
   for (SideFlow &flow : *flows) {
-    const double area = grid.cell_volume() / grid.spacing()[flow.direction];
+    const double area = domain.cell_volume() / domain.spacing()[flow.direction];
     flow.flow_rate = sum[into_box] * area;
     flow.power = sum[power_sum] * area;
     if (!is_open(flow.kind)) flow.pressure = sum[pressure_sum] / sum[faces_sum];

@@ -1,7 +1,9 @@
 // What passes the sides of the box that volume crosses. Exact sums: the same bits on any ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 #include <string>
 
@@ -18,9 +20,9 @@ struct SideFlow {
 };
 
 /// All sides that volume crosses, in the order xmin, xmax, ymin ...
-std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Grid &grid);
+std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box);
 /// Measures them. One ghost layer of the velocity. One Allreduce, or none if there are none.
-PetscErrorCode measure_side_flows(const Grid &grid, const BoxSides &sides, double time, double density,
+PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
                                   const FieldBlock &velocity, const FieldBlock &pressure, std::vector<SideFlow> *flows);
 
 }  // namespace eulastic

@@ -17,7 +17,7 @@ public:
   SurfaceLoads(const EdgeViscosity &viscosity, const FieldBlock &velocity, const FieldBlock &pressure,
                const std::vector<Phase> &phases, const std::vector<const FieldBlock *> &labels,
                const std::vector<SurfaceLoad> &loads)
-      : grid_(viscosity.grid),
+      : box_(viscosity.box),
         stress_{viscosity, velocity, phases},
         pressure_(pressure),
         phases_(phases),
@@ -39,12 +39,12 @@ public:
         [&](int i) {
           const Int3 cell{i, row.j, row.k};
           const double stress = stress_.normal(a, cell) - pressure_[0](i, row.j, row.k);
-          const double share = 0.5 * grid_.cell_volume() / grid_.spacing()[a] * stress;
+          const double share = 0.5 * box_.cell_volume() / box_.spacing()[a] * stress;
           for (const int side : {1, -1}) {
             Int3 owner = cell;
             owner[a] += side;
             Real3 place{};
-            for (int d = 0; d < grid_.dimension(); ++d) place[d] = d == a ? -side : 0;
+            for (int d = 0; d < box_.dimension(); ++d) place[d] = d == a ? -side : 0;
             add(p, owner, place, a, -side * q[i + side * step] * share, sums);
           }
         });
@@ -58,7 +58,7 @@ public:
     const auto differs = [=](int i) { return (q[i] != q[i - sa]) | (q[i] != q[i - sb]) | (q[i] != q[i - sa - sb]); };
     for_cut(row, differs, [&](int i) {
       const Int3 cell{i, row.j, row.k};
-      const double whole = 0.5 * grid_.cell_volume() * stress_.shear(a, b, cell);
+      const double whole = 0.5 * box_.cell_volume() * stress_.shear(a, b, cell);
       for (const int low_a : {0, 1})
         for (const int low_b : {0, 1}) {
           Int3 owner = cell;
@@ -68,8 +68,8 @@ public:
           place[a] = low_a - 0.5;
           place[b] = low_b - 0.5;
           const double part = whole * q[i - low_a * sa - low_b * sb];
-          add(p, owner, place, a, (low_b ? part : -part) * volume_of_face(a, cell) / grid_.spacing()[b], sums);
-          add(p, owner, place, b, (low_a ? part : -part) * volume_of_face(b, cell) / grid_.spacing()[a], sums);
+          add(p, owner, place, a, (low_b ? part : -part) * volume_of_face(a, cell) / box_.spacing()[b], sums);
+          add(p, owner, place, b, (low_a ? part : -part) * volume_of_face(b, cell) / box_.spacing()[a], sums);
         }
     });
   }
@@ -87,8 +87,8 @@ private:
 
   // In cells: a face on a side of the box has half of one.
   double volume_of_face(int a, const Int3 &cell) const {
-    const int at = grid_.layout().begin[a] + cell[a];
-    return grid_.is_wall(a) && (at == 0 || at == grid_.cells()[a]) ? 0.5 : 1;
+    const int at = box_.layout().begin[a] + cell[a];
+    return box_.is_wall(a) && (at == 0 || at == box_.domain_cells()[a]) ? 0.5 : 1;
   }
 
   // `place`: of the force, in cells from the centre of the cell whose phi it comes from.
@@ -97,10 +97,10 @@ private:
     if (push == 0 || label >= index_.size() || index_[label] < 0) return;
     const int first = per_body * index_[label];
     Real3 arm{}, force{};
-    for (int d = 0; d < grid_.dimension(); ++d) {
-      const double h = grid_.spacing()[d], length = grid_.spec().length[d];
-      arm[d] = (grid_.layout().begin[d] + cell[d] + 0.5) * h - loads_[index_[label]].centre[d];
-      if (!grid_.is_wall(d)) arm[d] -= length * std::round(arm[d] / length);
+    for (int d = 0; d < box_.dimension(); ++d) {
+      const double h = box_.spacing()[d], length = box_.domain_shape().length[d];
+      arm[d] = (box_.layout().begin[d] + cell[d] + 0.5) * h - loads_[index_[label]].centre[d];
+      if (!box_.is_wall(d)) arm[d] -= length * std::round(arm[d] / length);
       arm[d] += place[d] * h;
     }
     force[a] = push;
@@ -111,7 +111,7 @@ private:
     }
   }
 
-  const Grid &grid_;
+  const Box &box_;
   WholeStress stress_;
   const FieldBlock &pressure_;
   const std::vector<Phase> &phases_;
@@ -123,26 +123,26 @@ private:
 
 }  // namespace
 
-PetscErrorCode measure_surface_loads(const EdgeViscosity &viscosity, const FieldBlock &velocity,
+PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const FieldBlock &velocity,
                                      const FieldBlock &pressure, const std::vector<Phase> &phases,
                                      const std::vector<const FieldBlock *> &labels, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   if (loads->empty()) PetscFunctionReturn(0);
   const VerbScope scope(Verb::sums);
-  const Grid &grid = viscosity.grid;
+  const Box &box = viscosity.box;
   SurfaceLoads surface(viscosity, velocity, pressure, phases, labels, *loads);
   ExactSums sums(per_body * static_cast<int>(loads->size()));
-  const std::vector<Segment> rows = grid.rows();
+  const std::vector<Segment> rows = box.rows();
   for (std::size_t p = 0; p < phases.size(); ++p)
-    for (int a = 0; labels[p] && a < grid.dimension(); ++a) {
+    for (int a = 0; labels[p] && a < box.dimension(); ++a) {
       for (const Segment &row : rows) surface.add_centres(p, a, phases[p].rows.within(row), &sums);
-      for (int b = a + 1; b < grid.dimension(); ++b)
-        for (int k = 0; k < grid.points_end(2, b == 2); ++k)
-          for (int j = 0; j < grid.points_end(1, a == 1 || b == 1); ++j)
-            surface.add_edges(p, a, b, phases[p].rows.within({0, grid.points_end(0, a == 0), j, k}), &sums);
+      for (int b = a + 1; b < box.dimension(); ++b)
+        for (int k = 0; k < box.points_end(2, b == 2); ++k)
+          for (int j = 0; j < box.points_end(1, a == 1 || b == 1); ++j)
+            surface.add_edges(p, a, b, phases[p].rows.within({0, box.points_end(0, a == 0), j, k}), &sums);
     }
   std::vector<double> total(per_body * loads->size());
-  PetscCall(sums.reduce(grid.comm(), total.data()));
+  PetscCall(sums.reduce(comm, total.data()));
   for (std::size_t b = 0; b < loads->size(); ++b)
     for (int d = 0; d < 3; ++d) {
       (*loads)[b].force[d] = total[per_body * b + d];

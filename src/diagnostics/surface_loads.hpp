@@ -2,6 +2,7 @@
 // -sigma.grad(phi) over the box (docs/method.md, section 14). Rigid bodies: physics/rigid.hpp.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 
@@ -16,7 +17,7 @@ struct SurfaceLoad {
 
 /// Measures the loads of bodies whose label and centre are given; `labels`: of every phase, null where none of them is
 /// in it, else one field. One ghost of velocity, pressure, phi, B and labels. Exact sums: the same bits on any ranks.
-PetscErrorCode measure_surface_loads(const EdgeViscosity &viscosity, const FieldBlock &velocity,
+PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const FieldBlock &velocity,
                                      const FieldBlock &pressure, const std::vector<Phase> &phases,
                                      const std::vector<const FieldBlock *> &labels, std::vector<SurfaceLoad> *loads);
 

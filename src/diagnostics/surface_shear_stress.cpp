@@ -75,12 +75,12 @@ struct Fit {
 
 class SurfaceCells {
 public:
-  SurfaceCells(const Grid &grid, ConstView solid) : grid_(grid), dimension_(grid.dimension()), solid_(solid) {}
+  SurfaceCells(const Box &box, ConstView solid) : box_(box), dimension_(box.dimension()), solid_(solid) {}
 
   // Adds traction(cell, plane), which need not be tangential.
   template <class Traction>
   void add_to(FieldBlock &stress, const Traction &traction) const {
-    for_points(grid_.rows(), [&](int i, int j, int k) {
+    for_points(box_.rows(), [&](int i, int j, int k) {
       const Int3 cell{i, j, k};
       SurfacePlane plane;
       if (!is_cut(cell) || !find_plane(cell, &plane)) return;
@@ -97,12 +97,12 @@ public:
                   const Visit &visit) const {
     Int3 low{}, high{};
     for (int d = 0; d < dimension_; ++d) {
-      const int here = grid_.layout().begin[d] + cell[d];
+      const int here = box_.layout().begin[d] + cell[d];
       low[d] = -reach + at[d];
       high[d] = reach;
-      if (!grid_.is_wall(d)) continue;
+      if (!box_.is_wall(d)) continue;
       low[d] = std::max(low[d], at[d] - here);
-      high[d] = std::min(high[d], grid_.cells()[d] - 1 - here);
+      high[d] = std::min(high[d], box_.domain_cells()[d] - 1 - here);
     }
     for (int k = low[2]; k <= high[2]; ++k)
       for (int j = low[1]; j <= high[1]; ++j)
@@ -134,7 +134,7 @@ private:
     const bool flat = dimension_ == 2;
     const kernels::InterfaceNormal m =
         flat ? kernels::interface_normal<2>(q, 1, sy, sz) : kernels::interface_normal<3>(q, 1, sy, sz);
-    const Real3 inward{m.a, m.b, m.c}, &h = grid_.spacing();
+    const Real3 inward{m.a, m.b, m.c}, &h = box_.spacing();
     if (inward == Real3{}) return false;
     const double a = std::fabs(m.a), b = std::fabs(m.b), c = std::fabs(m.c), phi = std::clamp(*q, 0.0, 1.0);
     const double constant = flat ? kernels::plane_constant<2>(phi, a, b, c) : kernels::plane_constant<3>(phi, a, b, c);
@@ -147,7 +147,7 @@ private:
     return true;
   }
 
-  const Grid &grid_;
+  const Box &box_;
   int dimension_;
   ConstView solid_;
 };
@@ -156,7 +156,7 @@ private:
 class KnownStress {
 public:
   explicit KnownStress(const WholeStress &whole)
-      : whole_(whole), known_(whole.viscosity.grid, whole.viscosity.grid.dimension() == 3 ? 6 : 3) {
+      : whole_(whole), known_(whole.viscosity.box, whole.viscosity.box.dimension() == 3 ? 6 : 3) {
     for (int c = 0; c < known_.count(); ++c) known_.fill(c, std::nan(""));
   }
 
@@ -174,12 +174,12 @@ private:
 }  // namespace
 
 // From the fluid's side: quadratics through its velocity, the closer the further from the surface it is.
-void add_rigid_surface_stress(const Grid &grid, double viscosity, ConstView solid, const FieldBlock &velocity,
+void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const FieldBlock &velocity,
                               FieldBlock &stress) {
   const VerbScope scope(Verb::sums);
-  const SurfaceCells cells(grid, solid);
-  const int dimension = grid.dimension();
-  const Real3 &h = grid.spacing();
+  const SurfaceCells cells(box, solid);
+  const int dimension = box.dimension();
+  const Real3 &h = box.spacing();
   const double finest = dimension == 2 ? std::min(h[0], h[1]) : std::min({h[0], h[1], h[2]});
   cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
     double gradient[3][3]{};
@@ -210,9 +210,9 @@ void add_rigid_surface_stress(const Grid &grid, double viscosity, ConstView soli
 // other.
 void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, FieldBlock &stress) {
   const VerbScope scope(Verb::sums);
-  const Grid &grid = whole.viscosity.grid;
-  const SurfaceCells cells(grid, solid);
-  const int dimension = grid.dimension();
+  const Box &box = whole.viscosity.box;
+  const SurfaceCells cells(box, solid);
+  const int dimension = box.dimension();
   KnownStress known(whole);
   cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
     Real3 traction{};

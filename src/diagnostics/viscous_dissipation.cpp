@@ -32,8 +32,8 @@ double at_centre_of(const ConstView &viscosity, const FieldBlock &velocity, cons
 
 // That of the stress along surfaces: it and the rate of strain have no shear across them in common.
 template <int Dim>
-double along_surface(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Int3 &cell) {
-  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, cell[1], cell[2]);
+double along_surface(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity, const Int3 &cell) {
+  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, cell[1], cell[2]);
   if (stress.excess[cell[0]] == 0) return 0;
   const typename kernels::TangentialStress<Dim>::Rate D = stress.rate(cell[0]);
   const double sum =
@@ -43,25 +43,25 @@ double along_surface(const Grid &grid, const FieldBlock &viscosity, const FieldB
 
 }  // namespace
 
-void viscous_dissipation(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity, const Segment &row,
+void viscous_dissipation(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity, const Segment &row,
                          double *out) {
-  const int dim = grid.dimension();
-  const Real3 &h = grid.spacing();
+  const int dim = box.dimension();
+  const Real3 &h = box.spacing();
   // Share of the edges with that index along d: on a side half, beyond the owned cells none but there.
   const auto share = [&](int d, int index) {
-    if (index == 0) return grid.touches_low(d) ? 0.5 : 1.0;
-    if (index == grid.owned()[d]) return grid.touches_high(d) ? 0.5 : 0.0;
+    if (index == 0) return box.touches_low(d) ? 0.5 : 1.0;
+    if (index == box.cells()[d]) return box.touches_high(d) ? 0.5 : 0.0;
     return 1.0;
   };
-  for (int i = 0; i < grid.owned()[0]; ++i) {
+  for (int i = 0; i < box.cells()[0]; ++i) {
     const Int3 cell{i, row.j, row.k};
     double sum = at_centre_of(viscosity[0], velocity, h, dim, cell) +
-                 (dim == 2 ? along_surface<2> : along_surface<3>)(grid, viscosity, velocity, cell);
+                 (dim == 2 ? along_surface<2> : along_surface<3>)(box, viscosity, velocity, cell);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b)
         for (int upper_a = 0; upper_a < 2; ++upper_a)
           for (int upper_b = 0; upper_b < 2; ++upper_b) {
-            if ((upper_a && cell[a] + 1 < grid.owned()[a]) || (upper_b && cell[b] + 1 < grid.owned()[b])) continue;
+            if ((upper_a && cell[a] + 1 < box.cells()[a]) || (upper_b && cell[b] + 1 < box.cells()[b])) continue;
             Int3 edge = cell;
             edge[a] += upper_a;
             edge[b] += upper_b;

@@ -10,14 +10,14 @@ namespace {
 
 class OneWall {
 public:
-  OneWall(const Grid &grid, int direction, bool high)
-      : grid_(grid), d_(direction), high_(high), last_(grid.owned()[direction] - 1) {}
+  OneWall(const Box &box, int direction, bool high)
+      : box_(box), d_(direction), high_(high), last_(box.cells()[direction] - 1) {}
 
   /// Adds to the traction along c at the low c-face of the wall's cells and at that of their upper neighbours, each
   /// with half its weight.
   template <class Value>
   void add(int c, WallStress *stress, Value value) const {
-    Int3 end = grid_.owned();
+    Int3 end = box_.cells();
     end[d_] = 1;
     double *to = stress->components[c].data();
     for (int k = 0; k < end[2]; ++k)
@@ -36,7 +36,7 @@ public:
     add(c, stress, [&](const Int3 &cell) {
       Int3 edge = cell;
       edge[d_] += high_ ? 1 : 0;
-      const double factor = 2 * viscosity.at(c, d_, edge) / grid_.spacing()[d_];
+      const double factor = 2 * viscosity.at(c, d_, edge) / box_.spacing()[d_];
       return factor * (q(cell[0], cell[1], cell[2]) - wall);
     });
   }
@@ -46,13 +46,13 @@ public:
     add(c, stress, [&](const Int3 &cell) {
       Int3 edge = cell;
       edge[d_] += high_ ? 1 : 0;
-      const double traction = edge_stress(grid_, phase, c, d_, edge[0], edge[1], edge[2]);
+      const double traction = edge_stress(box_, phase, c, d_, edge[0], edge[1], edge[2]);
       return high_ ? -traction : traction;
     });
   }
 
 private:
-  const Grid &grid_;
+  const Box &box_;
   int d_;
   bool high_;
   int last_;
@@ -60,25 +60,25 @@ private:
 
 }  // namespace
 
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time,
+std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
                                           const EdgeViscosity &viscosity, const FieldBlock &velocity,
                                           const std::vector<Phase> &phases) {
   const VerbScope scope(Verb::sums);
   std::vector<WallStress> all;
-  for (const auto [d, high] : grid.sides()) {
+  for (const auto [d, high] : box.sides()) {
     if (sides[d][high].kind != SideKind::wall) continue;
     WallStress &stress = all.emplace_back();
     stress.direction = d;
     stress.high = high;
-    Int3 n = grid.owned();
-    n[d] = grid.touches(d, high) ? 1 : 0;
+    Int3 n = box.cells();
+    n[d] = box.touches(d, high) ? 1 : 0;
     stress.sy = n[0];
     stress.sz = std::ptrdiff_t(n[0]) * n[1];
     for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
     if (n[d] == 0) continue;
-    const OneWall wall(grid, d, high);
+    const OneWall wall(box, d, high);
     const Real3 speed = sides[d][high].motion.at(time);
-    for (int c = 0; c < grid.dimension(); ++c) {
+    for (int c = 0; c < box.dimension(); ++c) {
       if (c == d) continue;
       wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);
       for (const Phase &phase : phases) wall.add_elastic(c, phase, &stress);

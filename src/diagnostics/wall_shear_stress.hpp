@@ -7,6 +7,7 @@
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
@@ -21,7 +22,7 @@ struct WallStress {
 };
 
 /// All walls of the box. One ghost layer of velocity (at `time`) and B must be valid.
-std::vector<WallStress> wall_shear_stress(const Grid &grid, const BoxSides &sides, double time,
+std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
                                           const EdgeViscosity &viscosity, const FieldBlock &velocity,
                                           const std::vector<Phase> &phases);
 

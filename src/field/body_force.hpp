@@ -1,7 +1,7 @@
 // A force per mass that may swing in time.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cmath>
 

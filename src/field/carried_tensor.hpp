@@ -55,6 +55,6 @@ struct CarriedTensor {
 };
 
 /// I everywhere.
-FieldBlock tensor_at_rest(const Grid &grid);
+FieldBlock tensor_at_rest(const Box &box);
 
 }  // namespace eulastic

@@ -176,16 +176,15 @@ PetscErrorCode reduce_maxima(MPI_Comm comm, const std::vector<std::vector<double
   PetscFunctionReturn(0);
 }
 
-std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering,
-                          std::uint64_t salt) {
-  const Layout &own = grid.layout();
+std::uint64_t hash_points(const Box &box, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt) {
+  const Layout &own = box.layout();
   std::uint64_t hash = 0;
-  for (int k = 0; k < grid.points_end(2, staggering[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, staggering[1]); ++j) {
+  for (int k = 0; k < box.points_end(2, staggering[2]); ++k)
+    for (int j = 0; j < box.points_end(1, staggering[1]); ++j) {
       const double *row = field.row(j, k);
       const std::uint64_t y = own.begin[1] + j, z = own.begin[2] + k;
       const std::uint64_t row_key = mix(salt ^ mix(y + (z << 32)));
-      for (int i = 0; i < grid.points_end(0, staggering[0]); ++i)
+      for (int i = 0; i < box.points_end(0, staggering[0]); ++i)
         hash += mix(bits_of(row[i]) ^ mix(row_key + own.begin[0] + i));
     }
   return hash;

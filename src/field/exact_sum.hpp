@@ -5,7 +5,9 @@
 // Kulisch). All sums of a verb share one Allreduce. A non-finite block makes its sum NaN.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -76,18 +78,18 @@ PetscErrorCode reduce_maxima(MPI_Comm comm, const std::vector<std::vector<double
 
 /// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
 template <class Add>
-PetscErrorCode sum_row_parts(const Grid &grid, int count, const Add &add, double *result) {
+PetscErrorCode sum_row_parts(const Domain &domain, int count, const Add &add, double *result) {
   PetscFunctionBeginUser;
-  const int parts = row_parts(grid);
+  const int parts = row_parts(domain);
   std::vector<ExactSums> sums(parts, ExactSums(count));
-  in_parallel(parts, parts, [&](int part) { add(row_part(grid, part, parts), sums[part]); });
-  PetscCall(reduce_parts(grid.comm(), sums, result));
+  in_parallel(parts, parts, [&](int part) { add(row_part(domain, part, parts), sums[part]); });
+  PetscCall(reduce_parts(domain.comm(), sums, result));
   PetscFunctionReturn(0);
 }
 
 /// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks
 /// (MPI_SUM on uint64). `salt` tells fields apart.
-std::uint64_t hash_points(const Grid &grid, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
+std::uint64_t hash_points(const Box &box, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
 /// The same of one record.
 std::uint64_t hash_values(const double *values, std::size_t count);
 

@@ -1,13 +1,14 @@
 #include "field/fed_velocity.hpp"
 
 #include "field/reflection.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
-PetscErrorCode FedVelocity::copy(const Grid &grid, ConstView component, int d, int index, MPI_Comm line,
+PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
                                  FedVelocity *fed) {
-  const Plane plane(grid.layout(), d);
-  const int owner = grid.owner_along(d, index), local = index - grid.layout().begin[d];
+  const Plane plane(domain.layout(), d);
+  const int owner = domain.owner_along(d, index), local = index - domain.layout().begin[d];
   int place;
   PetscFunctionBeginUser;
   fed->d_ = d;

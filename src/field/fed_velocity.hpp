@@ -1,7 +1,9 @@
 // The normal velocity on a plane of faces, as a feeder hands it to its inflow side (docs/method.md, section 20).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 
 #include <vector>
 
@@ -12,7 +14,8 @@ public:
   /// `component`, normal to direction d, on the faces with global index `index`, ghosts of the other directions
   /// included, of the rank that has them to all ranks of its line along d. Collective over `line`, whose ranks are the
   /// places along d.
-  static PetscErrorCode copy(const Grid &grid, ConstView component, int d, int index, MPI_Comm line, FedVelocity *fed);
+  static PetscErrorCode copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
+                             FedVelocity *fed);
   /// Writes the values of a row of the plane; `row` lies on it or on another one along d.
   void set_row(const Segment &row, View component) const;
   /// Every value of the plane, ghosts too: visit(local face, value).

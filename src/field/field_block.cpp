@@ -101,14 +101,14 @@ void FieldBlock::Free::operator()(double *p) const noexcept {
     std::free(p);
 }
 
-FieldBlock::FieldBlock(const Grid &grid, int count) : layout_(grid.layout()), count_(count) {
+FieldBlock::FieldBlock(const Box &box, int count) : layout_(box.layout()), count_(count) {
   data_ = allocate(size());
   clear();
 }
 
-FieldBlock FieldBlock::at_rest(const Grid &grid, int count, int ones) {
+FieldBlock FieldBlock::at_rest(const Box &box, int count, int ones) {
   FieldBlock block;
-  block.layout_ = grid.layout();
+  block.layout_ = box.layout();
   block.count_ = count;
   block.rests_ = true;
   block.ones_ = ones;

@@ -1,7 +1,7 @@
 // Fields of one group in one contiguous, ghosted, zero-initialised structure-of-arrays block.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -13,10 +13,10 @@ class FieldBlock {
 public:
   FieldBlock() = default;
   /// `count` fields on `grid`, all zero, 64-byte aligned.
-  FieldBlock(const Grid &grid, int count);
+  FieldBlock(const Box &box, int count);
   /// The same, but 1 in the first `ones` fields, and memory follows what is written: pages that are only read, or not
   /// even that, take none. For what differs from its rest near bodies alone.
-  static FieldBlock at_rest(const Grid &grid, int count, int ones = 0);
+  static FieldBlock at_rest(const Box &box, int count, int ones = 0);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
   int count() const noexcept { return count_; }

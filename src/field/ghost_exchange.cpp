@@ -1,6 +1,7 @@
 #include "field/ghost_exchange.hpp"
 
 #include "base/events.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -14,13 +15,13 @@ struct Point {
 };
 
 // The points of this rank along d with `ghosts` layers, but those behind walls.
-std::vector<Point> points_along(const Grid &grid, int d, int ghosts) {
-  const int n = grid.cells()[d], begin = grid.layout().begin[d], cells = grid.owned()[d];
+std::vector<Point> points_along(const Domain &domain, int d, int ghosts) {
+  const int n = domain.domain_cells()[d], begin = domain.layout().begin[d], cells = domain.cells()[d];
   std::vector<Point> points;
   for (int i = -ghosts; i < cells + ghosts; ++i) {
-    if (grid.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
-    const int image = grid.image(d, begin + i), place = grid.owner_along(d, image);
-    points.push_back({i, place, image - grid.first_cell(d, place)});
+    if (domain.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
+    const int image = domain.image(d, begin + i), place = domain.owner_along(d, image);
+    points.push_back({i, place, image - domain.first_cell(d, place)});
   }
   return points;
 }
@@ -43,17 +44,17 @@ PetscErrorCode GhostExchange::Unit::make(std::ptrdiff_t values) {
 
 PetscErrorCode GhostExchange::make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf) {
   PetscFunctionBeginUser;
-  const Layout &own = grid_->layout();
+  const Layout &own = domain_->layout();
   const std::ptrdiff_t unit = pieces ? GhostPieces::cells : by_rows() ? own.sy : 1;
   std::vector<Point> points[3];
-  for (int d = 0; d < 3; ++d) points[d] = points_along(*grid_, d, std::min(width, own.ghosts[d]));
+  for (int d = 0; d < 3; ++d) points[d] = points_along(*domain_, d, std::min(width, own.ghosts[d]));
   if (pieces) {
     points[0].clear();
     for (int m = 0; m < pieces->count(); ++m) points[0].push_back({GhostPieces::cells * m, 0, GhostPieces::cells * m});
   } else if (by_rows()) {
     points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
   }
-  if (grid_->owned_count() == 0) points[2].clear();  // nothing is around no cells
+  if (domain_->cell_count() == 0) points[2].clear();  // nothing is around no cells
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
   const auto place_in = [&](const Layout &layout, int f, const Int3 &point) {
@@ -64,15 +65,15 @@ PetscErrorCode GhostExchange::make_forest(int width, int fields, const GhostPiec
     for (const Point &z : points[2])
       for (const Point &y : points[1])
         for (const Point &x : points[0]) {
-          const int rank = grid_->rank_at({x.place, y.place, z.place});
+          const int rank = domain_->rank_at({x.place, y.place, z.place});
           const PetscInt leaf = place_in(own, f, {x.here, y.here, z.here}),
-                         root = place_in(grid_->layout_of(rank), f, {x.there, y.there, z.there});
-          if (rank == grid_->rank() && root == leaf) continue;  // owned
+                         root = place_in(domain_->layout_of(rank), f, {x.there, y.there, z.there});
+          if (rank == domain_->rank() && root == leaf) continue;  // owned
           if (pieces && !pieces->holds(y.here, z.here, x.here / GhostPieces::cells)) continue;
           leaves.push_back(leaf);
           roots.push_back({rank, root});
         }
-  PetscCall(PetscSFCreate(grid_->comm(), sf));
+  PetscCall(PetscSFCreate(domain_->comm(), sf));
   PetscCall(PetscSFSetFromOptions(*sf));
   PetscInt count;
   PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * own.size / unit, &count));  // an error where it has no room
@@ -138,13 +139,13 @@ PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const Occupie
 // is split.
 void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
-  if (!grid_->wraps_x() || !wanted.row_ends) return;
+  if (!domain_->wraps_x() || !wanted.row_ends) return;
   FieldBlock &block = *wanted.block;
   const Layout &own = block.layout();
-  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*grid_);
+  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*domain_);
   const int layers = is_inside(wanted) ? 0 : width;
   const GhostPieces *pieces = wanted.pieces();
-  const Grid::Range y = grid_->points_near(1, true, layers), z = grid_->points_near(2, true, layers);
+  const Box::Range y = domain_->points_near(1, true, layers), z = domain_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
     for (int f = 0; f < block.count(); ++f)

@@ -6,7 +6,9 @@
 // staggered fields), which a DMDA does not number, belongs to the owner of N - 1: its values travel like any others.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <map>
@@ -29,7 +31,7 @@ struct WantedGhosts {
 
 class GhostExchange {
 public:
-  explicit GhostExchange(const Grid &grid) : grid_(&grid) {}
+  explicit GhostExchange(const Domain &domain) : domain_(&domain) {}
 
   /// Afterwards every ghost within `width` that is not behind a wall is right, on ranks that have cells. In ghost rows
   /// those behind walls of x and further out in x may have changed; all others are not touched.
@@ -52,13 +54,13 @@ private:
       if (type != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type);
     }
   };
-  bool by_rows() const { return grid_->processors(0) == 1; }
+  bool by_rows() const { return domain_->processors(0) == 1; }
   PetscErrorCode make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf);
   PetscErrorCode bring(const WantedGhosts &wanted,
                        PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
-  const Grid *grid_;
+  const Domain *domain_;
   Unit unit_, piece_;
   std::map<std::pair<int, int>, SfHandle> forests_;  ///< by width and number of fields
 };

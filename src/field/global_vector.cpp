@@ -4,22 +4,22 @@
 
 namespace eulastic {
 
-PetscErrorCode to_global_vector(const Grid &grid, ConstView field, Vec vector) {
+PetscErrorCode to_global_vector(const Domain &domain, ConstView field, Vec vector) {
   double *values;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(vector, &values));
   double *next = values;
-  for (const Segment &s : grid.rows()) next = std::copy_n(field.row(s.j, s.k), s.size(), next);
+  for (const Segment &s : domain.rows()) next = std::copy_n(field.row(s.j, s.k), s.size(), next);
   PetscCall(VecRestoreArrayWrite(vector, &values));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode from_global_vector(const Grid &grid, Vec vector, View field) {
+PetscErrorCode from_global_vector(const Domain &domain, Vec vector, View field) {
   const double *values;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(vector, &values));
   const double *next = values;
-  for (const Segment &s : grid.rows()) {
+  for (const Segment &s : domain.rows()) {
     std::copy_n(next, s.size(), field.row(s.j, s.k));
     next += s.size();
   }

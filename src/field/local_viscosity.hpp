@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/field_block.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
@@ -13,7 +14,7 @@ inline constexpr int viscosity_fields(int dimension) { return viscosity_along_su
 
 /// Dynamic viscosity on edges: one for all, or where bodies have their own that of the place.
 struct EdgeViscosity {
-  const Grid &grid;
+  const Box &box;
   double uniform;  ///< dynamic
   double density;
   const FieldBlock *local;  ///< kinematic, of compute_viscosity(); null: uniform
@@ -21,7 +22,7 @@ struct EdgeViscosity {
   /// On the low edge of a cell normal to the directions a and b.
   double at(int a, int b, const Int3 &cell) const {
     if (!local) return uniform;
-    return density * (*local)[viscosity_of_edge(grid.dimension(), a, b)](cell[0], cell[1], cell[2]);
+    return density * (*local)[viscosity_of_edge(box.dimension(), a, b)](cell[0], cell[1], cell[2]);
   }
   double at_centre(const Int3 &cell) const {
     return local ? density * (*local)[0](cell[0], cell[1], cell[2]) : uniform;

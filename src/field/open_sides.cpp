@@ -8,32 +8,32 @@
 
 namespace eulastic {
 // Periodic images included; what lies behind other sides is nobody's.
-double inflow_shape(const Grid &grid, const Side &side, int d, const Int3 &local) {
+double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local) {
   if (!side.profile || side.profile->empty()) return 1;
   std::size_t place = 0;
   for (int e = 2; e >= 0; --e) {
     if (e == d) continue;
-    const int n = grid.cells()[e];
-    place = place * n + std::size_t(std::clamp(grid.image(e, grid.layout().begin[e] + local[e]), 0, n - 1));
+    const int n = box.domain_cells()[e];
+    place = place * n + std::size_t(std::clamp(box.image(e, box.layout().begin[e] + local[e]), 0, n - 1));
   }
   return (*side.profile)[place];
 }
 
-void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double given, Segment row, View component) {
+void set_inflow_row(const Box &box, const Side &side, int d, bool high, double given, Segment row, View component) {
   const double along = high ? -given : given;
   if (d == 0) {
-    row.i_begin = high ? grid.cells()[0] - grid.layout().begin[0] : -grid.layout().begin[0];
+    row.i_begin = high ? box.domain_cells()[0] - box.layout().begin[0] : -box.layout().begin[0];
     row.i_end = row.i_begin + 1;
   }
   double *face = component.row(row.j, row.k);
-  for (int i = row.i_begin; i < row.i_end; ++i) face[i] = along * inflow_shape(grid, side, d, {i, row.j, row.k});
+  for (int i = row.i_begin; i < row.i_end; ++i) face[i] = along * inflow_shape(box, side, d, {i, row.j, row.k});
 }
 
-void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View component, int d) {
-  const Layout &layout = grid.layout();
+void set_inflow_faces(const Box &box, const BoxSides &sides, double time, View component, int d) {
+  const Layout &layout = box.layout();
   for (const bool high : {false, true}) {
     const Side &side = sides[d][high];
-    const int local = (high ? grid.cells()[d] : 0) - layout.begin[d];
+    const int local = (high ? box.domain_cells()[d] : 0) - layout.begin[d];
     if (side.kind != SideKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d])
       continue;
     const double given = side.given.at(time);
@@ -46,27 +46,27 @@ void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View
         else if (side.fed)
           side.fed->set_row(row, component);
         else
-          set_inflow_row(grid, side, d, high, given, row, component);
+          set_inflow_row(box, side, d, high, given, row, component);
       }
   }
 }
 
-void fill_ghosts_of_increment(const Grid &grid, View field, int width) {
-  for (const auto [d, high] : grid.sides())
-    reflect(grid, field, d, high, false, {grid.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
+void fill_ghosts_of_increment(const Box &box, View field, int width) {
+  for (const auto [d, high] : box.sides())
+    reflect(box, field, d, high, false, {box.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
 }
 
-void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, double time, double density,
+void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
                                    const FieldBlock &velocity, View pressure) {
-  for (const auto [d, high] : grid.sides()) {
-    if (!grid.is_open(d, high)) continue;
+  for (const auto [d, high] : box.sides()) {
+    if (!box.is_open(d, high)) continue;
     const bool outflow = sides[d][high].kind == SideKind::outflow;
     const double given = outflow ? 0 : sides[d][high].given.at(time);
     const ConstView normal = velocity[d];
     const std::ptrdiff_t outward = high ? pressure.stride(d) : -pressure.stride(d),
                          to_face = high ? normal.stride(d) : 0;
     const double sign = high ? -1 : 1;
-    for_points(grid.cells_at(d, high, 1), [&](int i, int j, int k) {
+    for_points(box.cells_at(d, high, 1), [&](int i, int j, int k) {
       const double inward = sign * (&normal(i, j, k))[to_face];
       const double back = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
       double *p = &pressure(i, j, k);
@@ -75,9 +75,9 @@ void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, doub
   }
 }
 
-void clear_open_ghosts(const Grid &grid, View field, int width) {
-  for (const auto [d, high] : grid.sides())
-    if (grid.is_open(d, high)) reflect(grid, field, d, high, false, {0.0, 0.0}, width);
+void clear_open_ghosts(const Box &box, View field, int width) {
+  for (const auto [d, high] : box.sides())
+    if (box.is_open(d, high)) reflect(box, field, d, high, false, {0.0, 0.0}, width);
 }
 
 bool volume_crosses(const BoxSides &sides) {

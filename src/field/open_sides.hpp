@@ -7,22 +7,22 @@
 namespace eulastic {
 
 /// Velocity component d on an inflow side of direction d at `time`, ghosts of the other directions included.
-void set_inflow_faces(const Grid &grid, const BoxSides &sides, double time, View component, int d);
+void set_inflow_faces(const Box &box, const BoxSides &sides, double time, View component, int d);
 /// The same on the points of one row that lie on one side: `given` times the profile, into the box.
-void set_inflow_row(const Grid &grid, const Side &side, int d, bool high, double given, Segment row, View component);
+void set_inflow_row(const Box &box, const Side &side, int d, bool high, double given, Segment row, View component);
 
 /// The profile of a side at a local cell of its plane, ghosts too.
-double inflow_shape(const Grid &grid, const Side &side, int d, const Int3 &local);
+double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local);
 
 /// One ghost layer, or `width`, of what is proportional to a pressure that is 0 on open sides: odd there, even behind
 /// others.
-void fill_ghosts_of_increment(const Grid &grid, View field, int width);
+void fill_ghosts_of_increment(const Box &box, View field, int width);
 /// One ghost layer of the pressure behind open sides, so that its mean with the one before the side is what is given at
 /// `time`. `velocity`: on the sides, for what flows back in through an outflow side.
-void fill_ghosts_of_given_pressure(const Grid &grid, const BoxSides &sides, double time, double density,
+void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
                                    const FieldBlock &velocity, View pressure);
 /// 0 in `width` ghost layers behind open sides.
-void clear_open_ghosts(const Grid &grid, View field, int width);
+void clear_open_ghosts(const Box &box, View field, int width);
 
 /// Whether volume crosses any side, and whether the pressure is given on any.
 bool volume_crosses(const BoxSides &sides);

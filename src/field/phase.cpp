@@ -2,11 +2,11 @@
 
 namespace eulastic {
 
-void Phase::empty(const Grid &grid, bool labels) {
-  fraction = FieldBlock::at_rest(grid, 1);
-  tensor.field = tensor_at_rest(grid);
+void Phase::empty(const Box &box, bool labels) {
+  fraction = FieldBlock::at_rest(box, 1);
+  tensor.field = tensor_at_rest(box);
   tensor.centred = material.is_membrane();
-  label = labels ? FieldBlock::at_rest(grid, 1) : FieldBlock();
+  label = labels ? FieldBlock::at_rest(box, 1) : FieldBlock();
 }
 
 void Phase::copy_from(const Phase &other) {

@@ -21,7 +21,7 @@ struct Phase {
   FieldBlock label;       ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
 
   /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (FieldBlock::at_rest).
-  void empty(const Grid &grid, bool labels);
+  void empty(const Box &box, bool labels);
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);
 };

@@ -25,7 +25,7 @@ struct Reflection {
   bool about_face = false;  ///< of a staggered field: twice what is on the face in place of twice_wall
 };
 
-void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width,
+void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows = nullptr);
 
 }  // namespace eulastic

@@ -2,7 +2,7 @@
 // faces with a neighbour inside, which see the surface instead of it (docs/method.md, section 19). PETSc-free.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <array>
 #include <cmath>
@@ -156,11 +156,11 @@ private:
 };
 
 /// Of face i of component a in row (j, k): its place in cells from the middle of the box.
-inline Real3 place_of_face(const Grid &grid, int a, int i, int j, int k) {
-  const Int3 &begin = grid.layout().begin, local{i, j, k};
+inline Real3 place_of_face(const Box &box, int a, int i, int j, int k) {
+  const Int3 &begin = box.layout().begin, local{i, j, k};
   Real3 place{};
-  for (int d = 0; d < grid.dimension(); ++d)
-    place[d] = begin[d] + local[d] + (d == a ? 0 : 0.5) - 0.5 * grid.cells()[d];
+  for (int d = 0; d < box.dimension(); ++d)
+    place[d] = begin[d] + local[d] + (d == a ? 0 : 0.5) - 0.5 * box.domain_cells()[d];
   return place;
 }
 

@@ -12,11 +12,11 @@
 
 namespace eulastic {
 
-void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflection rule, int width,
+void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows) {
   const std::ptrdiff_t s = q.stride(d);
-  const Layout &own = grid.layout();
-  const int last = (high ? grid.cells()[d] - 1 : 0) - own.begin[d];  // before the wall
+  const Layout &own = box.layout();
+  const int last = (high ? box.domain_cells()[d] - 1 : 0) - own.begin[d];  // before the wall
   width = std::min(width, own.ghosts[d] + (high ? own.cells[d] - 1 - last : last));
   if (width <= 0) return;
   const Plane plane(own, d);
@@ -34,7 +34,7 @@ void reflect(const Grid &grid, View q, int d, bool high, bool staggered, Reflect
       for (int i = from; i < to; ++i) row[i + m * step] = rule.twice_wall + rule.sign * row[i + mirror - m * step];
   };
   constexpr int ahead = 4;
-  const int low_j = plane.begin[1], low_k = plane.begin[2], lines = plane.end[1] - low_j, parts = row_parts(grid);
+  const int low_j = plane.begin[1], low_k = plane.begin[2], lines = plane.end[1] - low_j, parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(static_cast<std::size_t>(lines) * (plane.end[2] - low_k), part, parts);
     for (std::size_t line = piece.begin; line < piece.end; ++line) {
@@ -53,10 +53,10 @@ namespace {
 
 // The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests
 // is left alone (FieldBlock::at_rest).
-void clear_face(const Grid &grid, View q, int d, bool high) {
-  const Layout &layout = grid.layout();
+void clear_face(const Box &box, View q, int d, bool high) {
+  const Layout &layout = box.layout();
   const Plane plane(layout, d);
-  const int local = (high ? grid.cells()[d] : 0) - layout.begin[d];
+  const int local = (high ? box.domain_cells()[d] : 0) - layout.begin[d];
   if (local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d]) return;
   for (int k = plane.begin[2]; k < plane.end[2]; ++k)
     for (int j = plane.begin[1]; j < plane.end[1]; ++j) {
@@ -68,9 +68,9 @@ void clear_face(const Grid &grid, View q, int d, bool high) {
 
 }  // namespace
 
-void close_wall_faces(const Grid &grid, View q, int d) {
+void close_wall_faces(const Box &box, View q, int d) {
   for (const bool high : {false, true})
-    if (!grid.is_open(d, high)) clear_face(grid, q, d, high);
+    if (!box.is_open(d, high)) clear_face(box, q, d, high);
 }
 
 Real3 WallMotion::at(double time) const {
@@ -87,18 +87,18 @@ double wall_speed(const BoxSides &sides) {
   return speed;
 }
 
-void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double time, FieldBlock &velocity, int width) {
+void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, FieldBlock &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
-  const int dimension = grid.dimension();
+  const int dimension = box.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
-    if (grid.is_wall(c)) {
-      close_wall_faces(grid, velocity[c], c);
-      set_inflow_faces(grid, sides, time, velocity[c], c);
+    if (box.is_wall(c)) {
+      close_wall_faces(box, velocity[c], c);
+      set_inflow_faces(box, sides, time, velocity[c], c);
     }
     for (int e = 0; e < dimension; ++e) {
       const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
       for (const bool high : {false, true}) {
-        if (!grid.touches(d, high)) continue;
+        if (!box.touches(d, high)) continue;
         const Side &side = sides[d][high];
         Reflection rule{-1, 0};
         if (is_open(side.kind) || (c != d && side.kind == SideKind::symmetry))
@@ -107,48 +107,48 @@ void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double t
           rule.about_face = true;
         else if (c != d)
           rule.twice_wall = 2 * side.motion.at(time)[c];
-        reflect(grid, velocity[c], d, high, c == d, rule, width);
+        reflect(box, velocity[c], d, high, c == d, rule, width);
       }
     }
   }
 }
 
-void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
+void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows) {
-  for (const auto [d, high] : grid.sides()) reflect(grid, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
+  for (const auto [d, high] : box.sides()) reflect(box, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
-void clear_solid_ghosts(const Grid &grid, const BoxSides &sides, View field, int width, const OccupiedRows *rows) {
-  for (const auto [d, high] : grid.sides())
-    if (is_solid(sides[d][high].kind)) reflect(grid, field, d, high, false, {0.0, 0.0}, width, rows);
+void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width, const OccupiedRows *rows) {
+  for (const auto [d, high] : box.sides())
+    if (is_solid(sides[d][high].kind)) reflect(box, field, d, high, false, {0.0, 0.0}, width, rows);
 }
 
-void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);
-  clear_symmetry_planes(grid, sides, tensor);
-  const auto &components = tensor_components(grid.dimension());
+  clear_symmetry_planes(box, sides, tensor);
+  const auto &components = tensor_components(box.dimension());
   for (int c = 0; c < tensor.count(); ++c) {
     const Staggering at = components[c].at;
-    for (const auto [d, high] : grid.sides()) {
+    for (const auto [d, high] : box.sides()) {
       const bool odd = at[d] && sides[d][high].kind == SideKind::symmetry;
-      reflect(grid, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
+      reflect(box, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
     }
   }
 }
 
-void fill_wall_ghosts_centred_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows) {
-  const auto &components = tensor_components(grid.dimension());
+void fill_wall_ghosts_centred_tensor(const Box &box, FieldBlock &tensor, int width, const OccupiedRows *rows) {
+  const auto &components = tensor_components(box.dimension());
   for (int c = 0; c < tensor.count(); ++c)
-    for (const auto [d, high] : grid.sides())
-      reflect(grid, tensor[c], d, high, false, {components[c].at[d] ? -1.0 : 1.0, 0.0}, width, rows);
+    for (const auto [d, high] : box.sides())
+      reflect(box, tensor[c], d, high, false, {components[c].at[d] ? -1.0 : 1.0, 0.0}, width, rows);
 }
 
-void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor) {
-  const auto &components = tensor_components(grid.dimension());
-  for (const auto [d, high] : grid.sides())
+void clear_symmetry_planes(const Box &box, const BoxSides &sides, FieldBlock &tensor) {
+  const auto &components = tensor_components(box.dimension());
+  for (const auto [d, high] : box.sides())
     for (int c = 0; sides[d][high].kind == SideKind::symmetry && c < tensor.count(); ++c)
-      if (components[c].at[d]) clear_face(grid, tensor[c], d, high);
+      if (components[c].at[d]) clear_face(box, tensor[c], d, high);
 }
 
 }  // namespace eulastic

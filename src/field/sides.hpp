@@ -61,23 +61,23 @@ double wall_speed(const BoxSides &sides);
 
 /// No flow through the sides of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
 /// face of a neighbour whose three cells are this rank's ghosts.
-void close_wall_faces(const Grid &grid, View component, int d);
+void close_wall_faces(const Box &box, View component, int d);
 /// Fills `width` layers behind every side this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); faces on sides are set to 0.
-void fill_wall_ghosts_velocity(const Grid &grid, const BoxSides &sides, double time, FieldBlock &velocity, int width);
+void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, FieldBlock &velocity, int width);
 /// Even reflection of one field of the given staggering, also behind a neighbour's side where ghosts reach beyond it;
 /// not where `rows`, if it is given, is idle before the side.
-void fill_wall_ghosts_even(const Grid &grid, const Staggering &staggering, View field, int width,
+void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
 /// Behind solid sides 0, at centres: for fractions of bodies that end there. Other sides are left as they are.
-void clear_solid_ghosts(const Grid &grid, const BoxSides &sides, View field, int width,
+void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width,
                         const OccupiedRows *rows = nullptr);
 /// All components of a left Cauchy-Green block.
-void fill_wall_ghosts_tensor(const Grid &grid, const BoxSides &sides, FieldBlock &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, FieldBlock &tensor, int width,
                              const OccupiedRows *rows = nullptr);
 /// The same where all components live at centres: the mirror image.
-void fill_wall_ghosts_centred_tensor(const Grid &grid, FieldBlock &tensor, int width, const OccupiedRows *rows);
+void fill_wall_ghosts_centred_tensor(const Box &box, FieldBlock &tensor, int width, const OccupiedRows *rows);
 /// Components of a left Cauchy-Green block on planes of symmetry: 0, ghosts of the other directions included.
-void clear_symmetry_planes(const Grid &grid, const BoxSides &sides, FieldBlock &tensor);
+void clear_symmetry_planes(const Box &box, const BoxSides &sides, FieldBlock &tensor);
 
 }  // namespace eulastic

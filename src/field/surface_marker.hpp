@@ -1,7 +1,7 @@
 // A material point of a membrane, by which its surface knows its shape at rest.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 // What a cell near a membrane says of it.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 

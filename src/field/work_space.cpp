@@ -32,9 +32,9 @@ PetscErrorCode WorkSpace::reserve(int count) {
   PetscFunctionBeginUser;
   if (count <= fields_.count()) PetscFunctionReturn(0);
   const bool out = std::any_of(holder_.begin(), holder_.end(), [](const char *name) { return name != nullptr; });
-  PetscCheck(!out, grid_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s", holders().c_str());
+  PetscCheck(!out, domain_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s", holders().c_str());
   fields_ = {};
-  fields_ = FieldBlock(*grid_, count);
+  fields_ = FieldBlock(*domain_, count);
   holder_.assign(count, nullptr);
   PetscFunctionReturn(0);
 }
@@ -42,7 +42,7 @@ PetscErrorCode WorkSpace::reserve(int count) {
 PetscErrorCode WorkSpace::take(const char *name, int count, Lease *lease) {
   PetscFunctionBeginUser;
   const auto at = std::search_n(holder_.begin(), holder_.end(), count, nullptr);
-  PetscCheck(at != holder_.end() || count == 0, grid_->comm(), PETSC_ERR_PLIB, "no work space for %s (%d fields): %s",
+  PetscCheck(at != holder_.end() || count == 0, domain_->comm(), PETSC_ERR_PLIB, "no work space for %s (%d fields): %s",
              name, count, holders().c_str());
   std::fill_n(at, count, name);
   lease->space_ = this;

@@ -1,7 +1,9 @@
 // Fields that the verbs of a step need one after the other: each takes what it needs, by name, for a scope.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 
 #include <string>
 #include <vector>
@@ -28,7 +30,7 @@ public:
     FieldBlock fields_;
   };
 
-  explicit WorkSpace(const Grid &grid) : grid_(&grid) {}
+  explicit WorkSpace(const Domain &domain) : domain_(&domain) {}
   /// At least so many fields; while none is out.
   PetscErrorCode reserve(int count);
   /// `count` fields that follow each other. Fails where so many are not free, with the names of who holds them.
@@ -38,7 +40,7 @@ public:
 private:
   std::string holders() const;
 
-  const Grid *grid_;
+  const Domain *domain_;
   FieldBlock fields_;
   std::vector<const char *> holder_;  ///< of every field, or null
 };

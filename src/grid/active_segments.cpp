@@ -46,8 +46,8 @@ double ActiveSegments::points() const noexcept {
   return sum;
 }
 
-void ActiveSegments::build_all(const Grid &grid) {
-  start({0, 0, 0}, {grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)});
+void ActiveSegments::build_all(const Box &box) {
+  start({0, 0, 0}, {box.points_end(0, true), box.points_end(1, true), box.points_end(2, true)});
   for (int k = 0; k < rows_z_; ++k)
     for (int j = 0; j < rows_y_; ++j) {
       segments_.push_back({0, points_x_, j, k});
@@ -102,10 +102,10 @@ void ActiveSegments::append_rows(int parts, const Append &append) {
 // Points where the flags of all centres within reach together give `wanted`, which idle rows alone do not. Reach by
 // reach: along x, y and z.
 template <class Flag>
-void ActiveSegments::build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted,
+void ActiveSegments::build_rows(const Box &box, ConstView value, const OccupiedRows &rows, Flag flag, int wanted,
                                 int low, int high) {
-  const bool flat = grid.dimension() == 2, skip = flag(0.0) != wanted;
-  const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low, parts = row_parts(grid);
+  const bool flat = box.dimension() == 2, skip = flag(0.0) != wanted;
+  const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low, parts = row_parts(box);
   const std::size_t width = points_x_, plane = width * rows_y_;
   std::vector<unsigned char> marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
   mask_.resize(plane * (rows_z_ + reach_z));  // what is within reach along x and y, on the rows that are `marked`
@@ -153,25 +153,25 @@ void ActiveSegments::build_rows(const Grid &grid, ConstView value, const Occupie
   });
 }
 
-void ActiveSegments::build(const Grid &grid, ConstView value, const OccupiedRows &rows, double threshold, int low,
+void ActiveSegments::build(const Box &box, ConstView value, const OccupiedRows &rows, double threshold, int low,
                            int high) {
-  start({0, 0, 0}, {grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)});
+  start({0, 0, 0}, {box.points_end(0, true), box.points_end(1, true), box.points_end(2, true)});
   build_rows(
-      grid, value, rows, [threshold](double q) { return static_cast<unsigned char>(q >= threshold); }, 1, low, high);
+      box, value, rows, [threshold](double q) { return static_cast<unsigned char>(q >= threshold); }, 1, low, high);
 }
 
-void ActiveSegments::build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin) {
-  const Int3 &n = grid.owned();
-  const int margin_z = grid.dimension() == 3 ? margin : 0;
+void ActiveSegments::build_band(const Box &box, ConstView value, const OccupiedRows &rows, int margin) {
+  const Int3 &n = box.cells();
+  const int margin_z = box.dimension() == 3 ? margin : 0;
   start({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
   build_rows(
-      grid, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
+      box, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
 }
 
-void ActiveSegments::build_within(const Grid &grid, const ActiveSegments &cells, ConstView value) {
+void ActiveSegments::build_within(const Box &box, const ActiveSegments &cells, ConstView value) {
   const Int3 begin = cells.begin_;
   start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
-  append_rows(row_parts(grid), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
+  append_rows(row_parts(box), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
     const double *values = value.row(begin[1] + j, begin[2] + k) + begin[0];
     std::fill_n(mask, points_x_, 0);
     for (const Segment &s : cells.row(begin[1] + j, begin[2] + k))
@@ -180,10 +180,10 @@ void ActiveSegments::build_within(const Grid &grid, const ActiveSegments &cells,
   });
 }
 
-void ActiveSegments::build_faces(const Grid &grid, const ActiveSegments &cells) {
+void ActiveSegments::build_faces(const Box &box, const ActiveSegments &cells) {
   const Int3 begin = cells.begin_;
   start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
-  append_rows(row_parts(grid), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
+  append_rows(row_parts(box), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
     std::fill_n(mask, points_x_, 0);
     const auto paint = [&](int row_j, int row_k) {
       for (const Segment &s : cells.row(begin[1] + row_j, begin[2] + row_k))

@@ -1,6 +1,7 @@
 // The runs of cells, row by row, on which something has to be computed.
 #pragma once
 
+#include "grid/box.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <algorithm>
@@ -20,16 +21,16 @@ public:
   /// Points (i,j,k) for which one of the centres (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has
   /// value >= threshold. In whole vectors of 8 points, where the row has them, so a superset; `value` needs that
   /// many ghosts. Idle rows of `rows` are not read.
-  void build(const Grid &grid, ConstView value, const OccupiedRows &rows, double threshold, int low, int high);
+  void build(const Box &box, ConstView value, const OccupiedRows &rows, double threshold, int low, int high);
   /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
   /// and some more. `value` needs margin + 1 ghosts.
-  void build_band(const Grid &grid, ConstView value, const OccupiedRows &rows, int margin);
+  void build_band(const Box &box, ConstView value, const OccupiedRows &rows, int margin);
   /// Those of `cells` whose value is not 0, and some more.
-  void build_within(const Grid &grid, const ActiveSegments &cells, ConstView value);
+  void build_within(const Box &box, const ActiveSegments &cells, ConstView value);
   /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
-  void build_faces(const Grid &grid, const ActiveSegments &cells);
+  void build_faces(const Box &box, const ActiveSegments &cells);
   /// Everything.
-  void build_all(const Grid &grid);
+  void build_all(const Box &box);
 
   Range row(int j, int k) const noexcept {
     const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
@@ -53,8 +54,7 @@ public:
 private:
   void start(const Int3 &begin, const Int3 &end);
   template <class Flag>
-  void build_rows(const Grid &grid, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low,
-                  int high);
+  void build_rows(const Box &box, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low, int high);
   void append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const;
   template <class Append>
   void append_rows(int parts, const Append &append);

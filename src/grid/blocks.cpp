@@ -1,22 +1,23 @@
 #include "grid/blocks.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
-Sides::Sides(const Grid &grid) : wraps_x(grid.wraps_x()), cells_x(grid.owned()[0]) {
+Sides::Sides(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
   for (int d = 0; d < 3; ++d) {
-    wall[d][0] = grid.touches_low(d);
-    wall[d][1] = grid.touches_high(d);
-    alone[d] = d >= grid.dimension() || (d == 0 && wraps_x);
+    wall[d][0] = box.touches_low(d);
+    wall[d][1] = box.touches_high(d);
+    alone[d] = d >= box.dimension() || (d == 0 && wraps_x);
   }
 }
 
-int StagePass::depth(const Grid &grid, const Sides &sides, int least, int most) {
+int StagePass::depth(const Domain &domain, const Sides &sides, int least, int most) {
   int depth = least;
-  for (int more = least + 1; more <= std::min(most, grid.spec().ghosts); ++more) {
+  for (int more = least + 1; more <= std::min(most, domain.layout().ghosts[0]); ++more) {
     double share = 1;
-    for (int d = 0; d < grid.dimension(); ++d)
-      if (!sides.alone[d] && (grid.processors(d) > 1 || grid.boundary(d) == Boundary::periodic))
-        share *= 1 + 2.0 * (more - 1) * grid.processors(d) / grid.cells()[d];
+    for (int d = 0; d < domain.dimension(); ++d)
+      if (!sides.alone[d] && (domain.processors(d) > 1 || domain.boundary(d) == Boundary::periodic))
+        share *= 1 + 2.0 * (more - 1) * domain.processors(d) / domain.domain_cells()[d];
     if (share < 1.25) depth = more;
   }
   return depth;
@@ -24,15 +25,15 @@ int StagePass::depth(const Grid &grid, const Sides &sides, int least, int most) 
 
 // None with fewer slices than the stages of its two sides leave.
 int StagePass::threads_of_pass() const {
-  const int slices = grid_.owned()[grid_.dimension() - 1];
-  return std::max(1, std::min(row_parts(grid_), slices / (2 * depth_)));
+  const int slices = box_.cells()[box_.dimension() - 1];
+  return std::max(1, std::min(row_parts(box_), slices / (2 * depth_)));
 }
 
 std::vector<StagePass::Task> StagePass::tasks(int team) const {
   std::vector<Task> tasks;
   for (int f = 0; f < fields_; ++f)
     for (int t = 0; t < team; ++t) {
-      const Piece piece(grid_.owned()[grid_.dimension() - 1], t, team);
+      const Piece piece(box_.cells()[box_.dimension() - 1], t, team);
       tasks.push_back({t, f, static_cast<int>(piece.begin), static_cast<int>(piece.end), t == 0, t == team - 1});
     }
   return tasks;
@@ -40,9 +41,9 @@ std::vector<StagePass::Task> StagePass::tasks(int team) const {
 
 // Of one stage, between the slices of every two threads; rows are shared.
 std::vector<StagePass::Task> StagePass::tasks_between(int team, int stage) const {
-  const bool flat = grid_.dimension() == 2;
+  const bool flat = box_.dimension() == 2;
   const int layers = most_ - stage, shares = flat ? 1 : team;
-  const int first = -sides_.low(1, layers), rows = grid_.owned()[1] + sides_.high(1, layers) - first;
+  const int first = -sides_.low(1, layers), rows = box_.cells()[1] + sides_.high(1, layers) - first;
   std::vector<Task> tasks;
   for (const Task &lower : this->tasks(team))
     for (int share = 0; share < shares && !lower.high; ++share) {

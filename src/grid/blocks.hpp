@@ -2,6 +2,7 @@
 // and several stages of a stencil in one pass over memory.
 #pragma once
 
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ struct Sides {
   bool alone[3];
   int beyond[3] = {};  ///< 1: stages come to the faces of an open high side too, those of the component normal to it
 
-  explicit Sides(const Grid &grid);
+  explicit Sides(const Box &box);
   /// Wraps a row around by one point, where x does: for stages of the same pass that read it.
   [[gnu::always_inline]] void wrap(double *row) const noexcept {
     if (!wraps_x) return;
@@ -76,12 +77,12 @@ class StagePass {
 public:
   /// `depth` stages, each of `fields` fields that do not see each other.
   /// `layers` of the last one: 0, or -1.
-  StagePass(const Grid &grid, const Sides &sides, int depth, int fields, int layers = 0)
-      : grid_(grid), sides_(sides), depth_(depth), fields_(fields), most_(depth - 1 + layers) {}
+  StagePass(const Box &box, const Sides &sides, int depth, int fields, int layers = 0)
+      : box_(box), sides_(sides), depth_(depth), fields_(fields), most_(depth - 1 + layers) {}
 
   /// The most stages of a pass, `least` to `most`: ghosts must reach, and what is computed again stay below a quarter
   /// of the first stage. Every rank finds the same.
-  static int depth(const Grid &grid, const Sides &sides, int least, int most);
+  static int depth(const Domain &domain, const Sides &sides, int least, int most);
 
   /// Slices of a field that go together: all stages, a block of rows after the other, or what is left of one stage.
   struct Task {
@@ -108,7 +109,7 @@ public:
   template <int Dim, class Rows>
   [[gnu::always_inline]] void go(const Task &task, const Rows &rows) const {
     constexpr int last = Dim - 1;
-    const Int3 n = grid_.owned();
+    const Int3 n = box_.cells();
     const auto row = [&](int s, int j, int slice) {
       const int layers = most_ - s;
       return Segment{-sides_.low(0, layers), n[0] + sides_.high(0, layers), j, Dim == 3 ? slice : 0};
@@ -139,7 +140,7 @@ private:
   std::vector<Task> tasks(int team) const;
   std::vector<Task> tasks_between(int team, int stage) const;
 
-  const Grid &grid_;
+  const Box &box_;
   const Sides &sides_;
   int depth_, fields_, most_;  ///< layers of the first stage
 };

@@ -21,18 +21,18 @@ void spread(std::uint64_t *words, int count, std::ptrdiff_t step, int reach, std
 
 }  // namespace
 
-bool GhostPieces::exist(const Grid &grid) {
-  if (skips_nothing() || grid.processors(0) > 1) return false;
-  if (grid.wraps_x()) return true;
-  for (int d = 1; d < grid.dimension(); ++d)
-    if (grid.processors(d) > 1 || !grid.is_wall(d)) return true;
+bool GhostPieces::exist(const Box &box) {
+  if (skips_nothing() || !box.spans(0)) return false;
+  if (box.wraps_x()) return true;
+  for (int d = 1; d < box.dimension(); ++d)
+    if (!box.spans(d) || !box.is_wall(d)) return true;
   return false;
 }
 
-GhostPieces::GhostPieces(const Grid &grid, ConstView value, const OccupiedRows &rows, int reach)
-    : ghosts_(grid.layout().ghosts) {
-  const Int3 &n = grid.owned();
-  const int high = n[0] + grid.is_wall(0);  // rows end with a face there
+GhostPieces::GhostPieces(const Box &box, ConstView value, const OccupiedRows &rows, int reach)
+    : ghosts_(box.layout().ghosts) {
+  const Int3 &n = box.cells();
+  const int high = n[0] + box.is_wall(0);  // rows end with a face there
   count_ = (high + cells - 1) / cells;
   per_row_ = (count_ + bits - 1) / bits;
   rows_y_ = n[1] + 2 * ghosts_[1] + 1;
@@ -52,7 +52,7 @@ GhostPieces::GhostPieces(const Grid &grid, ConstView value, const OccupiedRows &
   const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows_y_) * per_row_;
   for (int k = 0; k < rows_z_; ++k)
     for (int w = 0; w < per_row_; ++w) spread(&words_[k * plane + w], rows_y_, per_row_, reach, &line);
-  if (grid.dimension() == 3)
+  if (box.dimension() == 3)
     for (std::ptrdiff_t w = 0; w < plane; ++w) spread(&words_[w], rows_z_, plane, reach, &line);
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {

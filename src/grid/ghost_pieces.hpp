@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cstdint>
 #include <map>
@@ -19,10 +19,10 @@ public:
   static constexpr int cells = 8;  ///< of a piece: 64 bytes, as rows are aligned
 
   /// Whether there are ghosts that are not behind walls, and pieces of rows that all ranks cut alike.
-  static bool exist(const Grid &grid);
+  static bool exist(const Box &box);
   /// Those within `reach` cells in every direction of values that are not zero, the ghosts that there are included.
   /// `rows` of `value`.
-  GhostPieces(const Grid &grid, ConstView value, const OccupiedRows &rows, int reach);
+  GhostPieces(const Box &box, ConstView value, const OccupiedRows &rows, int reach);
 
   /// Piece m has the cells 8 m ... of a row.
   int count() const noexcept { return count_; }

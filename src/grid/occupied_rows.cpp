@@ -1,5 +1,6 @@
 #include "grid/occupied_rows.hpp"
 
+#include "grid/domain.hpp"
 #include "grid/skipping.hpp"
 #include "grid/threads.hpp"
 
@@ -54,49 +55,49 @@ void add(const Span &more, Span *sum) {
 
 }  // namespace
 
-PetscErrorCode OccupiedRows::find(const Grid &grid, ConstView value) {
+PetscErrorCode OccupiedRows::find(const Domain &domain, ConstView value) {
   PetscFunctionBeginUser;
   *this = {};
-  PetscCall(follow(grid, value));
+  PetscCall(follow(domain, value));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OccupiedRows::follow(const Grid &grid, ConstView value) {
+PetscErrorCode OccupiedRows::follow(const Domain &domain, ConstView value) {
   PetscFunctionBeginUser;
-  PetscCall(follow(grid, {{this, value}}));
+  PetscCall(follow(domain, {{this, value}}));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OccupiedRows::follow(const Grid &grid, const std::vector<Moved> &moved) {
+PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Moved> &moved) {
   PetscFunctionBeginUser;
   if (moved.empty()) PetscFunctionReturn(0);
-  const bool pieces = GhostPieces::exist(grid);
+  const bool pieces = GhostPieces::exist(domain);
   constexpr int crosses = 1, outgrown = 2;
   std::vector<int> found;  // of each
   for (const Moved &one : moved) {
     OccupiedRows before = std::move(*one.rows);
-    one.rows->read(grid, one.value, before);
+    one.rows->read(domain, one.value, before);
     one.rows->near_ = std::move(before.near_);
     const GhostPieces *near = one.rows->near();
-    const bool few = pieces && one.near > 0 && (!near || !near->hold({grid, one.value, *one.rows, one.near}));
+    const bool few = pieces && one.near > 0 && (!near || !near->hold({domain, one.value, *one.rows, one.near}));
     found.push_back((one.rows->inside_ ? 0 : crosses) | (few ? outgrown : 0));
   }
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_BOR, grid.comm()));
+      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_BOR, domain.comm()));
   for (std::size_t n = 0; n < moved.size(); ++n) {
     const Moved &one = moved[n];
     one.rows->inside_ = (found[n] & crosses) == 0;
     if (found[n] & outgrown)
-      one.rows->near_ = std::make_shared<const GhostPieces>(grid, one.value, *one.rows, one.near + travel_of_near);
+      one.rows->near_ = std::make_shared<const GhostPieces>(domain, one.value, *one.rows, one.near + travel_of_near);
   }
   PetscFunctionReturn(0);
 }
 
-void OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &before) {
-  const Int3 &n = grid.owned(), &ghosts = grid.layout().ghosts;
+void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &before) {
+  const Int3 &n = box.cells(), &ghosts = box.layout().ghosts;
   const int reach = ghosts[0] + 2, reach_z = ghosts[2] > 0 ? reach : 0;
   constexpr int ahead = 8;  // rows
-  const bool split_x = grid.processors(0) > 1;
+  const bool split_x = !box.spans(0);
   rows_y_ = n[1];
   rows_z_ = n[2];
   whole_ = {-ghosts[0], n[0] + ghosts[0]};
@@ -122,7 +123,7 @@ void OccupiedRows::read(const Grid &grid, ConstView value, const OccupiedRows &b
         add(found, &along_y[y + rows * (k + ghosts[2])]);
     }
   };
-  const int planes = n[2] + 2 * ghosts[2], parts = row_parts(grid);
+  const int planes = n[2] + 2 * ghosts[2], parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) {
     const Piece own(planes, part, parts);
     for (std::size_t k = own.begin; k < own.end; ++k) read_plane(int(k) - ghosts[2]);

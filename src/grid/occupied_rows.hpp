@@ -1,6 +1,8 @@
 // Where rows of a field hold anything but zeros: what there is to do elsewhere is known without reading it.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "grid/ghost_pieces.hpp"
 
 #include <algorithm>
@@ -17,10 +19,10 @@ public:
   };
 
   /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
-  PetscErrorCode find(const Grid &grid, ConstView value);
+  PetscErrorCode find(const Domain &domain, ConstView value);
   /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read, ghost
   /// rows neither if all was inside().
-  PetscErrorCode follow(const Grid &grid, ConstView value);
+  PetscErrorCode follow(const Domain &domain, ConstView value);
   /// Rows that follow the field that they are of, and how far away near() is; 0: it is not wanted.
   struct Moved {
     OccupiedRows *rows;
@@ -28,7 +30,7 @@ public:
     int near = 0;
   };
   /// Those of several fields, in one reduction.
-  static PetscErrorCode follow(const Grid &grid, const std::vector<Moved> &moved);
+  static PetscErrorCode follow(const Domain &domain, const std::vector<Moved> &moved);
 
   /// Adds the spans of another field of the grid.
   void join(const OccupiedRows &other);
@@ -70,7 +72,7 @@ public:
 
 private:
   void count() noexcept;
-  void read(const Grid &grid, ConstView value, const OccupiedRows &before);
+  void read(const Box &box, ConstView value, const OccupiedRows &before);
 
   static constexpr int far = 1 << 30;
   int rows_y_ = 0, rows_z_ = 0;

@@ -1,7 +1,7 @@
 // Threads of a rank, which share the rows of a verb. The first alone calls MPI and PETSc.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <algorithm>
 #ifdef __SANITIZE_THREAD__
@@ -43,27 +43,27 @@ struct Piece {
 /// Part of the owned rows: planes, in 2-D rows.
 struct RowPart {
   int number, j_begin, j_end, k_begin, k_end;
-  bool first, last;                                   ///< whether it begins and ends where the rank does
-  std::vector<Segment> rows(const Grid &grid) const;  ///< whole
+  bool first, last;                                 ///< whether it begins and ends where the rank does
+  std::vector<Segment> rows(const Box &box) const;  ///< whole
   /// With the layer of ghosts around the owned rows.
-  RowPart with_ghosts(const Grid &grid) const;
+  RowPart with_ghosts(const Box &box) const;
 };
 
 /// Into how many: as many as there are threads, but none of less than some hundred cells.
-int row_parts(const Grid &grid);
-RowPart row_part(const Grid &grid, int part, int parts);
+int row_parts(const Box &box);
+RowPart row_part(const Box &box, int part, int parts);
 
 /// work(part) for all parts of the owned rows.
 template <class Work>
-void in_row_parts(const Grid &grid, const Work &work) {
-  const int parts = row_parts(grid);
-  in_parallel(parts, parts, [&](int part) { work(row_part(grid, part, parts)); });
+void in_row_parts(const Box &box, const Work &work) {
+  const int parts = row_parts(box);
+  in_parallel(parts, parts, [&](int part) { work(row_part(box, part, parts)); });
 }
 
 /// work(begin, end) for all parts of `segments`, pointers.
 template <class Work>
-void in_parts_of(const std::vector<Segment> &segments, const Grid &grid, const Work &work) {
-  const int parts = row_parts(grid);
+void in_parts_of(const std::vector<Segment> &segments, const Box &box, const Work &work) {
+  const int parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(segments.size(), part, parts);
     work(segments.data() + piece.begin, segments.data() + piece.end);

@@ -1,7 +1,7 @@
 // Volumes of voxels and triangulated surfaces as they come from files: what io hands to bodies.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <functional>
 
@@ -23,9 +23,9 @@ struct CellWindow {
   Int3 cells{};    ///< of the box
   Int3 begin{}, size{};
 
-  CellWindow(const GridSpec &grid, const Int3 &first, const Int3 &count)
+  CellWindow(const DomainShape &grid, const Int3 &first, const Int3 &count)
       : length(grid.length), cells(grid.cells), begin(first), size(count) {}
-  CellWindow(const Grid &grid) : CellWindow(grid.spec(), grid.layout().begin, grid.owned()) {}
+  CellWindow(const Box &box) : CellWindow(box.domain_shape(), box.layout().begin, box.cells()) {}
   double spacing(int d) const { return length[d] / cells[d]; }
 };
 

@@ -7,6 +7,7 @@
 // bodies at a time.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "io/body_record.hpp"
 #include "io/file_stamp.hpp"
 #include "io/hdf5_handle.hpp"

@@ -1,7 +1,7 @@
 // What summary.json and bodies.h5 say of one body.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <string>
 

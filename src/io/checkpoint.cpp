@@ -1,6 +1,7 @@
 #include "io/checkpoint.hpp"
 
 #include "base/events.hpp"
+#include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
@@ -67,25 +68,25 @@ std::vector<std::string> list_checkpoints(const std::string &directory) {
   return paths;
 }
 
-PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const std::string &options,
+PetscErrorCode write_checkpoint(const Domain &domain, const std::string &path, const std::string &options,
                                 const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
                                 const std::vector<CheckpointRecords> &records) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::write);
   Hdf5File file;
-  PetscCall(file.create(grid.comm(), path));
+  PetscCall(file.create(domain.comm(), path));
   PetscCall(file.write_attribute("/", "kind", std::string(kind)));
   PetscCall(file.write_attribute("/", "format", format));
   PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
   const std::vector<unsigned char> text(options.begin(), options.end());
   PetscCall(file.write_array("options", {hsize_t(text.size())}, text));
-  PetscCall(write_all(grid.comm(), file, numbers.reals));
-  PetscCall(write_all(grid.comm(), file, numbers.integers));
+  PetscCall(write_all(domain.comm(), file, numbers.reals));
+  PetscCall(write_all(domain.comm(), file, numbers.integers));
   for (const CheckpointField &field : fields)
-    PetscCall(file.write_field(grid, {field.name, field.staggering, field.stored, true}, {field.view}));
+    PetscCall(file.write_field(domain, {field.name, field.staggering, field.stored, true}, {field.view}));
   for (const CheckpointRecords &some : records) {
     int any = some.values.empty() ? 0 : 1;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, domain.comm()));
     if (any > 0) PetscCall(file.write_records(some.name, some.numbers, some.values));
   }
   std::string content;
@@ -164,12 +165,12 @@ PetscErrorCode CheckpointFile::read_records(CheckpointRecords *records) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckpointFile::read_fields(const Grid &grid, const std::vector<CheckpointField> &fields) {
+PetscErrorCode CheckpointFile::read_fields(const Box &box, const std::vector<CheckpointField> &fields) {
   PetscFunctionBeginUser;
   for (const CheckpointField &field : fields) {
     if (field.optional && !file_.has(field.name)) continue;
     PetscCall(require_checksum(field.name));
-    PetscCall(file_.read_field(grid, field.name, field.staggering, field.view));
+    PetscCall(file_.read_field(box, field.name, field.staggering, field.view));
   }
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,8 @@
 // checkpoint_NNNNNNNN.h5: everything a run needs to go on, as named fields, numbers and the options it had.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "io/hdf5_file.hpp"
 
 #include <map>
@@ -36,7 +38,7 @@ std::vector<std::string> list_checkpoints(const std::string &directory);
 long checkpoint_step(const std::string &path);
 
 /// Collective. Fields with the high wall where they are staggered towards one.
-PetscErrorCode write_checkpoint(const Grid &grid, const std::string &path, const std::string &options,
+PetscErrorCode write_checkpoint(const Domain &domain, const std::string &path, const std::string &options,
                                 const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
                                 const std::vector<CheckpointRecords> &records);
 
@@ -65,7 +67,7 @@ public:
     PetscFunctionReturn(0);
   }
   /// Owned points, the high wall included.
-  PetscErrorCode read_fields(const Grid &grid, const std::vector<CheckpointField> &fields);
+  PetscErrorCode read_fields(const Box &box, const std::vector<CheckpointField> &fields);
 
 private:
   PetscErrorCode require_checksum(const std::string &dataset);

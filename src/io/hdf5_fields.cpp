@@ -38,33 +38,33 @@ std::string location_name(const Staggering &staggering) {
   return axes.empty() ? "centre" : (axes.size() == 1 ? "face_" : axes.size() == 2 ? "edge_" : "vertex_") + axes;
 }
 
-Hdf5File::Box Hdf5File::owned_box(const Grid &grid, const Int3 &extra, std::size_t components) {
-  Box box;
+Hdf5File::Hyperslab Hdf5File::owned_box(const Box &box, const Int3 &extra, std::size_t components) {
+  Hyperslab slab;
   for (int d = 0; d < 3; ++d) {
-    box.total[2 - d] = grid.cells()[d] + extra[d];
-    box.begin[2 - d] = grid.layout().begin[d];
-    box.count[2 - d] = grid.owned()[d] + (grid.touches_high(d) ? extra[d] : 0);
+    slab.total[2 - d] = box.domain_cells()[d] + extra[d];
+    slab.begin[2 - d] = box.layout().begin[d];
+    slab.count[2 - d] = box.cells()[d] + (box.touches_high(d) ? extra[d] : 0);
   }
   if (components > 1) {
-    box.rank = 4;
-    box.begin[3] = 0;
-    box.total[3] = box.count[3] = components;
+    slab.rank = 4;
+    slab.begin[3] = 0;
+    slab.total[3] = slab.count[3] = components;
   }
-  return box;
+  return slab;
 }
 
 namespace {
 
 // This rank's share of the checksum; `values` fill the box, rows of the last dimension(s) are contiguous.
-template <class T, class Box>
-std::uint64_t box_checksum(const Box &box, const std::vector<T> &values) {
-  const hsize_t width = box.rank == 4 ? box.total[3] : 1, row = box.count[2] * width;
+template <class T, class Hyperslab>
+std::uint64_t box_checksum(const Hyperslab &slab, const std::vector<T> &values) {
+  const hsize_t width = slab.rank == 4 ? slab.total[3] : 1, row = slab.count[2] * width;
   std::uint64_t sum = 0;
-  for (hsize_t k = 0; k < box.count[0]; ++k)
-    for (hsize_t j = 0; j < box.count[1]; ++j) {
+  for (hsize_t k = 0; k < slab.count[0]; ++k)
+    for (hsize_t j = 0; j < slab.count[1]; ++j) {
       const hsize_t first =
-          (((box.begin[0] + k) * box.total[1] + box.begin[1] + j) * box.total[2] + box.begin[2]) * width;
-      sum += checksum(values.data() + (k * box.count[1] + j) * row, row, first);
+          (((slab.begin[0] + k) * slab.total[1] + slab.begin[1] + j) * slab.total[2] + slab.begin[2]) * width;
+      sum += checksum(values.data() + (k * slab.count[1] + j) * row, row, first);
     }
   return sum;
 }
@@ -72,11 +72,11 @@ std::uint64_t box_checksum(const Box &box, const std::vector<T> &values) {
 }  // namespace
 
 template <class T>
-PetscErrorCode Hdf5File::write_values(const std::string &name, const Box &box, hid_t file_type,
+PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &slab, hid_t file_type,
                                       const std::vector<T> &values) {
   PetscFunctionBeginUser;
-  const Hdf5Space file_space(H5Screate_simple(box.rank, box.total, nullptr));
-  const Hdf5Space memory_space(H5Screate_simple(box.rank, box.count, nullptr));
+  const Hdf5Space file_space(H5Screate_simple(slab.rank, slab.total, nullptr));
+  const Hdf5Space memory_space(H5Screate_simple(slab.rank, slab.count, nullptr));
   const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
   (void)H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // every point is written
   Hdf5Dataset dataset(
@@ -87,34 +87,34 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Box &box, h
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? reserve(temporary_name(path_), offset, bytes) : std::string()));
   const Hdf5Property transfer = hdf5_collective();
   const bool written =
-      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, box.begin, nullptr, box.count, nullptr) >= 0 &&
+      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, slab.begin, nullptr, slab.count, nullptr) >= 0 &&
       H5Dwrite(dataset.get(), hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values.data()) >= 0;
   PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
-  std::uint64_t sum = box_checksum(box, values);
+  std::uint64_t sum = box_checksum(slab, values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
   PetscCall(write_attribute(name, "checksum", checksum_text(sum)));
   PetscFunctionReturn(0);
 }
 
 template <class T>
-PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &format, hid_t file_type,
+PetscErrorCode Hdf5File::write_field_as(const Box &box, const FieldFormat &format, hid_t file_type,
                                         const std::vector<ConstView> &components) {
   PetscFunctionBeginUser;
   Int3 extra{};
-  for (int d = 0; d < 3; ++d) extra[d] = format.high_wall && format.staggering[d] && grid.is_wall(d);
-  Box box = owned_box(grid, extra, components.size());
+  for (int d = 0; d < 3; ++d) extra[d] = format.high_wall && format.staggering[d] && box.is_wall(d);
+  Hyperslab slab = owned_box(box, extra, components.size());
   if (const int d = format.plane; d >= 0) {
-    box.total[2 - d] = 1;
-    box.begin[2 - d] = 0;
-    box.count[2 - d] = grid.touches(d, format.plane_high) ? 1 : 0;
+    slab.total[2 - d] = 1;
+    slab.begin[2 - d] = 0;
+    slab.count[2 - d] = box.touches(d, format.plane_high) ? 1 : 0;
   }
   std::vector<T> values;
-  values.reserve(box.count[0] * box.count[1] * box.count[2] * components.size());
-  for (int k = 0; k < int(box.count[0]); ++k)
-    for (int j = 0; j < int(box.count[1]); ++j)
-      for (int i = 0; i < int(box.count[2]); ++i)
+  values.reserve(slab.count[0] * slab.count[1] * slab.count[2] * components.size());
+  for (int k = 0; k < int(slab.count[0]); ++k)
+    for (int j = 0; j < int(slab.count[1]); ++j)
+      for (int i = 0; i < int(slab.count[2]); ++i)
         for (const ConstView &component : components) values.push_back(static_cast<T>(component(i, j, k)));
-  PetscCall(write_values(format.name, box, file_type, values));
+  PetscCall(write_values(format.name, slab, file_type, values));
   PetscCall(write_attribute(format.name, "location",
                             format.plane < 0
                                 ? location_name(format.staggering)
@@ -122,56 +122,56 @@ PetscErrorCode Hdf5File::write_field_as(const Grid &grid, const FieldFormat &for
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::write_field(const Grid &grid, const FieldFormat &format,
+PetscErrorCode Hdf5File::write_field(const Box &box, const FieldFormat &format,
                                      const std::vector<ConstView> &components) {
   PetscFunctionBeginUser;
   switch (format.stored) {
     case Stored::float32:
-      PetscCall(write_field_as<float>(grid, format, H5T_IEEE_F32LE, components));
+      PetscCall(write_field_as<float>(box, format, H5T_IEEE_F32LE, components));
       break;
     case Stored::float64:
-      PetscCall(write_field_as<double>(grid, format, H5T_IEEE_F64LE, components));
+      PetscCall(write_field_as<double>(box, format, H5T_IEEE_F64LE, components));
       break;
     case Stored::int32:
-      PetscCall(write_field_as<int>(grid, format, H5T_STD_I32LE, components));
+      PetscCall(write_field_as<int>(box, format, H5T_STD_I32LE, components));
       break;
   }
   PetscFunctionReturn(0);
 }
 
 template <class T>
-PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Box &box, std::vector<T> *values) {
+PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Hyperslab &slab,
+                                     std::vector<T> *values) {
   PetscFunctionBeginUser;
-  const Hdf5Space file_space(H5Dget_space(dataset)), memory_space(H5Screate_simple(box.rank, box.count, nullptr));
+  const Hdf5Space file_space(H5Dget_space(dataset)), memory_space(H5Screate_simple(slab.rank, slab.count, nullptr));
   const Hdf5Property transfer = hdf5_collective();
-  values->resize(box.count[0] * box.count[1] * box.count[2]);
+  values->resize(slab.count[0] * slab.count[1] * slab.count[2]);
   const bool read =
-      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, box.begin, nullptr, box.count, nullptr) >= 0 &&
+      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, slab.begin, nullptr, slab.count, nullptr) >= 0 &&
       H5Dread(dataset, hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values->data()) >= 0;
   PetscCall(check(read, "cannot read dataset " + name));
-  std::uint64_t sum = box_checksum(box, *values);
+  std::uint64_t sum = box_checksum(slab, *values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
   PetscCall(verify(name, sum));
   PetscFunctionReturn(0);
 }
 
 template <class T>
-PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, const Box &box, View field) {
+PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, const Hyperslab &slab, View field) {
   std::vector<T> values;
   PetscFunctionBeginUser;
-  PetscCall(read_values(name, dataset, box, &values));
+  PetscCall(read_values(name, dataset, slab, &values));
   const T *value = values.data();
-  for (int k = 0; k < int(box.count[0]); ++k)
-    for (int j = 0; j < int(box.count[1]); ++j, value += box.count[2])
-      for (int i = 0; i < int(box.count[2]); ++i) {  // what is equal is not written: FieldBlock::at_rest
+  for (int k = 0; k < int(slab.count[0]); ++k)
+    for (int j = 0; j < int(slab.count[1]); ++j, value += slab.count[2])
+      for (int i = 0; i < int(slab.count[2]); ++i) {  // what is equal is not written: FieldBlock::at_rest
         const double found = static_cast<double>(value[i]);
         if (std::memcmp(&found, &field(i, j, k), sizeof found) != 0) field(i, j, k) = found;
       }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::read_field(const Grid &grid, const std::string &name, const Staggering &staggering,
-                                    View field) {
+PetscErrorCode Hdf5File::read_field(const Box &box, const std::string &name, const Staggering &staggering, View field) {
   Hdf5Dataset dataset;
   PetscFunctionBeginUser;
   PetscCall(open_dataset(name, &dataset));
@@ -179,23 +179,23 @@ PetscErrorCode Hdf5File::read_field(const Grid &grid, const std::string &name, c
   Int3 extra{};
   bool fits = shape.size() == 3;
   for (int d = 0; d < 3 && fits; ++d) {
-    extra[d] = static_cast<long long>(shape[2 - d]) - grid.cells()[d] == 1 && staggering[d] && grid.is_wall(d);
-    fits = shape[2 - d] == hsize_t(grid.cells()[d]) + hsize_t(extra[d]);
+    extra[d] = static_cast<long long>(shape[2 - d]) - box.domain_cells()[d] == 1 && staggering[d] && box.is_wall(d);
+    fits = shape[2 - d] == hsize_t(box.domain_cells()[d]) + hsize_t(extra[d]);
   }
-  const Int3 &n = grid.cells();
+  const Int3 &n = box.domain_cells();
   PetscCall(check(fits, "dataset " + name + " is " + shape_text(shape) + ", the grid needs " +
                             shape_text({hsize_t(n[2]), hsize_t(n[1]), hsize_t(n[0])}) + " (nz, ny, nx)"));
   // In the stored type, so that the checksum sees the stored bits.
   const Hdf5Type type(H5Dget_type(dataset.get()));
   const H5T_class_t kind = H5Tget_class(type.get());
   PetscCall(check(kind == H5T_FLOAT || kind == H5T_INTEGER, "dataset " + name + " is not numeric"));
-  const Box box = owned_box(grid, extra, 1);
+  const Hyperslab slab = owned_box(box, extra, 1);
   if (H5Tget_size(type.get()) != 4)
-    PetscCall(read_field_as<double>(name, dataset.get(), box, field));
+    PetscCall(read_field_as<double>(name, dataset.get(), slab, field));
   else if (kind == H5T_FLOAT)
-    PetscCall(read_field_as<float>(name, dataset.get(), box, field));
+    PetscCall(read_field_as<float>(name, dataset.get(), slab, field));
   else
-    PetscCall(read_field_as<int>(name, dataset.get(), box, field));
+    PetscCall(read_field_as<int>(name, dataset.get(), slab, field));
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
 // attribute `checksum` that does not depend on the ranks and is verified on read. Errors are the same on all ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/sides.hpp"
 #include "io/hdf5_handle.hpp"
 
@@ -42,10 +43,10 @@ public:
   PetscErrorCode commit();
 
   /// Owned points in natural order: (nz,ny,nx), or (nz,ny,nx,components) of more than one component.
-  PetscErrorCode write_field(const Grid &grid, const FieldFormat &format, const std::vector<ConstView> &components);
+  PetscErrorCode write_field(const Box &box, const FieldFormat &format, const std::vector<ConstView> &components);
   /// Reads a scalar (nz,ny,nx), any numeric type, into the owned points. Where the field is staggered towards a
   /// wall the dataset may have N + 1 points; if it has N, the high wall is left as it is. Ghosts are untouched.
-  PetscErrorCode read_field(const Grid &grid, const std::string &name, const Staggering &staggering, View field);
+  PetscErrorCode read_field(const Box &box, const std::string &name, const Staggering &staggering, View field);
 
   /// Records of so many numbers, of which every rank has some: (records, 1, numbers), in the order of the ranks.
   PetscErrorCode write_records(const std::string &name, std::size_t numbers, const std::vector<double> &values);
@@ -83,20 +84,21 @@ public:
   std::vector<std::string> datasets() const;
 
 private:
-  struct Box {
+  struct Hyperslab {
     int rank = 3;
     hsize_t total[4], begin[4], count[4];  ///< slowest dimension first
   };
-  static Box owned_box(const Grid &grid, const Int3 &extra, std::size_t components);
+  static Hyperslab owned_box(const Box &box, const Int3 &extra, std::size_t components);
   template <class T>
-  PetscErrorCode write_values(const std::string &name, const Box &box, hid_t file_type, const std::vector<T> &values);
+  PetscErrorCode write_values(const std::string &name, const Hyperslab &box, hid_t file_type,
+                              const std::vector<T> &values);
   template <class T>
-  PetscErrorCode write_field_as(const Grid &grid, const FieldFormat &format, hid_t file_type,
+  PetscErrorCode write_field_as(const Box &box, const FieldFormat &format, hid_t file_type,
                                 const std::vector<ConstView> &components);
   template <class T>
-  PetscErrorCode read_values(const std::string &name, hid_t dataset, const Box &box, std::vector<T> *values);
+  PetscErrorCode read_values(const std::string &name, hid_t dataset, const Hyperslab &box, std::vector<T> *values);
   template <class T>
-  PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Box &box, View field);
+  PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Hyperslab &box, View field);
   PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
                                      const Hdf5Space &space, const void *value);
   PetscErrorCode open_dataset(const std::string &name, Hdf5Dataset *dataset) const;

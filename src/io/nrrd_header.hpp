@@ -1,7 +1,7 @@
 // The header of an NRRD file (teem.sourceforge.net/nrrd/format.html), as far as its fields change what the data mean.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "grid/box.hpp"
 
 #include <cstdint>
 

@@ -52,12 +52,13 @@ std::string SnapshotWriter::index_entry(const std::string &name, double time,
                                         const std::vector<SnapshotField> &fields) const {
   const auto integer = [](int n) { return std::to_string(n); };
   const auto point = [](int n) { return std::to_string(n + 1); };
-  const std::string cells = zyx(grid_->cells(), integer);
+  const std::string cells = zyx(domain_->domain_cells(), integer);
   const std::string triple = "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">";
   std::string text = "<Grid Name=\"" + name + "\" GridType=\"Uniform\">\n<Time Value=\"" + format_double(time) +
-                     "\"/>\n<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + zyx(grid_->cells(), point) +
-                     "\"/>\n<Geometry GeometryType=\"ORIGIN_DXDYDZ\">\n" + triple + "0 0 0</DataItem>\n" + triple +
-                     zyx(grid_->spacing(), format_double) + "</DataItem>\n</Geometry>\n";
+                     "\"/>\n<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" +
+                     zyx(domain_->domain_cells(), point) + "\"/>\n<Geometry GeometryType=\"ORIGIN_DXDYDZ\">\n" +
+                     triple + "0 0 0</DataItem>\n" + triple + zyx(domain_->spacing(), format_double) +
+                     "</DataItem>\n</Geometry>\n";
   for (const SnapshotField &field : fields) {
     if (!is_drawn(field.format)) continue;
     const bool vector = field.components.size() == 3;
@@ -83,7 +84,7 @@ std::vector<SnapshotEntry> SnapshotWriter::entries() const {
 PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   PetscFunctionBeginUser;
   count_ = count;
-  if (!same_directory || grid_->rank() > 0) PetscFunctionReturn(0);
+  if (!same_directory || domain_->rank() > 0) PetscFunctionReturn(0);
   std::stringstream text;
   text << std::ifstream(directory_ + "/snapshots.xdmf").rdbuf();
   const std::string head = index_head, entry_tail = "</Grid>\n";
@@ -104,31 +105,31 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   PetscFunctionBeginUser;
   VerbScope scope(Verb::write);
   const std::string name = file_name(count_);
-  const Real3 &h = grid_->spacing(), &length = grid_->spec().length;
+  const Real3 &h = domain_->spacing(), &length = domain_->domain_shape().length;
   Hdf5File file;
-  PetscCall(file.create(grid_->comm(), directory_ + "/" + name + ".h5"));
+  PetscCall(file.create(domain_->comm(), directory_ + "/" + name + ".h5"));
   PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
   PetscCall(file.write_attribute("/", "time", time));
   PetscCall(file.write_attribute("/", "step", step));
   PetscCall(file.write_attribute("/", "spacing", std::vector<double>(h.begin(), h.end())));
   PetscCall(file.write_attribute("/", "length", std::vector<double>(length.begin(), length.end())));
-  for (const SnapshotField &field : fields) PetscCall(file.write_field(*grid_, field.format, field.components));
+  for (const SnapshotField &field : fields) PetscCall(file.write_field(*domain_, field.format, field.components));
   PetscCall(file.commit());
   std::vector<SnapshotField> drawn, on_walls;
   for (const SnapshotField &field : fields) {
     if (is_drawn(field.format)) drawn.push_back(field);
     if (field.format.plane >= 0) on_walls.push_back(field);
   }
-  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf(*grid_, directory_, name, drawn));
-  if (shown_ == SnapshotFormat::vti) PetscCall(write_vti(*grid_, directory_, name, time, drawn, on_walls));
+  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf(*domain_, directory_, name, drawn));
+  if (shown_ == SnapshotFormat::vti) PetscCall(write_vti(*domain_, directory_, name, time, drawn, on_walls));
   ++count_;
   index_ += index_entry(name, time, fields);
-  PetscCall(write_text_file(grid_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
+  PetscCall(write_text_file(domain_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
   const std::vector<SnapshotEntry> all = entries();
-  const std::string walls = wall_index(*grid_, all, fields);
-  if (!walls.empty()) PetscCall(write_text_file(grid_->comm(), directory_ + "/walls.xdmf", walls));
-  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf_series(grid_->comm(), directory_, all));
-  if (shown_ == SnapshotFormat::vti) PetscCall(write_pvd(grid_->comm(), directory_, all));
+  const std::string walls = wall_index(*domain_, all, fields);
+  if (!walls.empty()) PetscCall(write_text_file(domain_->comm(), directory_ + "/walls.xdmf", walls));
+  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf_series(domain_->comm(), directory_, all));
+  if (shown_ == SnapshotFormat::vti) PetscCall(write_pvd(domain_->comm(), directory_, all));
   PetscFunctionReturn(0);
 }
 

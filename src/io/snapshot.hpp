@@ -2,6 +2,8 @@
 // request the same as VTKHDF or as VTK's XML image data.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/snapshot_format.hpp"
 
@@ -21,8 +23,8 @@ struct SnapshotEntry {
 /// Numbers snapshots from 0 and remembers them for the index.
 class SnapshotWriter {
 public:
-  SnapshotWriter(const Grid &grid, std::string directory, SnapshotFormat shown)
-      : grid_(&grid), directory_(std::move(directory)), shown_(shown) {}
+  SnapshotWriter(const Domain &domain, std::string directory, SnapshotFormat shown)
+      : domain_(&domain), directory_(std::move(directory)), shown_(shown) {}
 
   /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
   /// index goes on too, and later ones are removed.
@@ -36,7 +38,7 @@ private:
   std::string index_entry(const std::string &name, double time, const std::vector<SnapshotField> &fields) const;
   std::vector<SnapshotEntry> entries() const;
 
-  const Grid *grid_;
+  const Domain *domain_;
   std::string directory_;
   SnapshotFormat shown_;
   int count_ = 0;

@@ -18,12 +18,12 @@ double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) 
 }  // namespace
 
 void SnapshotFields::centre_velocity(const FieldBlock &velocity) {
-  if (!velocity_) velocity_ = FieldBlock(*grid_, 3);
+  if (!velocity_) velocity_ = FieldBlock(*box_, 3);
   for (int c = 0; c < velocity.count(); ++c) {
     const ConstView from = velocity[c];
     const View to = velocity_[c];
     const std::ptrdiff_t s = from.stride(c);
-    for_points(grid_->rows(), [&](int i, int j, int k) {
+    for_points(box_->rows(), [&](int i, int j, int k) {
       const double *p = &from.row(j, k)[i];
       to(i, j, k) = 0.5 * (p[0] + p[s]);
     });
@@ -56,7 +56,7 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
   for (std::size_t c = 1; c < colours.size(); ++c) {
     const double *more = colours[c]->fraction.data();
     double *sum = merged->fraction.data();
-    for (std::ptrdiff_t n = 0; n < grid_->layout().size; ++n) sum[n] += more[n];
+    for (std::ptrdiff_t n = 0; n < box_->layout().size; ++n) sum[n] += more[n];
   }
   const auto fullest = [&](const TensorComponent &at, int i, int j, int k) {
     return *std::max_element(colours.begin(), colours.end(), [&](const Phase *p, const Phase *q) {
@@ -65,7 +65,7 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
   };
   if (selection.body) {
     merged->label.copy_from(colours[0]->label);
-    for_points(grid_->rows(), [&](int i, int j, int k) {
+    for_points(box_->rows(), [&](int i, int j, int k) {
       merged->label[0](i, j, k) = fullest({0, 0}, i, j, k)->label[0](i, j, k);
     });
   }
@@ -73,14 +73,14 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
   merged->tensor.centred = colours[0]->tensor.centred;
   merged->tensor.field.copy_from(colours[0]->tensor.field);
   for (int c = 0; c < merged->tensor.field.count(); ++c)
-    for_points(grid_->rows(), [&](int i, int j, int k) {
+    for_points(box_->rows(), [&](int i, int j, int k) {
       merged->tensor.field[c](i, j, k) = fullest(merged->tensor.components()[c], i, j, k)->tensor.field[c](i, j, k);
     });
 }
 
 void SnapshotFields::mix_fractions(const Phases &phases) {
-  if (!fraction_) fraction_ = FieldBlock(*grid_, 1);
-  for_points(grid_->rows(), [&](int i, int j, int k) {
+  if (!fraction_) fraction_ = FieldBlock(*box_, 1);
+  for_points(box_->rows(), [&](int i, int j, int k) {
     double sum = 0;
     for (const Phase *phase : phases) sum += phase->fraction[0](i, j, k);
     fraction_[0](i, j, k) = sum;
@@ -89,8 +89,8 @@ void SnapshotFields::mix_fractions(const Phases &phases) {
 
 // The label of the phase that fills most of the cell.
 void SnapshotFields::mix_labels(const Phases &phases) {
-  if (!label_) label_ = FieldBlock(*grid_, 1);
-  for_points(grid_->rows(), [&](int i, int j, int k) {
+  if (!label_) label_ = FieldBlock(*box_, 1);
+  for_points(box_->rows(), [&](int i, int j, int k) {
     const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase *p, const Phase *q) {
       return p->fraction[0](i, j, k) < q->fraction[0](i, j, k);
     });
@@ -100,10 +100,10 @@ void SnapshotFields::mix_labels(const Phases &phases) {
 
 // I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
 void SnapshotFields::mix_tensors(const Phases &phases) {
-  if (!tensor_.field) tensor_.field = FieldBlock(*grid_, phases[0]->tensor.field.count());
+  if (!tensor_.field) tensor_.field = FieldBlock(*box_, phases[0]->tensor.field.count());
   for (int c = 0; c < tensor_.field.count(); ++c) {
     const TensorComponent &component = tensor_.components()[c];
-    for_points(grid_->rows(), [&](int i, int j, int k) {
+    for_points(box_->rows(), [&](int i, int j, int k) {
       double sum = component.rest();
       for (const Phase *phase : phases)
         if (!phase->material.is_membrane())

@@ -18,7 +18,7 @@ struct SnapshotSelection {
 /// as one and, with several species, what they have in common.
 class SnapshotFields {
 public:
-  explicit SnapshotFields(const Grid &grid) : grid_(&grid) {}
+  explicit SnapshotFields(const Box &box) : box_(&box) {}
 
   /// One ghost layer must be valid in `velocity` and, with several phases, in their fractions. The result holds
   /// views: it is good until the state or this object changes.
@@ -34,7 +34,7 @@ private:
   void mix_labels(const Phases &phases);
   void mix_tensors(const Phases &phases);
 
-  const Grid *grid_;
+  const Box *box_;
   FieldBlock velocity_, fraction_, label_;
   CarriedTensor tensor_;
   std::map<std::string, Phase> merged_;

@@ -1,6 +1,7 @@
 // summary.json: what a run was and what came out of it, for scripts.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "io/body_record.hpp"
 
 #include <cstdint>

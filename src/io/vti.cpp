@@ -1,5 +1,6 @@
 #include "io/vti.hpp"
 
+#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
@@ -36,8 +37,8 @@ hid_t memory_type(Stored stored) {
 // Copies a snapshot of HDF5 into a .vti file, plane by plane. One rank does, without MPI.
 class Copy {
 public:
-  Copy(const Grid &grid, const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls)
-      : cells_(grid.cells()), spacing_(grid.spacing()), walls_(walls) {
+  Copy(const Box &box, const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls)
+      : cells_(box.domain_cells()), spacing_(box.spacing()), walls_(walls) {
     for (const SnapshotField &field : drawn)
       arrays_.push_back({field.format.name, field.format.stored, field.components.size()});
     bool has_stress = false;
@@ -176,13 +177,13 @@ private:
 
 }  // namespace
 
-PetscErrorCode write_vti(const Grid &grid, const std::string &directory, const std::string &name, double time,
+PetscErrorCode write_vti(const Domain &domain, const std::string &directory, const std::string &name, double time,
                          const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls) {
   PetscFunctionBeginUser;
   const std::string path = directory + "/" + name;
   std::string problem;
-  if (grid.rank() == 0) problem = Copy(grid, drawn, walls).make(path + ".h5", path + ".vti", time);
-  PetscCall(fail_together(grid.comm(), problem));
+  if (domain.rank() == 0) problem = Copy(domain, drawn, walls).make(path + ".h5", path + ".vti", time);
+  PetscCall(fail_together(domain.comm(), problem));
   PetscFunctionReturn(0);
 }
 

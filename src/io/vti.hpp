@@ -2,6 +2,8 @@
 // and snapshots.pvd, the list of them with times. File format: "VTK File Formats", www.vtk.org.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "io/snapshot.hpp"
 
 namespace eulastic {
@@ -9,7 +11,7 @@ namespace eulastic {
 /// Collective. Writes `directory`/`name`.vti from `name`.h5 beside it: the grid of cells, and as arrays of cells the
 /// `drawn` fields, (nz,ny,nx) or (nz,ny,nx,3). The array wall_shear_stress is that on vessels and obstacles, if it is
 /// drawn, and in the cells beside the walls of the box that of `walls`, of several the largest.
-PetscErrorCode write_vti(const Grid &grid, const std::string &directory, const std::string &name, double time,
+PetscErrorCode write_vti(const Domain &domain, const std::string &directory, const std::string &name, double time,
                          const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls);
 
 /// Collective. Writes the list anew: those of `entries` that have a .vti file.

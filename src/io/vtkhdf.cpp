@@ -1,5 +1,6 @@
 #include "io/vtkhdf.hpp"
 
+#include "grid/domain.hpp"
 #include "io/json.hpp"
 #include "io/text_file.hpp"
 
@@ -7,14 +8,14 @@
 
 namespace eulastic {
 
-PetscErrorCode write_vtkhdf(const Grid &grid, const std::string &directory, const std::string &name,
+PetscErrorCode write_vtkhdf(const Domain &domain, const std::string &directory, const std::string &name,
                             const std::vector<SnapshotField> &drawn) {
   PetscFunctionBeginUser;
-  const Int3 &n = grid.cells();
-  const Real3 &h = grid.spacing();
+  const Int3 &n = domain.domain_cells();
+  const Real3 &h = domain.spacing();
   const std::string root = "VTKHDF", cells = root + "/CellData";
   Hdf5File file;
-  PetscCall(file.create(grid.comm(), directory + "/" + name + ".vtkhdf"));
+  PetscCall(file.create(domain.comm(), directory + "/" + name + ".vtkhdf"));
   PetscCall(file.create_group(root));
   PetscCall(file.write_attribute(root, "Version", std::vector<long>{1, 0}));
   PetscCall(file.write_attribute(root, "Type", std::string("ImageData")));

@@ -6,7 +6,7 @@
 namespace eulastic {
 
 /// The index of the fields on walls (SnapshotField with a plane) in all snapshots `entries`; empty if there are none.
-std::string wall_index(const Grid &grid, const std::vector<SnapshotEntry> &entries,
+std::string wall_index(const Box &box, const std::vector<SnapshotEntry> &entries,
                        const std::vector<SnapshotField> &fields);
 
 }  // namespace eulastic

@@ -2,8 +2,10 @@
 // curvatures, from a solid fraction that is smoothed twice; docs/method.md, section 18.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
@@ -11,7 +13,7 @@ class MembraneBending {
 public:
   static constexpr int work_fields = 6;
 
-  MembraneBending(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
+  MembraneBending(const Box &box, GhostExchange &exchange) : box_(&box), exchange_(&exchange) {}
   /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
   /// around the rows of the phase.
   PetscErrorCode find(const Phase &phase, ConstView smooth, FieldBlock &fields);
@@ -23,8 +25,8 @@ public:
 private:
   /// The last two are the means of force and delta around.
   enum Field { smoothed, curvature, delta, force, level, weight, mean = level };
-  struct Box {
-    Grid::Range range[3];
+  struct Window {
+    Box::Range range[3];
     bool holds(const Int3 &place) const {
       bool inside = true;
       for (int d = 0; d < 3; ++d) inside = inside && place[d] >= range[d].begin && place[d] < range[d].end;
@@ -35,7 +37,7 @@ private:
     std::ptrdiff_t at;  ///< offset from the origin
     bool forced;        ///< owned, or a ghost next to that: what faces feel
   };
-  Box around(const Phase &phase, int ghosts) const;
+  Window around(const Phase &phase, int ghosts) const;
   template <int Dim>
   void find_curvature(const Phase &phase, FieldBlock &fields);
   template <int Dim>
@@ -43,7 +45,7 @@ private:
 
   PetscErrorCode smooth_force(const Phase &phase, FieldBlock &fields);
 
-  const Grid *grid_;
+  const Box *box_;
   GhostExchange *exchange_;
   std::vector<Cell> cells_;  ///< where there is a curvature
 };

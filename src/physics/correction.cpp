@@ -13,10 +13,10 @@ EULASTIC_INLINE void correct_row(int n, double factor, const double *increment, 
   for (int i = 0; i < n; ++i) v[i] = kernels::fma(-factor, increment[i] - below[i], v[i]);
 }
 
-EULASTIC_CLONES void correct_rows(const Grid &grid, const RowPart &part, double dt_over_density, double rotation,
+EULASTIC_CLONES void correct_rows(const Box &box, const RowPart &part, double dt_over_density, double rotation,
                                   const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
                                   FieldBlock &pressure) {
-  const Int3 n = grid.owned();
+  const Int3 n = box.cells();
   const ConstView q = increment[0];
   for (int k = part.k_begin; k < part.k_end; ++k)
     for (int j = part.j_begin; j < part.j_end; ++j) {
@@ -25,17 +25,17 @@ EULASTIC_CLONES void correct_rows(const Grid &grid, const RowPart &part, double 
 #pragma omp simd
       for (int i = -1; i < n[0] + 1; ++i) p[i] += kernels::fma(-rotation, D[i], dp[i]);
       if (k < 0 || k >= n[2] || j < 0 || j >= n[1]) continue;
-      for (int a = 0; a < grid.dimension(); ++a)
-        correct_row(n[0], dt_over_density / grid.spacing()[a], dp, dp - q.stride(a), velocity[a].row(j, k));
+      for (int a = 0; a < box.dimension(); ++a)
+        correct_row(n[0], dt_over_density / box.spacing()[a], dp, dp - q.stride(a), velocity[a].row(j, k));
     }
 }
 
 // The increments below a part that is not the first, before p changes.
-EULASTIC_CLONES void find_increments_below(const Grid &grid, const RowPart &part, kernels::AcmIncrement formula,
+EULASTIC_CLONES void find_increments_below(const Box &box, const RowPart &part, kernels::AcmIncrement formula,
                                            const FieldBlock &divergence, const FieldBlock &pressure,
                                            RowScratch &increments) {
-  const int n = grid.owned()[0];
-  const bool flat = grid.dimension() == 2;
+  const int n = box.cells()[0];
+  const bool flat = box.dimension() == 2;
   for (int j = flat ? part.j_begin - 1 : part.j_begin; j < (flat ? part.j_begin : part.j_end); ++j) {
     const int k = flat ? 0 : part.k_begin - 1;
     const double *D = divergence[0].row(j, k), *p = pressure[0].row(j, k);
@@ -47,13 +47,13 @@ EULASTIC_CLONES void find_increments_below(const Grid &grid, const RowPart &part
 
 // `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane. x works its increments out by
 // itself: reading them across the vectors that were just written, it would wait for the caches.
-EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, const RowPart &part, double dt_over_density,
+EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part, double dt_over_density,
                                              double rotation, kernels::AcmIncrement formula,
                                              const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure,
                                              RowScratch &increments) {
-  const Int3 n = grid.owned();
-  const Real3 &h = grid.spacing();
-  const bool flat = grid.dimension() == 2;
+  const Int3 n = box.cells();
+  const Real3 &h = box.spacing();
+  const bool flat = box.dimension() == 2;
   for (int k = part.k_begin; k < part.k_end; ++k)
     for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *D = divergence[0].row(j, k);
@@ -91,43 +91,42 @@ EULASTIC_CLONES void correct_rows_by_formula(const Grid &grid, const RowPart &pa
 
 }  // namespace
 
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                FieldBlock &pressure) {
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const FieldBlock &increment,
+                                const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  in_row_parts(grid, [&](const RowPart &part) {
-    correct_rows(grid, part.with_ghosts(grid), dt / density, rotation, increment, divergence, velocity, pressure);
+  in_row_parts(box, [&](const RowPart &part) {
+    correct_rows(box, part.with_ghosts(box), dt / density, rotation, increment, divergence, velocity, pressure);
   });
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &row : grid.open_high_faces(a)) {
+  for (int a = 0; a < box.dimension(); ++a)
+    for (const Segment &row : box.open_high_faces(a)) {
       const ConstView q = increment[0];
       const double *here = q.row(row.j, row.k) + row.i_begin;
-      correct_row(row.size(), dt / density / grid.spacing()[a], here, here - q.stride(a),
+      correct_row(row.size(), dt / density / box.spacing()[a], here, here - q.stride(a),
                   velocity[a].row(row.j, row.k) + row.i_begin);
     }
-  scope.flops(grid.owned_count() * (3 * grid.dimension() + 3));
+  scope.flops(box.cell_count() * (3 * box.dimension() + 3));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation,
                                 const kernels::AcmIncrement &increment, const FieldBlock &divergence,
                                 FieldBlock &velocity, FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  const int parts = row_parts(grid);
+  const int parts = row_parts(box);
   std::vector<RowScratch> increments;
-  for (int part = 0; part < parts; ++part) increments.emplace_back(grid, grid.owned()[1] + 2);
+  for (int part = 0; part < parts; ++part) increments.emplace_back(box, box.cells()[1] + 2);
   in_parallel(parts, parts, [&](int p) {
-    const RowPart part = row_part(grid, p, parts).with_ghosts(grid);
-    if (!part.first) find_increments_below(grid, part, increment, divergence, pressure, increments[p]);
+    const RowPart part = row_part(box, p, parts).with_ghosts(box);
+    if (!part.first) find_increments_below(box, part, increment, divergence, pressure, increments[p]);
   });
   in_parallel(parts, parts, [&](int p) {
-    const RowPart part = row_part(grid, p, parts).with_ghosts(grid);
-    correct_rows_by_formula(grid, part, dt / density, rotation, increment, divergence, velocity, pressure,
+    const RowPart part = row_part(box, p, parts).with_ghosts(box);
+    correct_rows_by_formula(box, part, dt / density, rotation, increment, divergence, velocity, pressure,
                             increments[p]);
   });
-  scope.flops(grid.owned_count() * (3 * grid.dimension() + 3 + 6));
+  scope.flops(box.cell_count() * (3 * box.dimension() + 3 + 6));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 // What the pressure increment does: (8) and (9).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
 
 namespace eulastic {
@@ -12,11 +13,10 @@ struct AcmIncrement;
 /// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too
 /// (8). rotation = nu/2 is the rotational form of the second-order step, 0 the paper's. Rows of v are wrapped by three
 /// around a periodic x.
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
-                                const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                FieldBlock &pressure);
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const FieldBlock &increment,
+                                const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure);
 /// The same with an increment that is stored nowhere; one ghost of D* and p.
-PetscErrorCode correct_velocity(const Grid &grid, double density, double dt, double rotation,
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation,
                                 const kernels::AcmIncrement &increment, const FieldBlock &divergence,
                                 FieldBlock &velocity, FieldBlock &pressure);
 

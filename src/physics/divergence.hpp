@@ -1,12 +1,13 @@
 // The divergence that the projection removes.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
 
 namespace eulastic {
 
 /// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
-PetscErrorCode compute_divergence(const Grid &grid, double density, const FieldBlock &velocity_star,
+PetscErrorCode compute_divergence(const Box &box, double density, const FieldBlock &velocity_star,
                                   FieldBlock &divergence);
 
 }  // namespace eulastic

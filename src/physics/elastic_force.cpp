@@ -30,10 +30,10 @@ void prefetch_beside(const Phase &phase, const Segment &s) {
 }
 
 template <int Dim, bool WithSlope, class Law, class Viscosity>
-EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &law, const Viscosity &viscosity,
+EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &law, const Viscosity &viscosity,
                                const Rows &rows, FieldBlock &force, const ForceSlope &slope) {
   const ConstView phi = phase.fraction[0];
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
   const double *B[6] = {};
@@ -64,52 +64,52 @@ EULASTIC_INLINE void add_force(const Grid &grid, const Phase &phase, const Law &
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_force_of_law(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
+EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double scale, const Rows &rows,
                                       FieldBlock &force, const ForceSlope &slope) {
   with_law(phase.material, [&](const auto &law) EULASTIC_BODY {
     with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
       if (slope.field)
-        add_force<Dim, true>(grid, phase, law.scaled(scale), viscosity, rows, force, slope);
+        add_force<Dim, true>(box, phase, law.scaled(scale), viscosity, rows, force, slope);
       else
-        add_force<Dim, false>(grid, phase, law.scaled(scale), viscosity, rows, force, slope);
+        add_force<Dim, false>(box, phase, law.scaled(scale), viscosity, rows, force, slope);
     });
   });
 }
 
-EULASTIC_CLONES void add_force_2d(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
-                                  FieldBlock &force, const ForceSlope &slope) {
-  add_force_of_law<2>(grid, phase, scale, rows, force, slope);
+EULASTIC_CLONES void add_force_2d(const Box &box, const Phase &phase, double scale, const Rows &rows, FieldBlock &force,
+                                  const ForceSlope &slope) {
+  add_force_of_law<2>(box, phase, scale, rows, force, slope);
 }
-EULASTIC_CLONES void add_force_3d(const Grid &grid, const Phase &phase, double scale, const Rows &rows,
-                                  FieldBlock &force, const ForceSlope &slope) {
-  add_force_of_law<3>(grid, phase, scale, rows, force, slope);
+EULASTIC_CLONES void add_force_3d(const Box &box, const Phase &phase, double scale, const Rows &rows, FieldBlock &force,
+                                  const ForceSlope &slope) {
+  add_force_of_law<3>(box, phase, scale, rows, force, slope);
 }
 
-void add_on_rows(const Grid &grid, const std::vector<Phase> &phases, double scale, const Rows &rows, FieldBlock &force,
+void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale, const Rows &rows, FieldBlock &force,
                  const ForceSlope &slope) {
   for (const Phase &phase : phases)
     if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
-      (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, phase, scale, rows, force, slope);
+      (box.dimension() == 2 ? add_force_2d : add_force_3d)(box, phase, scale, rows, force, slope);
 }
 
 }  // namespace
 
-void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
+void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
                        FieldBlock &force, const ForceSlope &slope) {
-  add_on_rows(grid, phases, scale, {0, grid.owned()[0], j_begin, j_end, k, 0, grid.dimension()}, force, slope);
+  add_on_rows(box, phases, scale, {0, box.cells()[0], j_begin, j_end, k, 0, box.dimension()}, force, slope);
 }
 
-void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
+void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
                        FieldBlock &force, const ForceSlope &slope) {
-  add_on_rows(grid, phases, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, slope);
+  add_on_rows(box, phases, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, slope);
 }
 
-PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
+PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases,
                                      FieldBlock &force) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::momentum);
-  const int dim = grid.dimension(), n = grid.owned()[0];
-  in_row_parts(grid, [&](const RowPart &part) {
+  const int dim = box.dimension(), n = box.cells()[0];
+  in_row_parts(box, [&](const RowPart &part) {
     for_rows_in_blocks(
         part,
         [&](int j, int k) {
@@ -118,12 +118,12 @@ PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::
             std::fill_n(force[a].row(j, k), n, 0.0);
           }
         },
-        [&](int begin, int end, int k) { add_elastic_force(grid, phases, scale, begin, end, k, force); });
+        [&](int begin, int end, int k) { add_elastic_force(box, phases, scale, begin, end, k, force); });
   });
   for (int a = 0; a < dim; ++a)
-    for (const Segment &faces : grid.open_high_faces(a)) {
+    for (const Segment &faces : box.open_high_faces(a)) {
       std::fill_n(force[a].row(faces.j, faces.k) + faces.i_begin, faces.size(), 0.0);
-      add_elastic_force(grid, phases, scale, faces, a, force);
+      add_elastic_force(box, phases, scale, faces, a, force);
     }
   scope.flops(elastic_flops(dim, phases));
   PetscFunctionReturn(0);

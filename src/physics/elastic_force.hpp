@@ -1,6 +1,7 @@
 // The elastic force div(sigma) per mass at faces, of the law of every phase; (7).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 
 #include <vector>
@@ -15,15 +16,14 @@ struct ForceSlope {
 
 /// force += scale div(sigma) on rows j_begin <= j < j_end of plane k, where they feel any; with a factor also to
 /// `slope`. One ghost of phi and B.
-void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
+void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
                        FieldBlock &force, const ForceSlope &slope = {});
 /// The same on faces of component a beyond the rows, those of open sides.
-void add_elastic_force(const Grid &grid, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
+void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
                        FieldBlock &force, const ForceSlope &slope = {});
 
 /// force = scale div(sigma), 0 at owned faces that feel none.
-PetscErrorCode compute_elastic_force(const Grid &grid, double scale, const std::vector<Phase> &phases,
-                                     FieldBlock &force);
+PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, FieldBlock &force);
 
 /// Of all owned faces.
 double elastic_flops(int dimension, const std::vector<Phase> &phases);

@@ -19,9 +19,9 @@ constexpr unsigned char outside = 255;
 // The owned points of a field and `reach` layers of those around them.
 struct Reach {
   Int3 begin{}, end{};
-  Reach(const Grid &grid, const Staggering &at, int reach) {
+  Reach(const Box &box, const Staggering &at, int reach) {
     for (int d = 0; d < 3; ++d) {
-      const Grid::Range near = grid.points_near(d, at[d], reach);
+      const Box::Range near = box.points_near(d, at[d], reach);
       begin[d] = near.begin;
       end[d] = near.end;
     }
@@ -122,18 +122,18 @@ double extend_fields(const Entries &entries, Piece piece, int dimension, const s
 }
 
 // What of a row in a box a body is near to: of owned rows that is known.
-OccupiedRows::Span near_part(const Phase &phase, const Reach &box, int j, int k) {
+OccupiedRows::Span near_part(const Phase &phase, const Reach &extent, int j, int k) {
   const ActiveSegments &strained = phase.tensor.strained;
   if (j >= 0 && k >= 0 && j < strained.rows_y() && k < strained.rows_z()) {
     const ActiveSegments::Range range = strained.row(j, k);
     if (range.first == range.last) return {0, 0};
   }
   const OccupiedRows::Span span = phase.rows.span(j, k);
-  return {std::max(span.begin, box.begin[0]), std::min(span.end, box.end[0])};
+  return {std::max(span.begin, extent.begin[0]), std::min(span.end, extent.end[0])};
 }
 
 // 0 in `mask` where points at `at` evolve.
-void flag_evolving(const Grid &grid, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
+void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
                    const Reach &all, unsigned char *mask) {
   const ConstView fraction = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
@@ -146,11 +146,11 @@ void flag_evolving(const Grid &grid, const Phase &phase, const Staggering &at, c
       const auto [begin, end] = near_part(phase, all, j, k);
       if (begin >= end) continue;
       const double *phi = fraction.row(j, k) + begin;
-      unsigned char *row = mask + grid.layout().offset(begin, j, k);
+      unsigned char *row = mask + box.layout().offset(begin, j, k);
       flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
       if (rule.linear && steps == 0)
         for (int i = 0; i < end - begin; ++i)
-          if (row[i] == 0 && !is_surrounded(phi + i, stride, grid.dimension(), rule.edge)) row[i] = outside;
+          if (row[i] == 0 && !is_surrounded(phi + i, stride, box.dimension(), rule.edge)) row[i] = outside;
     }
 }
 
@@ -169,35 +169,35 @@ bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, 
   return std::sqrt(material.shear_modulus / fluid.density) * shortest <= kinematic_viscosity(fluid, material);
 }
 
-PetscErrorCode ExteriorLayers::build(const Grid &grid, const Phase &phase) {
+PetscErrorCode ExteriorLayers::build(const Box &box, const Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
   if (locations_.empty()) {
     locations_.emplace_back();
-    for (const TensorComponent &c : tensor_components(grid.dimension()))
+    for (const TensorComponent &c : tensor_components(box.dimension()))
       if (c.a != c.b) {
         locations_.emplace_back();
         locations_.back().staggering = c.at;
       }
   }
   linear_ = phase.tensor.rule.linear;
-  const int team = row_parts(grid);
+  const int team = row_parts(box);
   masks_.resize(team > 1 ? locations_.size() : 1);
   in_parallel(team, static_cast<int>(locations_.size()),
-              [&](int l) { build_location(grid, phase, &masks_[team > 1 ? l : 0], &locations_[l]); });
+              [&](int l) { build_location(box, phase, &masks_[team > 1 ? l : 0], &locations_[l]); });
   PetscFunctionReturn(0);
 }
 
-void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *layer_of, Location *location) const {
-  const Layout &layout = grid.layout();
+void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const {
+  const Layout &layout = box.layout();
   const Staggering &at = location->staggering;
   layer_of->assign(layout.size + whole_vectors(1), outside);
   unsigned char *mask = layer_of->data();
-  const std::ptrdiff_t stride[3] = {1, layout.sy, grid.dimension() == 3 ? layout.sz : 0};
+  const std::ptrdiff_t stride[3] = {1, layout.sy, box.dimension() == 3 ? layout.sz : 0};
   // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
-  const Reach all(grid, at, layers);
-  flag_evolving(grid, phase, at, stride, all, mask);
-  const Reach owned(grid, at, 0);
+  const Reach all(box, at, layers);
+  flag_evolving(box, phase, at, stride, all, mask);
+  const Reach owned(box, at, 0);
   // A row is marked once the next one has been looked at, which would wait for the marks.
   struct Row {
     int begin, n = 0, j, k;
@@ -214,7 +214,7 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
         *here = static_cast<unsigned char>(L);
         if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
         unsigned neighbours = 0, lines = 0;
-        for (int d = 0; d < grid.dimension(); ++d) {
+        for (int d = 0; d < box.dimension(); ++d) {
           const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
           if (here[-stride[d]] < L) neighbours |= low;
           if (here[stride[d]] < L) neighbours |= high;
@@ -226,11 +226,11 @@ void ExteriorLayers::build_location(const Grid &grid, const Phase &phase, Mask *
       }
       row.n = 0;
     };
-    const Reach box(grid, at, layers - L);
+    const Reach extent(box, at, layers - L);
     int turn = 0;
-    for (int k = box.begin[2]; k < box.end[2]; ++k)
-      for (int j = box.begin[1]; j < box.end[1]; ++j) {
-        const auto [begin, end] = near_part(phase, box, j, k);
+    for (int k = extent.begin[2]; k < extent.end[2]; ++k)
+      for (int j = extent.begin[1]; j < extent.end[1]; ++j) {
+        const auto [begin, end] = near_part(phase, extent, j, k);
         if (begin >= end) continue;
         Row &row = rows[turn];
         row.begin = begin;
@@ -264,18 +264,18 @@ double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int lay
   return flops;
 }
 
-PetscErrorCode ExteriorLayers::extend(const Grid &grid, const BoxSides &sides, GhostExchange &exchange,
+PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange &exchange,
                                       FieldBlock &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
-  const int parts = row_parts(grid);
+  const int parts = row_parts(box);
   std::vector<double> flops(parts);
   for (int L = 1; L <= layers; ++L) {
     in_parallel(parts, parts, [&](int part) {
-      flops[part] = extend_layer(grid.dimension(), grid.layout(), L, part, parts, tensor.data());
+      flops[part] = extend_layer(box.dimension(), box.layout(), L, part, parts, tensor.data());
     });
     for (const double some : flops) scope.flops(some);
-    clear_symmetry_planes(grid, sides, tensor);  // as the mean with their mirror images
+    clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
     if (linear_ && L < layers) PetscCall(exchange.update(tensor, 3));
   }
   PetscFunctionReturn(0);

@@ -6,8 +6,10 @@
 // evolves, and afterwards an exchange of three.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
+#include "grid/box.hpp"
 #include "physics/fluid.hpp"
 #include "physics/transport.hpp"
 
@@ -34,10 +36,10 @@ public:
   static constexpr int near = layers + 1;
 
   /// phi of the phase needs five valid ghost layers; find_solid() has run.
-  PetscErrorCode build(const Grid &grid, const Phase &phase);
+  PetscErrorCode build(const Box &box, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
   /// three points in, so that attached bodies exchange ghosts after every layer.
-  PetscErrorCode extend(const Grid &grid, const BoxSides &sides, GhostExchange &exchange, FieldBlock &tensor) const;
+  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange &exchange, FieldBlock &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
 
@@ -57,7 +59,7 @@ private:
     std::array<std::vector<Entry>, layers> layer;
   };
   using Mask = std::vector<unsigned char>;
-  void build_location(const Grid &grid, const Phase &phase, Mask *layer_of, Location *location) const;
+  void build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const;
   double extend_layer(int dimension, const Layout &layout, int layer, int part, int parts, double *B) const;
 
   bool linear_ = false;

@@ -8,12 +8,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-struct Box {
-  Real3 length;
-  std::array<bool, 3> wall;
-  int dimension;
-};
-
 // psi_c = sum over modes of a product of one factor per direction: periodic cos(2 pi m x/L + phase), or
 // sin^2(pi m x/L) between walls, which makes the curl of psi vanish there; 1 in z when 2-D.
 struct Mode {
@@ -24,14 +18,14 @@ struct Mode {
 using Modes = std::array<std::vector<Mode>, 3>;
 
 // value and derivative
-std::array<double, 2> factor(const Box &box, const Mode &mode, int d, double x) {
-  if (d >= box.dimension) return {1.0, 0.0};
-  const double k = 2 * pi * mode.number[d] / box.length[d];
-  if (box.wall[d]) return {0.5 - 0.5 * std::cos(k * x), 0.5 * k * std::sin(k * x)};
+std::array<double, 2> factor(const DomainShape &domain, const Mode &mode, int d, double x) {
+  if (d >= domain.dimension()) return {1.0, 0.0};
+  const double k = 2 * pi * mode.number[d] / domain.length[d];
+  if (domain.is_wall(d)) return {0.5 - 0.5 * std::cos(k * x), 0.5 * k * std::sin(k * x)};
   return {std::cos(k * x + mode.phase[d]), -k * std::sin(k * x + mode.phase[d])};
 }
 
-Modes random_modes(const Box &box, double amplitude) {
+Modes random_modes(const DomainShape &domain, double amplitude) {
   constexpr int count = 6;
   std::mt19937 generator(20131117);  // its raw output is fixed by the language standard
   const auto uniform = [&] { return generator() / 4294967296.0; };
@@ -43,7 +37,7 @@ Modes random_modes(const Box &box, double amplitude) {
       for (int d = 0; d < 3; ++d) {
         mode.number[d] = 1 + static_cast<int>(3 * uniform());
         mode.phase[d] = 2 * pi * uniform();
-        if (d < box.dimension) k = std::max(k, 2 * pi * mode.number[d] / box.length[d]);
+        if (d < domain.dimension()) k = std::max(k, 2 * pi * mode.number[d] / domain.length[d]);
       }
       mode.coefficient = amplitude * (2 * uniform() - 1) / k;
       list.push_back(mode);
@@ -51,11 +45,11 @@ Modes random_modes(const Box &box, double amplitude) {
   return modes;
 }
 
-double derivative(const Box &box, const std::vector<Mode> &modes, int direction, const Real3 &x) {
+double derivative(const DomainShape &domain, const std::vector<Mode> &modes, int direction, const Real3 &x) {
   double sum = 0;
   for (const Mode &mode : modes) {
     double term = mode.coefficient;
-    for (int d = 0; d < 3; ++d) term *= factor(box, mode, d, x[d])[d == direction];
+    for (int d = 0; d < 3; ++d) term *= factor(domain, mode, d, x[d])[d == direction];
     sum += term;
   }
   return sum;
@@ -63,14 +57,14 @@ double derivative(const Box &box, const std::vector<Mode> &modes, int direction,
 
 // Component c at x.
 struct Pointwise {
-  Box box;
+  DomainShape domain;
   InitialFlow flow;
   Real3 wall_low, wall_high;  // of y, at t = 0
   Modes modes;
 
   double operator()(int c, const Real3 &x) const {
     const double A = flow.amplitude;
-    const Real3 &L = box.length;
+    const Real3 &L = domain.length;
     const Real3 k{2 * pi / L[0], 2 * pi / L[1], 2 * pi / L[2]};
     switch (flow.kind) {
       case InitialVelocity::zero:
@@ -96,13 +90,13 @@ struct Pointwise {
         return c == 0 ? 4 * A * x[1] * (L[1] - x[1]) / (L[1] * L[1]) : 0;
       case InitialVelocity::random: {
         const int a = (c + 1) % 3, b = (c + 2) % 3;  // curl: u_c = d_a psi_b - d_b psi_a; only psi_z in 2-D
-        const double first = box.dimension == 2 && b != 2 ? 0 : derivative(box, modes[b], a, x);
-        const double second = box.dimension == 2 && a != 2 ? 0 : derivative(box, modes[a], b, x);
+        const double first = domain.dimension() == 2 && b != 2 ? 0 : derivative(domain, modes[b], a, x);
+        const double second = domain.dimension() == 2 && a != 2 ? 0 : derivative(domain, modes[a], b, x);
         return first - second;
       }
       default: {
         const auto [component, along] = shear_wave_directions(flow.kind);
-        return c == component ? A * std::sin((box.wall[along] ? 0.5 : 1.0) * k[along] * x[along]) : 0;
+        return c == component ? A * std::sin((domain.is_wall(along) ? 0.5 : 1.0) * k[along] * x[along]) : 0;
       }
     }
   }
@@ -124,20 +118,20 @@ std::array<int, 2> shear_wave_directions(InitialVelocity kind) {
   return {name[name.size() - 2] - 'x', name.back() - 'x'};
 }
 
-void set_initial_velocity(const Grid &grid, const BoxSides &sides, const InitialFlow &flow, FieldBlock &velocity) {
-  const Box box{grid.spec().length, {grid.is_wall(0), grid.is_wall(1), grid.is_wall(2)}, grid.dimension()};
-  const Pointwise value{box, flow, sides[1][0].motion.at(0), sides[1][1].motion.at(0),
-                        flow.kind == InitialVelocity::random ? random_modes(box, flow.amplitude) : Modes{}};
-  const Layout &layout = grid.layout();
+void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, FieldBlock &velocity) {
+  const Pointwise value{
+      box.domain_shape(), flow, sides[1][0].motion.at(0), sides[1][1].motion.at(0),
+      flow.kind == InitialVelocity::random ? random_modes(box.domain_shape(), flow.amplitude) : Modes{}};
+  const Layout &layout = box.layout();
   for (int c = 0; c < velocity.count(); ++c) {
     Int3 end = layout.cells;
-    if (grid.is_open(c, true)) end[c] = grid.points_end(c, true);
+    if (box.is_open(c, true)) end[c] = box.points_end(c, true);
     for (int k = 0; k < end[2]; ++k)
       for (int j = 0; j < end[1]; ++j)
         for (int i = 0; i < end[0]; ++i) {
           const Int3 cell{layout.begin[0] + i, layout.begin[1] + j, layout.begin[2] + k};
           Real3 x{};  // z = 0 in 2-D
-          for (int d = 0; d < grid.dimension(); ++d) x[d] = (cell[d] + (d == c ? 0.0 : 0.5)) * grid.spacing()[d];
+          for (int d = 0; d < box.dimension(); ++d) x[d] = (cell[d] + (d == c ? 0.0 : 0.5)) * box.spacing()[d];
           velocity[c](i, j, k) = value(c, x) + flow.mean[c];
         }
   }

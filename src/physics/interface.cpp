@@ -12,20 +12,20 @@ namespace eulastic {
 namespace {
 
 // Local cells begin <= (i, j, k) < end.
-struct Box {
+struct Extent {
   Int3 begin, end;
-  Box grown(int d, int low, int high) const {
-    Box box = *this;
-    box.begin[d] -= low;
-    box.end[d] += high;
-    return box;
+  Extent grown(int d, int low, int high) const {
+    Extent extent = *this;
+    extent.begin[d] -= low;
+    extent.end[d] += high;
+    return extent;
   }
 };
 
 // One direction of one transport; the strides begin with its own.
 struct Sweep {
   int direction;
-  Box cells;
+  Extent cells;
   double rate;  // dt/h
   std::ptrdiff_t stride[3];
   ConstView velocity;
@@ -33,12 +33,12 @@ struct Sweep {
 };
 
 // The pieces of the active segments in a box.
-std::vector<Segment> inside(const ActiveSegments &active, const Box &box) {
+std::vector<Segment> inside(const ActiveSegments &active, const Extent &extent) {
   std::vector<Segment> pieces;
-  for (int k = box.begin[2]; k < box.end[2]; ++k)
-    for (int j = box.begin[1]; j < box.end[1]; ++j)
+  for (int k = extent.begin[2]; k < extent.end[2]; ++k)
+    for (int j = extent.begin[1]; j < extent.end[1]; ++j)
       for (const Segment &s : active.row(j, k)) {
-        const Segment piece{std::max(s.i_begin, box.begin[0]), std::min(s.i_end, box.end[0]), j, k};
+        const Segment piece{std::max(s.i_begin, extent.begin[0]), std::min(s.i_end, extent.end[0]), j, k};
         if (piece.size() > 0) pieces.push_back(piece);
       }
   return pieces;
@@ -86,12 +86,12 @@ EULASTIC_CLONES void apply_fluxes(const Sweep &t, const Segment *begin, const Se
 }
 
 // Returns how many planes were made.
-long sweep_band(const Grid &grid, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
-  const auto pass = [&](const ActiveSegments &active, const Box &box, auto kernel) {
-    in_parts_of(inside(active, box), grid, kernel);
+long sweep_band(const Box &box, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+  const auto pass = [&](const ActiveSegments &active, const Extent &extent, auto kernel) {
+    in_parts_of(inside(active, extent), box, kernel);
   };
   std::atomic<long> planes{0};
-  const auto mixed = grid.dimension() == 2 ? mixed_fluxes_2d : mixed_fluxes_3d;
+  const auto mixed = box.dimension() == 2 ? mixed_fluxes_2d : mixed_fluxes_3d;
   pass(faces, t.cells.grown(t.direction, 0, 1),
        [&](const Segment *begin, const Segment *end) { uniform_fluxes(t, begin, end); });
   pass(cells, t.cells.grown(t.direction, 1, 1),
@@ -110,12 +110,12 @@ Int3 order_of_directions(int dimension, long step) {
 
 // The cells each sweep has to move so that the later ones find their neighbours: a sweep along d reads two more
 // layers in d and one more in the others. Behind walls only the first layer matters, and that is reflected anew.
-std::array<Box, 3> cells_of_sweeps(const Grid &grid, const Int3 &order) {
-  std::array<Box, 3> boxes{};
+std::array<Extent, 3> cells_of_sweeps(const Box &box, const Int3 &order) {
+  std::array<Extent, 3> boxes{};
   Int3 layers{};
-  for (int s = grid.dimension() - 1; s >= 0; --s) {
-    boxes[s] = {{0, 0, 0}, grid.owned()};
-    for (int d = 0; d < grid.dimension(); ++d) {
+  for (int s = box.dimension() - 1; s >= 0; --s) {
+    boxes[s] = {{0, 0, 0}, box.cells()};
+    for (int d = 0; d < box.dimension(); ++d) {
       boxes[s] = boxes[s].grown(d, layers[d], layers[d]);
       layers[d] += d == order[s] ? 2 : 1;
     }
@@ -129,26 +129,26 @@ PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity
                                            FieldBlock &fraction) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  const int dimension = grid_->dimension();
+  const int dimension = box_->dimension();
   const Int3 order = order_of_directions(dimension, step);
-  const std::array<Box, 3> cells = cells_of_sweeps(*grid_, order);
+  const std::array<Extent, 3> cells = cells_of_sweeps(*box_, order);
   WorkSpace::Lease work;
   PetscCall(work_->take("fluxes of the interface", work_fields, &work));
   const View phi = fraction[0], flux = work.fields()[0], solid = work.fields()[1];
-  fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
-  cells_.build_band(*grid_, phi, rows, dimension);
-  faces_.build_faces(*grid_, cells_);
-  in_parts_of(cells_.all(), *grid_, [&](const Segment *begin, const Segment *end) {
+  fill_wall_ghosts_even(*box_, at_centre, phi, 1, &rows);
+  cells_.build_band(*box_, phi, rows, dimension);
+  faces_.build_faces(*box_, cells_);
+  in_parts_of(cells_.all(), *box_, [&](const Segment *begin, const Segment *end) {
     for (const Segment *s = begin; s < end; ++s)
       for (int i = s->i_begin; i < s->i_end; ++i) solid(i, s->j, s->k) = phi(i, s->j, s->k) > 0.5;
   });
   planes_ = 0;
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    Sweep sweep{d, cells[s], dt / grid_->spacing()[d], {}, velocity[d], phi, flux, solid};
+    Sweep sweep{d, cells[s], dt / box_->spacing()[d], {}, velocity[d], phi, flux, solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
-    planes_ += static_cast<double>(sweep_band(*grid_, sweep, cells_, faces_));
-    fill_wall_ghosts_even(*grid_, at_centre, phi, 1, &rows);
+    planes_ += static_cast<double>(sweep_band(*box_, sweep, cells_, faces_));
+    fill_wall_ghosts_even(*box_, at_centre, phi, 1, &rows);
   }
   scope.flops(dimension *
                   (cells_.points() * kernels::apply_flux_flops + faces_.points() * kernels::uniform_flux_flops) +

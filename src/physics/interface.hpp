@@ -5,8 +5,10 @@
 // solenoidal velocity keeps the volume to round-off, and 0 <= phi <= 1 as long as sum |u_d| dt/h_d < 1/2.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/work_space.hpp"
 #include "grid/active_segments.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
@@ -17,7 +19,7 @@ public:
 
   static constexpr int work_fields = 2;  ///< of the work space, during `advance`
 
-  InterfaceTransport(const Grid &grid, WorkSpace &work) : grid_(&grid), work_(&work) {}
+  InterfaceTransport(const Box &box, WorkSpace &work) : box_(&box), work_(&work) {}
 
   /// Moves `fraction`, of which `rows` are occupied, over dt with face velocities. The order of directions follows from
   /// `step`: all of them in turn, each after its mirror image. Nothing is communicated: ghosts are moved along and are
@@ -30,7 +32,7 @@ public:
   double planes() const { return planes_; }
 
 private:
-  const Grid *grid_;
+  const Box *box_;
   WorkSpace *work_;
   ActiveSegments cells_, faces_;
   double planes_ = 0;

@@ -3,6 +3,7 @@
 #include "field/exact_sum.hpp"
 #include "field/law.hpp"
 #include "field/open_sides.hpp"
+#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
@@ -62,10 +63,10 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
 }
 
 // Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
-std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, const FieldBlock &velocity,
+std::vector<double> extremes_of_part(const Box &box, int part, int parts, const FieldBlock &velocity,
                                      const std::vector<Phase> &phases) {
-  const Int3 n = grid.owned(), &N = grid.cells(), &begin = grid.layout().begin;
-  const RowPart rows = row_part(grid, part, parts);
+  const Int3 n = box.cells(), &N = box.domain_cells(), &begin = box.layout().begin;
+  const RowPart rows = row_part(box, part, parts);
   std::vector<double> largest(4 + phases.size());
   largest[3] = -infinite;
   const auto mark = [&](const double *row, int i0, int i1, int j, int k) {
@@ -85,7 +86,7 @@ std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, cons
         if (r.bad) mark(row, 0, n[0], j, k);
       }
   for (int d = 0; d < velocity.count() && part == 0; ++d)
-    for (const Segment &row : grid.faces_on(d, true))
+    for (const Segment &row : box.faces_on(d, true))
       largest[d] = std::max(largest[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const Phase &phase = phases[p];
@@ -97,7 +98,7 @@ std::vector<double> extremes_of_part(const Grid &grid, int part, int parts, cons
       if (s.j >= n[1] || s.k >= n[2]) continue;
       const int end = std::min(s.i_end, n[0]);
       const auto row = [&](int f) { return phase.tensor.field[f].row(s.j, s.k); };
-      const double *xx = row(0), *yy = row(1), *zz = grid.dimension() == 3 ? row(2) : nullptr;
+      const double *xx = row(0), *yy = row(1), *zz = box.dimension() == 3 ? row(2) : nullptr;
       const RowExtremes r =
           trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), phase.tensor.rule.centre, s.i_begin, end);
       most = std::max(most, r.largest);
@@ -141,21 +142,21 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
   return with_law(material, [&](const auto &law) { return law.stiffness(bounds); });
 }
 
-PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_extremes(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  const int parts = row_parts(grid);
+  const int parts = row_parts(domain);
   std::vector<std::vector<double>> found(parts);
-  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(grid, part, parts, velocity, phases); });
+  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(domain, part, parts, velocity, phases); });
   std::vector<double> largest;
-  PetscCall(reduce_maxima(grid.comm(), found, &largest));
+  PetscCall(reduce_maxima(domain.comm(), found, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};
   extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
   extremes->trace.assign(largest.begin() + 4, largest.end());
   extremes->stiffness = 0;
   for (std::size_t p = 0; p < phases.size(); ++p)
     extremes->stiffness =
-        std::max(extremes->stiffness, largest_stiffness(phases[p].material, extremes->trace[p], grid.dimension()));
+        std::max(extremes->stiffness, largest_stiffness(phases[p].material, extremes->trace[p], domain.dimension()));
   PetscFunctionReturn(0);
 }
 

@@ -1,8 +1,10 @@
 // What the time step must respect, and the measures of the flow it depends on.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 #include "physics/viscosity.hpp"
 
 namespace eulastic {
@@ -17,7 +19,7 @@ struct FlowExtremes {
 };
 
 /// `least`: the solid fraction of each phase from which on B is evolved.
-PetscErrorCode measure_extremes(const Grid &grid, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_extremes(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes);
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
@@ -58,9 +60,9 @@ struct TimeStepLimits {
 TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid,
                                 const ViscosityContrast &contrast, const BoxSides &sides, const FlowExtremes &extremes,
                                 const StepScheme &scheme);
-inline TimeStepLimits time_step_limits(const Grid &grid, const Fluid &fluid, const ViscosityContrast &contrast,
+inline TimeStepLimits time_step_limits(const Box &box, const Fluid &fluid, const ViscosityContrast &contrast,
                                        const BoxSides &sides, const FlowExtremes &extremes, const StepScheme &scheme) {
-  return time_step_limits(grid.spacing(), grid.dimension(), fluid, contrast, sides, extremes, scheme);
+  return time_step_limits(box.spacing(), box.dimension(), fluid, contrast, sides, extremes, scheme);
 }
 
 }  // namespace eulastic

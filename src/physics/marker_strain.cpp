@@ -21,7 +21,7 @@ constexpr double same_side = 0.3;         // least cosine between normals
 constexpr double trusted = 0.3;           // cells: largest deviation of their places at rest from a quadratic, rms
 
 struct Sources {
-  const Grid *grid;
+  const Box *box;
   const SurfaceCells *surface;
   const SurfaceMarker *markers;
   const int *begin;  // by offset from the origin
@@ -37,8 +37,8 @@ struct Seen {
 template <int Dim>
 EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const SurfaceCells::Cell &cell, Seen *seen,
                                 int most) {
-  const Real3 &h = from.grid->spacing();
-  const Layout &layout = from.grid->layout();
+  const Real3 &h = from.box->spacing();
+  const Layout &layout = from.box->layout();
   int count = 0;
   for (int z = Dim == 3 ? -reach : 0; z <= (Dim == 3 ? reach : 0); ++z)
     for (int y = -reach; y <= reach; ++y) {
@@ -69,11 +69,11 @@ EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const
 // B_s at a point of the surface from the places at rest of the markers around it and from their heights over the plane
 // t: both as quadratics. `nearest`: a marker of its body and its side.
 template <int Dim, int Values>
-EULASTIC_INLINE bool strain_around(const Grid &grid, const kernels::Vector<Dim> &n, const Seen *seen, int count,
+EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n, const Seen *seen, int count,
                                    const SurfaceMarker &nearest, kernels::Tensor<Dim> *B) {
   constexpr int height = Dim, metric = Dim + 1;
   const auto t = kernels::tangents<Dim>(n);
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const double length = radius<Dim> * std::max({h[0], h[1], Dim == 3 ? h[2] : 0});
   kernels::SurfacePoints<Values> points;
   for (int m = 0; m < count; ++m) {
@@ -90,9 +90,9 @@ EULASTIC_INLINE bool strain_around(const Grid &grid, const kernels::Vector<Dim> 
     points.weight[points.count] = near * near;
     points.value[height][points.count] = up / length;
     for (int d = 0; d < Dim; ++d) {
-      const double box = grid.spec().length[d];
+      const double period = box.domain_shape().length[d];
       double away = marker.rest[d] - nearest.rest[d];
-      if (!grid.is_wall(d)) away -= away > 0.5 * box ? box : away < -0.5 * box ? -box : 0;
+      if (!box.is_wall(d)) away -= away > 0.5 * period ? period : away < -0.5 * period ? -period : 0;
       points.value[d][points.count] = away / length;
     }
     for (int q = metric; q < Values; ++q) points.value[q][points.count] = marker.metric[q - metric];
@@ -135,8 +135,8 @@ EULASTIC_INLINE bool strain_at(const Sources &from, const int *marker_of, const 
       uniform = uniform && __builtin_fabs(seen[m].marker->metric[q] - nearest.metric[q]) < round_off;
   const kernels::Vector<Dim> n = normal_of<Dim>(cell.normal);
   kernels::Tensor<Dim> strain;
-  const bool told = uniform ? strain_around<Dim, Dim + 1>(*from.grid, n, seen, count, nearest, &strain)
-                            : strain_around<Dim, Dim + 7>(*from.grid, n, seen, count, nearest, &strain);
+  const bool told = uniform ? strain_around<Dim, Dim + 1>(*from.box, n, seen, count, nearest, &strain)
+                            : strain_around<Dim, Dim + 7>(*from.box, n, seen, count, nearest, &strain);
   if (!told) return false;
   for (int a = 0; a < Dim; ++a)
     for (int b = a; b < Dim; ++b) B[kernels::position<Dim>(a, b)] = strain[a][b];
@@ -155,13 +155,13 @@ EULASTIC_CLONES bool strain_3d(const Sources &from, const int *marker_of, const 
 // Those whose cell is one of the nearest or beside one, which every rank sees as far as it needs them. In an order that
 // is the same on any ranks.
 void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
-  const Layout &layout = grid_->layout();
+  const Layout &layout = domain_->layout();
   near_.clear();
   for (std::size_t m = 0; m < all_.size(); ++m) {
     if (all_[m].phase != phase) continue;
-    Grid::Range images[3]{{0, 1}, {0, 1}, {0, 1}};
-    for (int d = 0; d < grid_->dimension(); ++d)
-      if (!grid_->is_wall(d)) images[d] = {-1, 2};
+    Box::Range images[3]{{0, 1}, {0, 1}, {0, 1}};
+    for (int d = 0; d < domain_->dimension(); ++d)
+      if (!domain_->is_wall(d)) images[d] = {-1, 2};
     for (int z = images[2].begin; z < images[2].end; ++z)
       for (int y = images[1].begin; y < images[1].end; ++y)
         for (int x = images[0].begin; x < images[0].end; ++x) {
@@ -169,8 +169,8 @@ void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
           Int3 local;
           bool here = true;
           for (int d = 0; d < 3; ++d) {
-            const int ghosts = d < grid_->dimension() ? reach : 0;
-            local[d] = all_[m].cell[d] - layout.begin[d] + image[d] * grid_->cells()[d];
+            const int ghosts = d < domain_->dimension() ? reach : 0;
+            local[d] = all_[m].cell[d] - layout.begin[d] + image[d] * domain_->domain_cells()[d];
             here = here && local[d] >= -ghosts && local[d] < layout.cells[d] + ghosts;
           }
           if (!here) continue;
@@ -195,8 +195,8 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
   sort(surface, phase);
   std::vector<int> marker_of;
   for (const Near &near : near_) marker_of.push_back(near.marker);
-  const Sources from{grid_, &surface, all_.data(), begin_.data() + grid_->layout().origin};
-  const int parts = row_parts(*grid_);
+  const Sources from{domain_, &surface, all_.data(), begin_.data() + domain_->layout().origin};
+  const int parts = row_parts(*domain_);
   std::vector<std::vector<Strain>> found(parts);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(surface.nearest(), part, parts);
@@ -204,13 +204,13 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
       const SurfaceCells::Cell &cell = surface.all()[c];
       Strain strain{c, {}};
       if (cell.owned &&
-          (grid_->dimension() == 2 ? strain_2d : strain_3d)(from, marker_of.data(), cell, strain.B.data()))
+          (domain_->dimension() == 2 ? strain_2d : strain_3d)(from, marker_of.data(), cell, strain.B.data()))
         found[part].push_back(strain);
     }
   });
   strains->clear();
   for (const auto &part : found) strains->insert(strains->end(), part.begin(), part.end());
-  scope.flops(double(strains->size()) * (grid_->dimension() == 2 ? 500 : 4000));
+  scope.flops(double(strains->size()) * (domain_->dimension() == 2 ? 500 : 4000));
 }
 
 }  // namespace eulastic

@@ -20,10 +20,10 @@ template <int Dim>
 struct Local {
   std::ptrdiff_t stride[3];
   Real3 h, inverse;
-  explicit Local(const Grid &grid, ConstView q) {
+  explicit Local(const Box &box, ConstView q) {
     for (int d = 0; d < 3; ++d) {
       stride[d] = q.stride(d);
-      h[d] = grid.spacing()[d];
+      h[d] = box.spacing()[d];
       inverse[d] = 1 / h[d];
     }
   }
@@ -124,7 +124,7 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(*phase, surface.fields()));
   const double area = phase->material.membrane.initial_area_stretch;
-  const double stretch = grid_->dimension() == 2 ? area * area : area;  // squared, of lengths
+  const double stretch = domain_->dimension() == 2 ? area * area : area;  // squared, of lengths
   for (std::size_t c = 0; c < surface_.nearest(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
@@ -135,7 +135,7 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
         for (double &entry : row) entry *= stretch;
       set_tensor<dim>(phase->tensor.field, cell.at, value);
     };
-    if (grid_->dimension() == 2)
+    if (domain_->dimension() == 2)
       set(std::integral_constant<int, 2>());
     else
       set(std::integral_constant<int, 3>());
@@ -160,8 +160,8 @@ template <int Dim>
 PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next) {
   PetscFunctionBeginUser;
   const double least = least_area_squared(*phase);
-  std::vector<long> kept(row_parts(*grid_));
-  const Local<Dim> local(*grid_, velocity[0]);
+  std::vector<long> kept(row_parts(*domain_));
+  const Local<Dim> local(*domain_, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
   FieldBlock &tensor = phase->tensor.field;
   const auto stage = [&](bool second, std::size_t c, long *lost) {
@@ -183,7 +183,7 @@ PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Ph
     }
     set_tensor<Dim>(second ? tensor : next, cell.at, value);
   };
-  const int parts = row_parts(*grid_);
+  const int parts = row_parts(*domain_);
   for (const bool second : {false, true}) {
     {
       VerbScope scope(Verb::membrane);
@@ -221,7 +221,7 @@ void MembraneTransport::recall(double dt, const FieldBlock &velocity,
       if (!(told < doubtful * known && known < doubtful * told)) continue;
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
-                  grid_->spacing()[d];
+                  domain_->spacing()[d];
       const double share = std::min(passed, 1.0);
       for (int f = 0; f < phase->tensor.field.count(); ++f) {
         double &B = phase->tensor.field[f].origin[cell.at];
@@ -233,7 +233,7 @@ void MembraneTransport::recall(double dt, const FieldBlock &velocity,
       set_tensor<dim>(phase->tensor.field, cell.at, value);
     }
   };
-  if (grid_->dimension() == 2)
+  if (domain_->dimension() == 2)
     each(std::integral_constant<int, 2>());
   else
     each(std::integral_constant<int, 3>());
@@ -243,7 +243,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
                                           std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   unresolved_ = 0;
-  NetForce net(*grid_, memory && drives_all(*phases));
+  NetForce net(*domain_, memory && drives_all(*phases));
   if (memory) begin_force();
   if (memory && marks(*phases)) PetscCall(markers_.move(dt, velocity, memory->markers));
   for (std::size_t p = 0; p < phases->size(); ++p) {
@@ -258,7 +258,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
     {
       WorkSpace::Lease next;
       PetscCall(work_->take("first stage of B_s", phase.tensor.field.count(), &next));
-      if (grid_->dimension() == 2)
+      if (domain_->dimension() == 2)
         PetscCall(heun<2>(dt, velocity, &phase, next.fields()));
       else
         PetscCall(heun<3>(dt, velocity, &phase, next.fields()));
@@ -270,7 +270,7 @@ PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity,
   }
   if (!memory) PetscFunctionReturn(0);
   PetscCall(end_force(&net));
-  PetscCallMPI(MPI_Allreduce(&unresolved_, &memory->unresolved, 1, MPI_LONG, MPI_SUM, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(&unresolved_, &memory->unresolved, 1, MPI_LONG, MPI_SUM, domain_->comm()));
   PetscFunctionReturn(0);
 }
 

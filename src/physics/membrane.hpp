@@ -2,8 +2,10 @@
 // the flow; docs/method.md, section 18.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/surface_sample.hpp"
 #include "field/work_space.hpp"
+#include "grid/domain.hpp"
 #include "physics/bending.hpp"
 #include "physics/elastic_force.hpp"
 #include "physics/net_force.hpp"
@@ -28,17 +30,17 @@ public:
   static constexpr int work_fields = SurfaceCells::work_fields + 6;
 
   /// `sides`: of the box, which must outlive this; `drifts`: as of SurfaceTension, for bending.
-  MembraneTransport(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const BoxSides &sides, bool drifts)
-      : grid_(&grid),
+  MembraneTransport(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const BoxSides &sides, bool drifts)
+      : domain_(&domain),
         work_(&work),
         exchange_(&exchange),
         sides_(&sides),
-        surface_(grid, exchange, sides),
-        bending_(grid, exchange),
-        markers_(grid),
-        film_(grid),
+        surface_(domain, exchange, sides),
+        bending_(domain, exchange),
+        markers_(domain),
+        film_(domain),
         drifts_(drifts),
-        force_(grid, grid.dimension()) {}
+        force_(domain, domain.dimension()) {}
   static bool exists(const std::vector<Phase> &phases);
   static bool marks(const std::vector<Phase> &phases);  ///< whether any has markers
   std::size_t bytes() const { return force_.bytes(); }
@@ -94,7 +96,7 @@ private:
   void recall(double dt, const FieldBlock &velocity, const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase);
   static double least_area_squared(const Phase &phase);
 
-  const Grid *grid_;
+  const Domain *domain_;
   WorkSpace *work_;
   GhostExchange *exchange_;
   const BoxSides *sides_;

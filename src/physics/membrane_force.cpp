@@ -56,8 +56,8 @@ constexpr int force_reach = 2;
 PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
-  const int dim = grid_->dimension();
-  for (int f = 0; f < stress.count(); ++f) clear_around(*grid_, phase.rows, force_reach, stress[f]);
+  const int dim = domain_->dimension();
+  for (int f = 0; f < stress.count(); ++f) clear_around(*domain_, phase.rows, force_reach, stress[f]);
   const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
     auto B = zero;
     const kernels::MembraneState state = kernels::membrane_state(
@@ -79,7 +79,7 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &st
           set(cell, tensor_at<3>(phase.tensor.field, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
   }
   PetscCall(exchange_->update(stress, force_reach, &phase.rows));
-  fill_wall_ghosts_centred_tensor(*grid_, stress, force_reach, &phase.rows);
+  fill_wall_ghosts_centred_tensor(*domain_, stress, force_reach, &phase.rows);
   PetscFunctionReturn(0);
 }
 
@@ -87,9 +87,9 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &st
 PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView smooth, const ForceRow &use,
                                                  std::vector<double> *bending_energy) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension();
-  const Real3 &h = grid_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
-  const int n = grid_->owned()[0];
+  const int dim = domain_->dimension();
+  const Real3 &h = domain_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const int n = domain_->cells()[0];
   if (bending_energy) bending_energy->assign(surface_.all().size(), 0);
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
@@ -102,8 +102,8 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
     else
       PetscCall(find_stress(phase, fields));
     VerbScope scope(Verb::membrane);
-    in_row_parts(*grid_, [&](const RowPart &part) {
-      RowScratch scratch(*grid_, 1);
+    in_row_parts(*domain_, [&](const RowPart &part) {
+      RowScratch scratch(*domain_, 1);
       double *force = scratch.row(0);
       for (int k = part.k_begin; k < part.k_end; ++k)
         for (int j = part.j_begin; j < part.j_end; ++j) {
@@ -132,8 +132,8 @@ bool MembraneTransport::drives_all(const std::vector<Phase> &phases) const {
 }
 
 void MembraneTransport::begin_force() {
-  const int n = grid_->owned()[0];
-  in_row_parts(*grid_, [&](const RowPart &part) {
+  const int n = domain_->cells()[0];
+  in_row_parts(*domain_, [&](const RowPart &part) {
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j)
         for (int a = 0; a < force_.count(); ++a) std::fill_n(force_[a].row(j, k), n, 0.0);
@@ -142,7 +142,7 @@ void MembraneTransport::begin_force() {
 
 PetscErrorCode MembraneTransport::gather_force(const Phase &phase, ConstView smooth, NetForce *net) {
   PetscFunctionBeginUser;
-  const int n = grid_->owned()[0];
+  const int n = domain_->cells()[0];
   PetscCall(for_force_rows(phase, smooth, [&](int part, bool bending, int a, int j, int k, const double *added) {
     add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
     if (bending) net->add_row(part, a, added);
@@ -162,7 +162,7 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
                                             FieldBlock &force, const ForceSlope &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
-    NetForce net(*grid_, drives_all(phases));
+    NetForce net(*domain_, drives_all(phases));
     begin_force();
     for (const Phase &phase : phases) {
       if (!phase.material.is_membrane()) continue;
@@ -173,9 +173,9 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
     }
     PetscCall(end_force(&net));
   }
-  const int n = grid_->owned()[0];
-  in_row_parts(*grid_, [&](const RowPart &part) {
-    RowScratch scratch(*grid_, 1);
+  const int n = domain_->cells()[0];
+  in_row_parts(*domain_, [&](const RowPart &part) {
+    RowScratch scratch(*domain_, 1);
     double *added = scratch.row(0);
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j) {
@@ -190,7 +190,7 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
       }
   });
   const Real3 &mean = net_force_;
-  if (balanced) take_off_mean(*grid_, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
+  if (balanced) take_off_mean(*domain_, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
   PetscFunctionReturn(0);
 }
 

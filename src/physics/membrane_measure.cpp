@@ -26,10 +26,10 @@ Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
 
 // Of the surface that curvatures are those of: a filter moves both, and what it does to the area makes up for the
 // curvature.
-double smoothed_delta(const Grid &grid, ConstView psi, std::ptrdiff_t at) {
+double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
   const double *p = psi.origin + at;
   Real3 g{};
-  for (int d = 0; d < grid.dimension(); ++d) g[d] = (p[psi.stride(d)] - p[-psi.stride(d)]) / (2 * grid.spacing()[d]);
+  for (int d = 0; d < box.dimension(); ++d) g[d] = (p[psi.stride(d)] - p[-psi.stride(d)]) / (2 * box.spacing()[d]);
   return std::sqrt((g[0] * g[0] + g[1] * g[1]) + g[2] * g[2]);
 }
 
@@ -48,12 +48,12 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
                                                 std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   enum Sum { power, stored, sums };
-  const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
+  const int dim = domain_->dimension(), n = domain_->cells()[0], first = domain_->layout().begin[0];
   WorkSpace::Lease surface;
   PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
   PetscCall(surface_.find(phase, surface.fields()));
-  std::vector<ExactSums> sum(row_parts(*grid_), ExactSums(sums));
-  const double volume = grid_->cell_volume();
+  std::vector<ExactSums> sum(row_parts(*domain_), ExactSums(sums));
+  const double volume = domain_->cell_volume();
   const ConstView smooth = surface.fields()[SurfaceCells::smoothed];
   std::vector<double> bending;
   PetscCall(for_force_rows(
@@ -67,7 +67,7 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
   VerbScope scope(Verb::sums);
   film_.add_energy(phase, velocity, power, stored, &sum[0]);
   for (std::size_t c = 0; c < bending.size(); ++c)
-    if (bending[c] > 0) bending[c] *= smoothed_delta(*grid_, smooth, surface_.all()[c].at);
+    if (bending[c] > 0) bending[c] *= smoothed_delta(*domain_, smooth, surface_.all()[c].at);
   std::vector<int> label;
   if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface.fields(), &label));
   for (std::size_t c = 0; c < bending.size(); ++c) {
@@ -81,7 +81,7 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
                           bending[c] * volume});
   }
   double total[sums];
-  PetscCall(reduce_parts(grid_->comm(), sum, total));
+  PetscCall(reduce_parts(domain_->comm(), sum, total));
   measured->power += total[power] * volume;
   measured->energy += total[stored] * volume;
   PetscFunctionReturn(0);

@@ -13,7 +13,7 @@ namespace eulastic {
 namespace {
 
 struct RateTerms {
-  const Grid &grid;
+  const Box &box;
   const FieldBlock &velocity, &pressure;
   const std::vector<Phase> &phases;
   FieldBlock *advection;  // null: not kept
@@ -25,12 +25,12 @@ struct RateTerms {
   InverseSquares viscosity;   // nu/h^2
 };
 
-RateTerms rate_terms(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+RateTerms rate_terms(const Box &box, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                      const FieldBlock &pressure, const std::vector<Phase> &phases) {
-  const Real3 &h = grid.spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const Real3 &h = box.spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
   const double nu = fluid.kinematic_viscosity();
   const auto over_square = [&](int d) { return nu * (inverse[d] * inverse[d]); };
-  return {grid,
+  return {box,
           velocity,
           pressure,
           phases,
@@ -53,12 +53,12 @@ struct BlockRows {
 // What is asked for ahead of row j of component a: the rows of its stencil, at the block's sides too, of the result and
 // of what goes with it.
 RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, const FieldBlock &out) {
-  constexpr int reach = Grid::stencil_width;
+  constexpr int reach = Box::stencil_width;
   const RowAhead next(block.begin, block.end, j, block.k);
   const auto at = [&](ConstView q, int y, int z) { return q.row(next.j + y, next.k + z) - reach; };
   const int side = next.j < block.begin + reach ? -reach : next.j >= block.end - reach ? reach : 0;
   RowsAhead ahead;
-  ahead.length = t.grid.owned()[0] + 2 * reach + 7;  // up to the last cache line
+  ahead.length = t.box.cells()[0] + 2 * reach + 7;  // up to the last cache line
   ahead.rows[0][0] = at(t.velocity[a], 0, reach);
   if (side != 0) ahead.rows[0][1] = at(t.velocity[a], side, 0);
   ahead.rows[1][0] = at(out[a], 0, 0);
@@ -96,7 +96,7 @@ EULASTIC_INLINE void rate_of_row(const RateTerms &t, const Segment &row, int a, 
 
 template <int Dim>
 EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
-  const int n = t.grid.owned()[0];
+  const int n = t.box.cells()[0];
   for (int j = block.begin; j < block.end; ++j) {
     const Segment row{0, n, j, block.k};
     for (int a = 0; a < Dim; ++a) {
@@ -130,26 +130,26 @@ constexpr int rows_of_block = block_rows / 2;
 template <class After>
 void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
   VerbScope scope(Verb::momentum);
-  const int dim = t.grid.dimension();
-  in_row_parts(t.grid, [&](const RowPart &part) {
-    RowScratch scratch(t.grid, 1);
+  const int dim = t.box.dimension();
+  in_row_parts(t.box, [&](const RowPart &part) {
+    RowScratch scratch(t.box, 1);
     for (int begin = part.j_begin; begin < part.j_end; begin += rows_of_block)
       for (int k = part.k_begin; k < part.k_end; ++k) {
         const BlockRows block{begin, std::min(begin + rows_of_block, part.j_end), k};
         (dim == 2 ? fluid_rate_2d : fluid_rate_3d)(t, block, scratch.row(0), out);
-        add_elastic_force(t.grid, t.phases, 1 / t.density, block.begin, block.end, k, out, t.slope);
+        add_elastic_force(t.box, t.phases, 1 / t.density, block.begin, block.end, k, out, t.slope);
         after(block);
       }
   });
   for (int a = 0; a < dim; ++a)
-    for (const Segment &row : t.grid.open_high_faces(a)) {
-      const RowScratch scratch(t.grid, 1);
+    for (const Segment &row : t.box.open_high_faces(a)) {
+      const RowScratch scratch(t.box, 1);
       (dim == 2 ? open_face_rate_2d : open_face_rate_3d)(t, row, a, scratch.row(0), out);
-      add_elastic_force(t.grid, t.phases, 1 / t.density, row, a, out, t.slope);
+      add_elastic_force(t.box, t.phases, 1 / t.density, row, a, out, t.slope);
     }
   const double per_face = (t.inertia ? dim * (kernels::weno5_flops + 3) + 4 * (dim - 1) : 0) +
                           dim * kernels::viscous_pressure_flops_per_direction + 5;
-  scope.flops(dim * t.grid.owned_count() * per_face + elastic_flops(dim, t.phases));
+  scope.flops(dim * t.box.cell_count() * per_face + elastic_flops(dim, t.phases));
   if (t.slope.field)
     for (const Phase &phase : t.phases) scope.flops(dim * 2 * phase.tensor.stressed.points());
 }
@@ -161,34 +161,33 @@ EULASTIC_CLONES void advance_row(const Segment &row, double dt, ConstView veloci
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
 }
-void advance_by_rate(const Grid &grid, const BlockRows &block, double dt, const FieldBlock &velocity,
-                     FieldBlock &rate) {
-  for (int a = 0; a < grid.dimension(); ++a)
+void advance_by_rate(const Box &box, const BlockRows &block, double dt, const FieldBlock &velocity, FieldBlock &rate) {
+  for (int a = 0; a < box.dimension(); ++a)
     for (int j = block.begin; j < block.end; ++j)
-      advance_row({0, grid.owned()[0], j, block.k}, dt, velocity[a], rate[a]);
+      advance_row({0, box.cells()[0], j, block.k}, dt, velocity[a], rate[a]);
 }
 
 }  // namespace
 
-PetscErrorCode momentum_rate(const Grid &grid, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
+PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
                              const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
                              FieldBlock &rate, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  RateTerms terms = rate_terms(grid, fluid, step, velocity, pressure, phases);
+  RateTerms terms = rate_terms(box, fluid, step, velocity, pressure, phases);
   terms.advection = advection ? &advection : nullptr;
   terms.slope = slope;
   compute_rate(terms, rate, [](const BlockRows &) {});
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode predict_velocity(const Grid &grid, const Fluid &fluid, const MomentumStep &step,
+PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step,
                                 const FieldBlock &velocity, const FieldBlock &pressure,
                                 const std::vector<Phase> &phases, FieldBlock &velocity_star) {
   PetscFunctionBeginUser;
-  compute_rate(rate_terms(grid, fluid, step, velocity, pressure, phases), velocity_star,
-               [&](const BlockRows &block) { advance_by_rate(grid, block, step.dt, velocity, velocity_star); });
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &row : grid.open_high_faces(a)) advance_row(row, step.dt, velocity[a], velocity_star[a]);
+  compute_rate(rate_terms(box, fluid, step, velocity, pressure, phases), velocity_star,
+               [&](const BlockRows &block) { advance_by_rate(box, block, step.dt, velocity, velocity_star); });
+  for (int a = 0; a < box.dimension(); ++a)
+    for (const Segment &row : box.open_high_faces(a)) advance_row(row, step.dt, velocity[a], velocity_star[a]);
   PetscFunctionReturn(0);
 }
 

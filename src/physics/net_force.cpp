@@ -5,8 +5,8 @@
 
 namespace eulastic {
 
-NetForce::NetForce(const Grid &grid, bool wanted) : grid_(&grid) {
-  if (wanted) sums_.assign(row_parts(grid), ExactSums(grid.dimension()));
+NetForce::NetForce(const Domain &domain, bool wanted) : domain_(&domain) {
+  if (wanted) sums_.assign(row_parts(domain), ExactSums(domain.dimension()));
 }
 
 EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, double *force, double *slope) {
@@ -17,11 +17,11 @@ EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, do
   for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
 }
 
-void take_off_mean(const Grid &grid, const Real3 &mean, FieldBlock &force) {
-  const int n = grid.owned()[0];
-  for (int d = 0; d < grid.dimension(); ++d) {
+void take_off_mean(const Box &box, const Real3 &mean, FieldBlock &force) {
+  const int n = box.cells()[0];
+  for (int d = 0; d < box.dimension(); ++d) {
     if (mean[d] == 0) continue;
-    in_row_parts(grid, [&](const RowPart &part) {
+    in_row_parts(box, [&](const RowPart &part) {
       for_rows_in_blocks(part, [&](int j, int k) {
         double *row = force[d].row(j, k);
         for (int i = 0; i < n; ++i) row[i] -= mean[d];
@@ -35,9 +35,9 @@ PetscErrorCode NetForce::find_mean(Real3 *mean) {
   *mean = {};
   if (sums_.empty()) PetscFunctionReturn(0);
   double sum[3];
-  PetscCall(reduce_parts(grid_->comm(), sums_, sum));
-  for (int d = 0; d < grid_->dimension(); ++d)
-    if (!grid_->is_wall(d)) (*mean)[d] = sum[d] / grid_->cell_count();
+  PetscCall(reduce_parts(domain_->comm(), sums_, sum));
+  for (int d = 0; d < domain_->dimension(); ++d)
+    if (!domain_->is_wall(d)) (*mean)[d] = sum[d] / domain_->domain_cell_count();
   PetscFunctionReturn(0);
 }
 
@@ -45,7 +45,7 @@ PetscErrorCode NetForce::take_off(FieldBlock &force) {
   PetscFunctionBeginUser;
   Real3 mean;
   PetscCall(find_mean(&mean));
-  take_off_mean(*grid_, mean, force);
+  take_off_mean(*domain_, mean, force);
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,9 @@
 // that would move all of it for ever. docs/method.md, section 17.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -10,16 +12,16 @@ namespace eulastic {
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 
 /// force -= mean on all owned faces.
-void take_off_mean(const Grid &grid, const Real3 &mean, FieldBlock &force);
+void take_off_mean(const Box &box, const Real3 &mean, FieldBlock &force);
 
 /// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
 class NetForce {
 public:
   /// Not `wanted`: does nothing.
-  NetForce(const Grid &grid, bool wanted);
+  NetForce(const Domain &domain, bool wanted);
   /// Row of component d that part `part` of row_parts(grid) has added.
   void add_row(int part, int d, const double *added) {
-    if (!sums_.empty()) sums_[part].add_row(d, added, grid_->owned()[0], grid_->layout().begin[0]);
+    if (!sums_.empty()) sums_[part].add_row(d, added, domain_->cells()[0], domain_->layout().begin[0]);
   }
   /// Its mean in periodic directions, 0 in others. Collective.
   PetscErrorCode find_mean(Real3 *mean);
@@ -27,7 +29,7 @@ public:
   PetscErrorCode take_off(FieldBlock &force);
 
 private:
-  const Grid *grid_;
+  const Domain *domain_;
   std::vector<ExactSums> sums_;
 };
 

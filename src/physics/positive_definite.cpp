@@ -32,7 +32,7 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
 
 }  // namespace
 
-PetscErrorCode limit_shear(const Grid &grid, const Phase &phase, FieldBlock &tensor) {
+PetscErrorCode limit_shear(const Box &box, const Phase &phase, FieldBlock &tensor) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   for (int f = 0; f < tensor.count(); ++f) {
@@ -40,10 +40,10 @@ PetscErrorCode limit_shear(const Grid &grid, const Phase &phase, FieldBlock &ten
     if (a == b) continue;
     const Edges edges{phase.fraction[0],     tensor[a], tensor[b], tensor[f], tensor[f].stride(a), tensor[f].stride(b),
                       phase.tensor.rule.edge};
-    in_parts_of(phase.tensor.evolving.all(), grid, [&](const Segment *begin, const Segment *end) {
+    in_parts_of(phase.tensor.evolving.all(), box, [&](const Segment *begin, const Segment *end) {
       for (const Segment *s = begin; s < end; ++s) {
-        if (s->j >= grid.points_end(1, at[1]) || s->k >= grid.points_end(2, at[2])) continue;
-        limit_row(edges, {s->i_begin, std::min(s->i_end, grid.points_end(0, at[0])), s->j, s->k});
+        if (s->j >= box.points_end(1, at[1]) || s->k >= box.points_end(2, at[2])) continue;
+        limit_row(edges, {s->i_begin, std::min(s->i_end, box.points_end(0, at[0])), s->j, s->k});
       }
     });
     scope.flops(phase.tensor.evolving.points() * 16);

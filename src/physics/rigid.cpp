@@ -13,19 +13,19 @@ namespace {
 // dV/dt - V.grad u beside a body that travels, V its velocity at `place`: what a face sees of a flow that does not
 // change about the body. Upwind and half implicit: where the surface comes, u - u_s falls in a step as the distance to
 // it does.
-double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, Real3 place,
+double rate_of_what_rests(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, Real3 place,
                           double time, double dt, const double *u, const Strides &s) {
   const RigidBody &body = faces.bodies[cut.body];
   const RigidMotion &motion = faces.motions[body.motion];
   const double middle = time + 0.5 * dt;
-  for (int d = 0; d < grid.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
-  const Real3 r = RigidFaces::arm(body, place, grid.spacing()), frame = motion.frame_velocity(r, middle);
+  for (int d = 0; d < box.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
+  const Real3 r = RigidFaces::arm(body, place, box.spacing()), frame = motion.frame_velocity(r, middle);
   double wall[6], sum = 0, stiffness = 0;
   surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
-  for (int d = 0; d < grid.dimension(); ++d) {
+  for (int d = 0; d < box.dimension(); ++d) {
     const double V = frame[d];
     const int link = 2 * d + (V < 0);
-    const double rate = std::fabs(V) * cut.link[link] * grid.spacing()[d];
+    const double rate = std::fabs(V) * cut.link[link] * box.spacing()[d];
     const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
     sum += rate * (upwind - u[0]);
     stiffness += rate;
@@ -35,44 +35,44 @@ double rate_of_what_rests(const Grid &grid, const RigidFaces &faces, const Rigid
 
 }  // namespace
 
-void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
+void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                         double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
-  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
-      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      if (!owned(box, a, cut->i)) continue;
+      const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_of_what_rests(grid, faces, *cut, a, place_of_face(grid, a, cut->i, j, k),
+        out[cut->i] += (1 - cut->share) * rate_of_what_rests(box, faces, *cut, a, place_of_face(box, a, cut->i, j, k),
                                                              time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) {
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i) {
         out[i] = 0;
         if (m) m[i] = 0;
       }
   });
-  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + (faces.travels ? 70 : 5)));
+  scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + (faces.travels ? 70 : 5)));
 }
 
 // By WENO5 a cut face in the wind of a body would take its difference from inside, across the kink of the velocity.
-void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time, double epsilon, double scale,
+void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
                           const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate) {
   VerbScope scope(Verb::rigid);
-  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const Strides s = strides(velocity[a]);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
+      if (!owned(box, a, cut->i)) continue;
       const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion];
       const double *u = velocity[a].row(j, k) + cut->i;
       double wall[6], more = 0;
       surface_velocity(faces, *cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
-      for (int d = 0; d < grid.dimension(); ++d) {
-        const double *v = velocity[d].row(j, k) + cut->i, inverse = 1 / grid.spacing()[d];
+      for (int d = 0; d < box.dimension(); ++d) {
+        const double *v = velocity[d].row(j, k) + cut->i, inverse = 1 / box.spacing()[d];
         const std::ptrdiff_t next = velocity[d].stride(d), back = velocity[d].stride(a);
         const double along = d == a ? u[0] : 0.25 * ((v[0] + v[next]) + (v[-back] + v[next - back]));
         const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
@@ -87,84 +87,84 @@ void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time
       rate[a].row(j, k)[cut->i] += scale * more;
     }
   });
-  scope.flops(cut_faces * (12 + grid.dimension() * 8));
+  scope.flops(cut_faces * (12 + box.dimension() * 8));
 }
 
-void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
-                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
+void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
   VerbScope scope(Verb::rigid);
-  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = velocity_star[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      if (!owned(grid, a, cut->i)) continue;
-      const Viscous rates = viscous_rates(grid, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      if (!owned(box, a, cut->i)) continue;
+      const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
       out[cut->i] = u[cut->i] + cut->share * change;
     }
   });
-  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 7));
+  scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + 7));
 }
 
-std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field) {
+std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const FieldBlock &field) {
   std::vector<double> values;
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid, a, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
+      if (owned(box, a, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
   });
   return values;
 }
 
-void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
+void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values,
                          FieldBlock &field) {
   std::size_t at = 0;
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid, a, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
+      if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
   });
 }
 
-void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity) {
+void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, FieldBlock &velocity) {
   VerbScope scope(Verb::rigid);
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = velocity[a].row(j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
       const RigidBody &body = faces.bodies[run->body];
       const RigidMotion &motion = faces.motions[body.motion];
       const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i)
-        out[i] = motion.moves() ? faces.velocity(a, body, place_of_face(grid, a, i, j, k), grid.spacing(), of_velocity,
-                                                 of_rotation)
-                                : 0;
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i)
+        out[i] = motion.moves()
+                     ? faces.velocity(a, body, place_of_face(box, a, i, j, k), box.spacing(), of_velocity, of_rotation)
+                     : 0;
     }
   });
 }
 
-void open_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field) {
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+void open_faces(const Box &box, const RigidFaces &faces, FieldBlock &field) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
+      if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
   });
-  clear_rigid_faces(grid, faces, field);
+  clear_rigid_faces(box, faces, field);
 }
 
-void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field) {
-  for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+void clear_rigid_faces(const Box &box, const RigidFaces &faces, FieldBlock &field) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = field[a].row(j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.faces_end(a, 0)); ++i) out[i] = 0;
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i) out[i] = 0;
   });
 }
 
-void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity) {
   VerbScope scope(Verb::rigid);
-  const double cut_faces = for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *q = increment[0].row(j, k), factor = dt_over_density / grid.spacing()[a];
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = dt_over_density / box.spacing()[a];
     double *u = velocity[a].row(j, k);
     const std::ptrdiff_t step = increment[0].stride(a);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (const int i = cut->i; owned(grid, a, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
+      if (const int i = cut->i; owned(box, a, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
   });
   scope.flops(cut_faces * 5);
 }

@@ -2,8 +2,10 @@
 // crosses their links, in every viscous stage (docs/method.md, section 19).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
+#include "grid/domain.hpp"
 #include "physics/fluid.hpp"
 
 namespace eulastic {
@@ -15,31 +17,30 @@ struct RklStage;
 /// Advection of cut faces whose neighbour upwind is inside: by the difference between the surface there and the face
 /// ahead, in place of WENO5. To `advection`, -v.grad v of now (may be null), and `scale` times to `rate`, which have
 /// that of WENO5 (`epsilon`); before all below.
-void advect_from_surfaces(const Grid &grid, const RigidFaces &faces, double time, double epsilon, double scale,
+void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
                           const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate);
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
 /// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in
 /// their frame, within a step of dt; faces inside 0.
-void see_rigid_surfaces(const Grid &grid, const RigidFaces &faces, double viscosity, double included, double time,
+void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                         double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
 /// The same of v* = v + dt rate, (7).
-void see_rigid_surfaces_at_once(const Grid &grid, const RigidFaces &faces, double viscosity, double included,
-                                double time, double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
+void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
 /// Values of all owned cut faces, and back: what is added to the field in between does not reach them.
-std::vector<double> cut_face_values(const Grid &grid, const RigidFaces &faces, const FieldBlock &field);
-void set_cut_face_values(const Grid &grid, const RigidFaces &faces, const std::vector<double> &values,
-                         FieldBlock &field);
+std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const FieldBlock &field);
+void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values, FieldBlock &field);
 /// Owned faces inside bodies get the velocity of these at `time`.
-void impose_rigid_motion(const Grid &grid, const RigidFaces &faces, double time, FieldBlock &velocity);
+void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, FieldBlock &velocity);
 
 /// Cut faces, which correct_velocity() has given all of dt/rho grad(increment), get their part of it; one ghost of the
 /// increment.
-void correct_cut_faces(const Grid &grid, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
+void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
                        FieldBlock &velocity);
 /// Scales owned cut faces by how far they are open to the increment; faces inside get 0.
-void open_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
+void open_faces(const Box &box, const RigidFaces &faces, FieldBlock &field);
 /// Owned faces inside bodies get 0.
-void clear_rigid_faces(const Grid &grid, const RigidFaces &faces, FieldBlock &field);
+void clear_rigid_faces(const Box &box, const RigidFaces &faces, FieldBlock &field);
 /// What cut faces see within a step on average: their own velocity, and how fast the surfaces of every motion are.
 struct RigidMeans {
   std::array<std::vector<double>, 3> velocity;  ///< of every component, by the place among RigidFaces::cuts()
@@ -76,14 +77,14 @@ struct RigidLoad {
 /// equation at all owned faces, those inside too, with all of `viscosity` in it, less the body force `force`; one ghost
 /// of velocity and pressure. Where bodies travel without advection, as about a body the fluid goes with it; `carried`:
 /// with what accelerates that fluid. Collective.
-PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+PetscErrorCode measure_rigid_loads(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                    bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
 
 /// What viscosity dissipates at cut faces, where (28) takes the place of the Laplacian, beyond what the compact
 /// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body; less the friction of
 /// faces inside on sides of the box. Collective.
-PetscErrorCode measure_rigid_dissipation(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                          const FieldBlock &velocity, double *dissipation);
 
 }  // namespace eulastic

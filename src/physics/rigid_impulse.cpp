@@ -10,10 +10,10 @@ namespace eulastic {
 namespace {
 
 // In cells: a face on an open side has half of one, on others the side gives the velocity.
-double volume_of_face(const Grid &grid, int a, int i, int j, int k) {
-  const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
-  if (!grid.is_wall(a) || (at > 0 && at < grid.cells()[a])) return 1;
-  return grid.is_open(a, at > 0) ? 0.5 : 0;
+double volume_of_face(const Box &box, int a, int i, int j, int k) {
+  const int at = box.layout().begin[a] + std::array{i, j, k}[a];
+  if (!box.is_wall(a) || (at > 0 && at < box.domain_cells()[a])) return 1;
+  return box.is_open(a, at > 0) ? 0.5 : 0;
 }
 
 // What a link of a cut face sees: the image of a body that its neighbour is in, and the place of the cut face beside
@@ -22,12 +22,12 @@ struct Seen {
   int body;
   Real3 place;
 };
-Seen seen_by(const Grid &grid, const RigidFaces &faces, int a, Int3 face, int link) {
-  const int d = link / 2, step = link % 2 ? 1 : -1, N = grid.cells()[d];
-  Seen seen{0, place_of_face(grid, a, face[0], face[1], face[2])};
+Seen seen_by(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
+  const int d = link / 2, step = link % 2 ? 1 : -1, N = box.domain_cells()[d];
+  Seen seen{0, place_of_face(box, a, face[0], face[1], face[2])};
   const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = seen.place[d] + step;
-  if (!grid.is_wall(d) && neighbour < least) seen.place[d] += N;
-  if (!grid.is_wall(d) && neighbour > least + N - 1) seen.place[d] -= N;
+  if (!box.is_wall(d) && neighbour < least) seen.place[d] += N;
+  if (!box.is_wall(d) && neighbour > least + N - 1) seen.place[d] -= N;
   face[d] += step;
   const RigidFaces::Row row = faces.row(a, face[1], face[2]);
   for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -37,12 +37,12 @@ Seen seen_by(const Grid &grid, const RigidFaces &faces, int a, Int3 face, int li
 
 }  // namespace
 
-RigidImpulse::RigidImpulse(const Grid &grid, const RigidFaces &faces, const Fluid &fluid)
-    : grid_(grid), faces_(faces), fluid_(fluid) {
-  const int cells = grid.owned()[0];
+RigidImpulse::RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid)
+    : domain_(domain), faces_(faces), fluid_(fluid) {
+  const int cells = domain.cells()[0];
   std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
-  for (const Segment &row : grid.rows())
-    for (int d = 0; d < grid.dimension(); ++d) {
+  for (const Segment &row : domain.rows())
+    for (int d = 0; d < domain.dimension(); ++d) {
       for (const int high : {0, 1}) faces.find_beside(d, high > 0, row.j, row.k, &beside[high]);
       for (int i = 0; i < cells; ++i)
         for (const int high : {0, 1})
@@ -52,7 +52,7 @@ RigidImpulse::RigidImpulse(const Grid &grid, const RigidFaces &faces, const Flui
   for (const RigidFootprint &at : faces.footprints)
     contacts_.push_back({at.direction, at.cell[0], at.cell[1], at.cell[2], at.body, at.high ? at.more : -at.more});
   pressure_.resize(contacts_.size());
-  for (int a = 0; a < grid.dimension(); ++a) lacks_[a].resize(faces.cuts(a).size());
+  for (int a = 0; a < domain.dimension(); ++a) lacks_[a].resize(faces.cuts(a).size());
 }
 
 std::size_t RigidImpulse::bytes() const {
@@ -63,10 +63,10 @@ std::size_t RigidImpulse::bytes() const {
 
 RigidMeans RigidImpulse::means_of(double time, const FieldBlock &velocity) const {
   RigidMeans means;
-  for (int a = 0; a < grid_.dimension(); ++a) means.velocity[a].resize(faces_.cuts(a).size());
-  for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for (int a = 0; a < domain_.dimension(); ++a) means.velocity[a].resize(faces_.cuts(a).size());
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid_, a, cut->i)) means.velocity[a][index(a, *cut)] = velocity[a](cut->i, j, k);
+      if (owned(domain_, a, cut->i)) means.velocity[a][index(a, *cut)] = velocity[a](cut->i, j, k);
   });
   for (const RigidMotion &motion : faces_.motions)
     means.factors.push_back({motion.of_velocity.at(time), motion.of_rotation.at(time)});
@@ -80,10 +80,10 @@ void RigidImpulse::begin(double time, double force_time, const FieldBlock &veloc
 }
 
 void RigidImpulse::add_prediction(double dt, const FieldBlock &velocity, const FieldBlock &velocity_star) {
-  for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (const int i = cut->i; owned(grid_, a, i))
+      if (const int i = cut->i; owned(domain_, a, i))
         lacks_[a][index(a, *cut)] += (1 / cut->share - 1) * (after[i] - before[i]) / dt;
   });
 }
@@ -97,18 +97,18 @@ void RigidImpulse::add_increment(const FieldBlock &increment, bool partly) {
   for (std::size_t n = 0; n < contacts_.size(); ++n)
     pressure_[n] += increment[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
   if (!partly) return;
-  for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *q = increment[0].row(j, k), factor = 1 / (fluid_.density * grid_.spacing()[a]);
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = 1 / (fluid_.density * domain_.spacing()[a]);
     const std::ptrdiff_t step = increment[0].stride(a);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (const int i = cut->i; owned(grid_, a, i))
+      if (const int i = cut->i; owned(domain_, a, i))
         lacks_[a][index(a, *cut)] -= (1 - cut->open) * factor * (q[i] - q[i - step]);
   });
 }
 
 // `place` in cells, of a force along a.
 void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSums *sums) const {
-  const Real3 r = RigidFaces::arm(faces_.bodies[body], place, grid_.spacing());
+  const Real3 r = RigidFaces::arm(faces_.bodies[body], place, domain_.spacing());
   const int at = 6 * faces_.bodies[body].index;
   Real3 f{};
   f[a] = push;
@@ -123,23 +123,23 @@ void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSu
 // the surface. Inside, the velocity is linear: the other links of the neighbour take what one beyond it would.
 void RigidImpulse::add_cut(const RigidMeans &means, int a, const RigidFaces::Cut &cut, int j, int k,
                            ExactSums *sums) const {
-  const double volume = volume_of_face(grid_, a, cut.i, j, k);
+  const double volume = volume_of_face(domain_, a, cut.i, j, k);
   if (volume == 0) return;
-  const double mass = fluid_.density * grid_.cell_volume() * volume, nu = fluid_.kinematic_viscosity(),
+  const double mass = fluid_.density * domain_.cell_volume() * volume, nu = fluid_.kinematic_viscosity(),
                u = means.velocity[a][index(a, cut)];
   const auto &of_body = means.factors[faces_.bodies[cut.body].motion];
   double wall[6], lacks = lacks_[a][index(a, cut)];
   surface_velocity(faces_, cut, a, of_body[0], of_body[1], wall);
-  for (int link = 0; link < 2 * grid_.dimension(); ++link) {
+  for (int link = 0; link < 2 * domain_.dimension(); ++link) {
     if (!(cut.walls >> link & 1U)) continue;
-    const auto [body, here] = seen_by(grid_, faces_, a, {cut.i, j, k}, link);
+    const auto [body, here] = seen_by(domain_, faces_, a, {cut.i, j, k}, link);
     Real3 there = here;
     there[link / 2] += link % 2 ? 1 : -1;
     const auto given = [&, body = body](const Real3 &place) {
       const auto &[along, turning] = means.factors[faces_.bodies[body].motion];
-      return faces_.velocity(a, faces_.bodies[body], place, grid_.spacing(), along, turning);
+      return faces_.velocity(a, faces_.bodies[body], place, domain_.spacing(), along, turning);
     };
-    const double h = grid_.spacing()[link / 2], rate = nu / (h * h);
+    const double h = domain_.spacing()[link / 2], rate = nu / (h * h);
     lacks += rate * (given(there) - u) - nu * cut.link[link] * (wall[link] - u);
     add(body, a, there, mass * rate * (u - given(here)), sums);
     add(body, a, here, mass * lacks, sums);
@@ -152,15 +152,15 @@ PetscErrorCode RigidImpulse::sum(const RigidMeans &means, std::vector<double> *t
   ExactSums sums(6 * faces_.count);
   for (std::size_t n = 0; n < contacts_.size(); ++n) {
     const Contact &at = contacts_[n];  // arms along d are those of forces along d, which make no torque
-    add(at.body, at.d, place_of_face(grid_, at.d, at.i, at.j, at.k),
-        at.weight * pressure_[n] * grid_.cell_volume() / grid_.spacing()[at.d], &sums);
+    add(at.body, at.d, place_of_face(domain_, at.d, at.i, at.j, at.k),
+        at.weight * pressure_[n] * domain_.cell_volume() / domain_.spacing()[at.d], &sums);
   }
-  for_rigid_rows(grid_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(grid_, a, cut->i)) add_cut(means, a, *cut, j, k, &sums);
+      if (owned(domain_, a, cut->i)) add_cut(means, a, *cut, j, k, &sums);
   });
   total->assign(6 * faces_.count, 0);
-  PetscCall(sums.reduce(grid_.comm(), total->data()));
+  PetscCall(sums.reduce(domain_.comm(), total->data()));
   PetscFunctionReturn(0);
 }
 

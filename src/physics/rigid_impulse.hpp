@@ -2,6 +2,8 @@
 // after it (docs/method.md, section 19).
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "physics/rigid.hpp"
 
 #include <array>
@@ -14,7 +16,7 @@ class ExactSums;
 class RigidImpulse {
 public:
   /// `faces` of bodies that do not travel; must outlive it.
-  RigidImpulse(const Grid &grid, const RigidFaces &faces, const Fluid &fluid);
+  RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid);
 
   /// Begins a step: the velocity is that of `time`, body forces are those of `force_time`.
   void begin(double time, double force_time, const FieldBlock &velocity);
@@ -44,7 +46,7 @@ private:
   PetscErrorCode sum(const RigidMeans &means, std::vector<double> *total) const;
   std::size_t index(int a, const RigidFaces::Cut &cut) const { return &cut - faces_.cuts(a).data(); }
 
-  const Grid &grid_;
+  const Domain &domain_;
   const RigidFaces &faces_;
   Fluid fluid_;
   Real3 force_{};  // per mass

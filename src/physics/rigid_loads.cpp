@@ -1,6 +1,7 @@
 // What the fluid exerts on rigid bodies of a scene in which some travel.
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 #include "physics/rigid.hpp"
 #include "physics/rigid_rows.hpp"
 
@@ -12,9 +13,9 @@ namespace {
 // Sums over the faces that bodies are at, of what they push.
 class RigidLoadSums {
 public:
-  RigidLoadSums(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time, bool carried,
+  RigidLoadSums(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time, bool carried,
                 const FieldBlock &velocity, const FieldBlock &pressure, const FieldBlock &rate, const Real3 &force)
-      : grid_(grid),
+      : domain_(domain),
         faces_(faces),
         fluid_(fluid),
         time_(time),
@@ -23,26 +24,26 @@ public:
         pressure_(pressure),
         rate_(rate),
         force_(force),
-        mass_(fluid.density * grid.cell_volume()),
+        mass_(fluid.density * domain.cell_volume()),
         sums_(6 * faces.count) {}
 
   void add_row(int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) add_cut(a, *cut, j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, grid_.faces_end(a, 0)); ++i)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain_.faces_end(a, 0)); ++i)
         add(run->body, a, i, j, k, push_of_inner(run->body, a, i, j, k));
   }
   /// Force and torque of each body, without what accelerates the body itself.
   PetscErrorCode reduce(std::vector<double> *total) {
     PetscFunctionBeginUser;
     total->assign(6 * faces_.count, 0);
-    PetscCall(sums_.reduce(grid_.comm(), total->data()));
+    PetscCall(sums_.reduce(domain_.comm(), total->data()));
     PetscFunctionReturn(0);
   }
 
 private:
   Real3 arm(int body, int a, int i, int j, int k) const {
-    return RigidFaces::arm(faces_.bodies[body], place_of_face(grid_, a, i, j, k), grid_.spacing());
+    return RigidFaces::arm(faces_.bodies[body], place_of_face(domain_, a, i, j, k), domain_.spacing());
   }
   const RigidMotion &motion(int body) const { return faces_.motions[faces_.bodies[body].motion]; }
   double acceleration(int body, int a, int i, int j, int k) const {
@@ -63,33 +64,33 @@ private:
 
   double push_of_inner(int body, int a, int i, int j, int k) const {
     const double given = acceleration(body, a, i, j, k) +
-                         fluid_.kinematic_viscosity() * laplacian_of_sides(grid_, a, i, j, k, velocity_[a]);
-    const int side = side_of_face(grid_, a, i, j, k);
-    const double volume = volume_of_face(grid_, a, side);
+                         fluid_.kinematic_viscosity() * laplacian_of_sides(domain_, a, i, j, k, velocity_[a]);
+    const int side = side_of_face(domain_, a, i, j, k);
+    const double volume = volume_of_face(domain_, a, side);
     const double inside = volume > 0 ? volume * mass_ * (rate_[a](i, j, k) - force_[a] - given) : 0;
     if (side == 0) return inside;
     const double *p = &pressure_[0](i, j, k);
-    return inside + side * grid_.cell_volume() / grid_.spacing()[a] * 0.5 * (p[0] + p[-pressure_[0].stride(a)]);
+    return inside + side * domain_.cell_volume() / domain_.spacing()[a] * 0.5 * (p[0] + p[-pressure_[0].stride(a)]);
   }
 
   void add_cut(int a, const RigidFaces::Cut &cut, int j, int k) {
     const int i = cut.i;
-    if (!owned(grid_, a, i)) return;
-    const double volume = volume_of_face(grid_, a, side_of_face(grid_, a, i, j, k));
+    if (!owned(domain_, a, i)) return;
+    const double volume = volume_of_face(domain_, a, side_of_face(domain_, a, i, j, k));
     if (volume == 0) return;
     const Viscous rates =
-        viscous_rates(grid_, faces_, cut, a, time_, velocity_[a].row(j, k) + i, strides(velocity_[a]));
+        viscous_rates(domain_, faces_, cut, a, time_, velocity_[a].row(j, k) + i, strides(velocity_[a]));
     double push = volume * mass_ * fluid_.kinematic_viscosity() * (rates.regular - rates.cut);
     if (motion(cut.body).travels()) {
       const double *p = pressure_[0].row(j, k) + i;
-      const double slope = (p[0] - p[-pressure_[0].stride(a)]) / (grid_.spacing()[a] * fluid_.density);
+      const double slope = (p[0] - p[-pressure_[0].stride(a)]) / (domain_.spacing()[a] * fluid_.density);
       const double lacks = rate_[a](i, j, k) - force_[a] - acceleration(cut.body, a, i, j, k);
       push = cut.share * push + volume * mass_ * ((1 - cut.share) * lacks + (cut.open - cut.share) * slope);
     }
     add(cut.body, a, i, j, k, push);
   }
 
-  const Grid &grid_;
+  const Domain &domain_;
   const RigidFaces &faces_;
   const Fluid &fluid_;
   double time_;
@@ -107,15 +108,15 @@ private:
 // surface: their pressure and friction are not those of the fluid on it. Beside a body that travels a cut face goes
 // with the body but for its share, and what is between the stair and the surface is accelerated: as if the stair had
 // the body's volume. Power: without what the body's own acceleration takes, as kinetic energy of the box counts it.
-PetscErrorCode measure_rigid_loads(const Grid &grid, const RigidFaces &faces, const Fluid &fluid, double time,
+PetscErrorCode measure_rigid_loads(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                    bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
                                    const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
-  RigidLoadSums sums(grid, faces, fluid, time, carried, velocity, pressure, rate, force);
-  const double cut_faces =
-      for_rigid_rows(grid, faces, [&](int a, const RigidFaces::Row &row, int j, int k) { sums.add_row(a, row, j, k); });
-  scope.flops(cut_faces * (viscous_rates_flops(grid.dimension()) + 20));
+  RigidLoadSums sums(domain, faces, fluid, time, carried, velocity, pressure, rate, force);
+  const double cut_faces = for_rigid_rows(
+      domain, faces, [&](int a, const RigidFaces::Row &row, int j, int k) { sums.add_row(a, row, j, k); });
+  scope.flops(cut_faces * (viscous_rates_flops(domain.dimension()) + 20));
   std::vector<double> total;
   PetscCall(sums.reduce(&total));
   loads->assign(faces.count, {});

@@ -18,18 +18,18 @@ inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut
   for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
 }
 
-inline double regular_laplacian(const Grid &grid, const double *u, const Strides &s) {
-  const InverseSquares h = grid.inverse_squares();
-  return grid.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
+inline double regular_laplacian(const Box &box, const double *u, const Strides &s) {
+  const InverseSquares h = box.inverse_squares();
+  return box.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
 }
 
 // visit(component, row, j, k) for all owned rows that a body is in or beside; returns how many cut faces they have.
 template <class Visit>
-double for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &visit) {
+double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visit) {
   double cut_faces = 0;
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (int k = 0; k < grid.faces_end(a, 2); ++k)
-      for (int j = 0; j < grid.faces_end(a, 1); ++j) {
+  for (int a = 0; a < box.dimension(); ++a)
+    for (int k = 0; k < box.faces_end(a, 2); ++k)
+      for (int j = 0; j < box.faces_end(a, 1); ++j) {
         const RigidFaces::Row row = faces.row(a, j, k);
         if (row.empty()) continue;
         visit(a, row, j, k);
@@ -39,31 +39,31 @@ double for_rigid_rows(const Grid &grid, const RigidFaces &faces, const Visit &vi
 }
 
 // -1 on the low side of the box that is normal to a, 1 on the high one, else 0.
-inline int side_of_face(const Grid &grid, int a, int i, int j, int k) {
-  if (!grid.is_wall(a)) return 0;
-  const int at = grid.layout().begin[a] + std::array{i, j, k}[a];
-  return at == 0 ? -1 : at == grid.cells()[a] ? 1 : 0;
+inline int side_of_face(const Box &box, int a, int i, int j, int k) {
+  if (!box.is_wall(a)) return 0;
+  const int at = box.layout().begin[a] + std::array{i, j, k}[a];
+  return at == 0 ? -1 : at == box.domain_cells()[a] ? 1 : 0;
 }
 
 // In cells: a face on an open side has half of one, on others the side gives the velocity.
-inline double volume_of_face(const Grid &grid, int a, int side) {
-  return side == 0 ? 1 : grid.is_open(a, side > 0) ? 0.5 : 0;
+inline double volume_of_face(const Box &box, int a, int side) {
+  return side == 0 ? 1 : box.is_open(a, side > 0) ? 0.5 : 0;
 }
 
 // Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
-inline double laplacian_of_sides(const Grid &grid, int a, int i, int j, int k, ConstView u) {
+inline double laplacian_of_sides(const Box &box, int a, int i, int j, int k, ConstView u) {
   double sum = 0;
-  for (int d = 0; d < grid.dimension(); ++d) {
-    if (d == a || !grid.is_wall(d)) continue;
-    const int at = grid.layout().begin[d] + std::array{i, j, k}[d];
-    const double *here = &u(i, j, k), square = grid.spacing()[d] * grid.spacing()[d];
+  for (int d = 0; d < box.dimension(); ++d) {
+    if (d == a || !box.is_wall(d)) continue;
+    const int at = box.layout().begin[d] + std::array{i, j, k}[d];
+    const double *here = &u(i, j, k), square = box.spacing()[d] * box.spacing()[d];
     if (at == 0) sum += (here[-u.stride(d)] - here[0]) / square;
-    if (at == grid.cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
+    if (at == box.domain_cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
   }
   return sum;
 }
 
-inline bool owned(const Grid &grid, int a, int i) { return i >= 0 && i < grid.faces_end(a, 0); }
+inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.faces_end(a, 0); }
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 
@@ -71,12 +71,12 @@ inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 struct Viscous {
   double cut, regular;
 };
-inline Viscous viscous_rates(const Grid &grid, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
+inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
                              const double *u, const Strides &s) {
   const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
   double wall[6];
   surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
-  return {cut.laplacian(u, s, grid.dimension(), wall), regular_laplacian(grid, u, s)};
+  return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
 }
 
 }  // namespace eulastic

@@ -35,27 +35,27 @@ EULASTIC_CLONES void smooth_row(int dim, ConstView q, int j, int k, int begin, i
 }
 
 // Force on a face takes the row before, and that what is around.
-bool cleared_around(const Grid &grid, const OccupiedRows &rows, int j, int k) {
-  const int reach = half + 1, reach_z = grid.dimension() == 3 ? reach : 0;
+bool cleared_around(const Box &box, const OccupiedRows &rows, int j, int k) {
+  const int reach = half + 1, reach_z = box.dimension() == 3 ? reach : 0;
   for (int m = -reach_z; m <= reach_z; ++m)
     for (int o = -reach; o <= reach; ++o)
       if (!rows.idle(j + o, k + m)) return true;
   return false;
 }
 
-void clear_around(const Grid &grid, const OccupiedRows &rows, int ghosts, View field) {
-  const Int3 &n = grid.owned();
-  const int dim = grid.dimension(), width = rows.inside() ? 0 : ghosts, deep = dim == 3 ? ghosts : 0;
+void clear_around(const Box &box, const OccupiedRows &rows, int ghosts, View field) {
+  const Int3 &n = box.cells();
+  const int dim = box.dimension(), width = rows.inside() ? 0 : ghosts, deep = dim == 3 ? ghosts : 0;
   const auto near = [&](int j, int k) {
     if (width > 0 && (j < width || j >= n[1] - width || (dim == 3 && (k < width || k >= n[2] - width)))) return true;
-    return cleared_around(grid, rows, j, k);
+    return cleared_around(box, rows, j, k);
   };
   for (int k = -deep; k < n[2] + deep; ++k)
     for (int j = -ghosts; j < n[1] + ghosts; ++j) {
       double *row = field.row(j, k);
       if (near(j, k)) {
         std::fill(row - ghosts, row + n[0] + ghosts, 0.0);
-      } else if (width > 0 && grid.processors(0) > 1) {
+      } else if (width > 0 && !box.spans(0)) {
         std::fill(row, row + std::min(width, n[0]), 0.0);
         std::fill(row + std::max(n[0] - width, 0), row + n[0], 0.0);
       }

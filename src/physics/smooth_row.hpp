@@ -15,7 +15,7 @@ void smooth_row(int dim, ConstView q, int j, int k, int begin, int end, double *
 /// 0 where smooth_row() reads around rows that are not idle, and, where neighbours may ask for `ghosts` of this rank's
 /// values, in what they get.
 /// cleared_around(): whether a row is one of the former.
-bool cleared_around(const Grid &grid, const OccupiedRows &rows, int j, int k);
-void clear_around(const Grid &grid, const OccupiedRows &rows, int ghosts, View field);
+bool cleared_around(const Box &box, const OccupiedRows &rows, int j, int k);
+void clear_around(const Box &box, const OccupiedRows &rows, int ghosts, View field);
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 // The solid fraction by WENO5, and where solid is.
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
+#include "grid/box.hpp"
 #include "grid/row_scratch.hpp"
 #include "kernels/stencils.hpp"
 #include "kernels/weno5.hpp"
@@ -15,7 +16,7 @@ namespace {
 constexpr double epsilon = 1e-6;  // WENO5: phi is of order 1
 
 struct Move {
-  const Grid *grid;
+  const Box *box;
   double dt;
   const FieldBlock *velocity;
   Real3 inverse;
@@ -24,10 +25,10 @@ struct Move {
 template <int Dim>
 EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
                                  FieldBlock &out, RowScratch &scratch) {
-  const Int3 n = t.grid->owned();
+  const Int3 n = t.box->cells();
   const ConstView phi = phase.fraction[0];
   const double dt = t.dt;
-  const int ghosts = t.grid->layout().ghosts[0];
+  const int ghosts = t.box->layout().ghosts[0];
   const FieldBlock &v = *t.velocity;
   double *rate = scratch.row(0);
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
@@ -64,31 +65,31 @@ EULASTIC_CLONES void advect_3d(const Move &t, const RowPart &part, const Phase &
 
 }  // namespace
 
-PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+PetscErrorCode advect_fraction(const Box &box, double dt, const FieldBlock &velocity, const Phase &phase,
                                const OccupiedRows &next_rows, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  const Real3 &h = grid.spacing();
-  const Move terms{&grid, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
-  in_row_parts(grid, [&](const RowPart &part) {
-    RowScratch scratch(grid, 1);
-    (grid.dimension() == 2 ? advect_2d : advect_3d)(terms, part, phase, next_rows, next, scratch);
+  const Real3 &h = box.spacing();
+  const Move terms{&box, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
+  in_row_parts(box, [&](const RowPart &part) {
+    RowScratch scratch(box, 1);
+    (box.dimension() == 2 ? advect_2d : advect_3d)(terms, part, phase, next_rows, next, scratch);
   });
-  scope.flops(double(phase.rows.cells()) * (grid.dimension() * (kernels::weno5_flops + 5) + 2));
+  scope.flops(double(phase.rows.cells()) * (box.dimension() * (kernels::weno5_flops + 5) + 2));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode find_solid(const Grid &grid, Phase &phase) {
+PetscErrorCode find_solid(const Box &box, Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const ConstView phi = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
-  phase.tensor.evolving.build(grid, phi, phase.rows, rule.centre, 1, 0);
+  phase.tensor.evolving.build(box, phi, phase.rows, rule.centre, 1, 0);
   if (rule.layers > 0)
-    phase.tensor.strained.build(grid, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
+    phase.tensor.strained.build(box, phi, phase.rows, rule.centre, rule.layers + 1, rule.layers);
   else
     phase.tensor.strained = phase.tensor.evolving;
-  phase.tensor.stressed.build(grid, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
+  phase.tensor.stressed.build(box, phi, phase.rows, rule.stressed, rule.reach, rule.reach);
   PetscFunctionReturn(0);
 }
 

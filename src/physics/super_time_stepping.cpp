@@ -13,9 +13,9 @@ namespace eulastic {
 namespace {
 
 // Whether any phase stresses an owned row.
-std::vector<char> stressed_rows(const Grid &grid, const std::vector<Phase> &phases) {
+std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases) {
   std::vector<char> stressed;
-  for (const Segment &row : grid.rows()) {
+  for (const Segment &row : box.rows()) {
     const auto stresses = [&](const Phase &phase) {
       return !phase.tensor.stressed.idle(row.j, row.k) ||
              (phase.material.surface_tension > 0 && !phase.rows.idle(row.j, row.k));
@@ -101,10 +101,10 @@ struct StageSides : Sides {
   bool fixed[3][2];  // here, and the normal velocity on it is given
   bool open[3][2];   // here, and it is an unknown
   bool any_beside;   // anything but closed sides that stay so: beside_row() has something to do
-  const Grid *grid;
-  const BoxSides *box;
+  const Box *box;
+  const BoxSides *box_sides;
 
-  StageSides(const Grid &g, const BoxSides &b) : Sides(g), any_beside(false), grid(&g), box(&b) {
+  StageSides(const Box &g, const BoxSides &b) : Sides(g), any_beside(false), box(&g), box_sides(&b) {
     for (int d = 0; d < 3; ++d) {
       for (const bool high : {false, true}) {
         open[d][high] = wall[d][high] && g.is_open(d, high);
@@ -125,7 +125,7 @@ EULASTIC_INLINE bool is_on_wall(const StageSides &sides, int a, const Segment &r
 // inflow side, the mirror image about an open one.
 [[gnu::noinline]] void beside_row(const StageSides &sides, const double (&inflow)[3][2], int a, View w,
                                   const Segment &at) {
-  const Int3 &n = sides.grid->owned();
+  const Int3 &n = sides.box->cells();
   double *row = w.row(at.j, at.k);
   const int place[3] = {0, at.j, at.k};
   for (const bool high : {false, true}) {
@@ -134,13 +134,13 @@ EULASTIC_INLINE bool is_on_wall(const StageSides &sides, int a, const Segment &r
     if (sides.open[a][high] && a == 0) row[face + outward] = row[inside];
     if (sides.open[a][high] && a != 0 && place[a] == face)
       for (int i = at.i_begin; i < at.i_end; ++i) row[i + outward] = row[i - outward];
-    const Side &side = (*sides.box)[a][high];
+    const Side &side = (*sides.box_sides)[a][high];
     if (!sides.fixed[a][high] || side.kind != SideKind::inflow || inflow[a][high] == 0) continue;
-    if (a == 0) set_inflow_row(*sides.grid, side, a, high, inflow[a][high], at, w);
+    if (a == 0) set_inflow_row(*sides.box, side, a, high, inflow[a][high], at, w);
     if (a != 0 && place[a] == inside) {
       Segment face_row = at;
       (a == 1 ? face_row.j : face_row.k) = face;
-      set_inflow_row(*sides.grid, side, a, high, inflow[a][high], face_row, w);
+      set_inflow_row(*sides.box, side, a, high, inflow[a][high], face_row, w);
     }
   }
 }
@@ -181,10 +181,9 @@ EULASTIC_CLONES void end_row(const StageFields &f, int a, ConstView w, const Seg
 // Stages alternate: the first of a pass reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next the other
 // way. Rows ahead are asked for with the first.
 template <int Dim>
-EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const InverseSquares &h,
-                                    const StageSides &sides, const StageFields &f, const StagePass &order,
-                                    const StagePass::Task &task) {
-  const Int3 n = grid.owned();
+EULASTIC_INLINE void stages_of_task(const Box &box, const Pass &pass, const InverseSquares &h, const StageSides &sides,
+                                    const StageFields &f, const StagePass &order, const StagePass::Task &task) {
+  const Int3 n = box.cells();
   const int a = task.field;
   order.go<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
     // Faces beyond the last cells are those of the component normal to them.
@@ -226,19 +225,19 @@ EULASTIC_INLINE void stages_of_task(const Grid &grid, const Pass &pass, const In
   });
 }
 
-EULASTIC_CLONES void stages_2d(const Grid &grid, const Pass &pass, const InverseSquares &h, const StageSides &sides,
+EULASTIC_CLONES void stages_2d(const Box &box, const Pass &pass, const InverseSquares &h, const StageSides &sides,
                                const StageFields &f, const StagePass &order, const StagePass::Task &task) {
-  stages_of_task<2>(grid, pass, h, sides, f, order, task);
+  stages_of_task<2>(box, pass, h, sides, f, order, task);
 }
-EULASTIC_CLONES void stages_3d(const Grid &grid, const Pass &pass, const InverseSquares &h, const StageSides &sides,
+EULASTIC_CLONES void stages_3d(const Box &box, const Pass &pass, const InverseSquares &h, const StageSides &sides,
                                const StageFields &f, const StagePass &order, const StagePass::Task &task) {
-  stages_of_task<3>(grid, pass, h, sides, f, order, task);
+  stages_of_task<3>(box, pass, h, sides, f, order, task);
 }
 
 // No flow through sides, but what stages find on open ones.
-void close_walls(const Grid &grid, FieldBlock &velocity) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    if (grid.is_wall(d)) close_wall_faces(grid, velocity[d], d);
+void close_walls(const Box &box, FieldBlock &velocity) {
+  for (int d = 0; d < box.dimension(); ++d)
+    if (box.is_wall(d)) close_wall_faces(box, velocity[d], d);
 }
 
 }  // namespace
@@ -253,10 +252,10 @@ int rkl_stages(double dt, double dt_explicit) {
 namespace {
 
 // Stage s of a pass reads what is behind sides at a time `now`, less what was there at the start.
-void set_sides(const BoxSides &box, double start, double now, int s, Pass *pass) {
+void set_sides(const BoxSides &box_sides, double start, double now, int s, Pass *pass) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
-      const Side &at = box[d][side];
+      const Side &at = box_sides[d][side];
       const Real3 u = at.motion.at(start), v = at.motion.at(now);
       for (int a = 0; a < 3; ++a) pass->twice_wall[s][a][d][side] = 2 * (v[a] - u[a]);
       pass->inflow[s][d][side] = at.kind == SideKind::inflow ? at.given.at(now) - at.given.at(start) : 0;
@@ -265,27 +264,27 @@ void set_sides(const BoxSides &box, double start, double now, int s, Pass *pass)
 
 }  // namespace
 
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, const BoxSides &box_sides,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
                                FieldBlock &velocity_star, const RigidFaces *rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  const InverseSquares h = grid.inverse_squares();
-  const StageSides sides(grid, box);
-  const int depth = StagePass::depth(grid, sides, 2, deepest);
+  const InverseSquares h = domain.inverse_squares();
+  const StageSides sides(domain, box_sides);
+  const int depth = StagePass::depth(domain, sides, 2, deepest);
   std::vector<char> stressed;
   for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
-    if (*field) close_walls(grid, *field);
+    if (*field) close_walls(domain, *field);
   std::vector<WantedGhosts> forces{{&work.rate, depth, nullptr, false}};
   if (work.slope) forces.push_back({&work.slope, depth, nullptr, false});
-  if (work.slope) stressed = stressed_rows(grid, phases);
+  if (work.slope) stressed = stressed_rows(domain, phases);
   PetscCall(exchange.update(forces));
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
-      const SideKind kind = box[d][side].kind;
+      const SideKind kind = box_sides[d][side].kind;
       pass.image[d][side] = kind == SideKind::wall || kind == SideKind::inflow ? -1 : 1;
     }
   pass.first = rkl_first_step(stages, dt);
@@ -301,7 +300,7 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     for (int s = 0; s < pass.depth; ++s) {
       if (rigid) rigid_stages.emplace_back(*rigid, 1, time, time_of(j + s - 1), weights[j + s], means);
       pass.stage[s] = rkl_stage_coefficients(j + s, stages, dt, kinematic_viscosity);
-      set_sides(box, time, time_of(j + s - 1), s, &pass);
+      set_sides(box_sides, time, time_of(j + s - 1), s, &pass);
     }
     if (!pass.starts) {
       std::vector<WantedGhosts> read{{&work.now, pass.depth, nullptr, false}};
@@ -311,15 +310,16 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
     const StageFields fields{&work.rate,     &work.slope,  work.slope ? &stressed : nullptr,
                              &work.now,      &work.before, &velocity,
                              &velocity_star, rigid,        &rigid_stages};
-    const StagePass order(grid, sides, pass.depth + pass.starts, grid.dimension());
+    const StagePass order(domain, sides, pass.depth + pass.starts, domain.dimension());
     order.for_tasks([&](const StagePass::Task &task) {
-      (grid.dimension() == 2 ? stages_2d : stages_3d)(grid, pass, h, sides, fields, order, task);
+      (domain.dimension() == 2 ? stages_2d : stages_3d)(domain, pass, h, sides, fields, order, task);
     });
     if (pass.depth % 2) work.now.swap(work.before);
     j += pass.depth;
   } while (!pass.ends);
-  scope.flops(grid.owned_count() * grid.dimension() *
-              ((stages - 1) * (grid.dimension() == 2 ? kernels::rkl_stage_flops_2d : kernels::rkl_stage_flops_3d) + 3));
+  scope.flops(
+      domain.cell_count() * domain.dimension() *
+      ((stages - 1) * (domain.dimension() == 2 ? kernels::rkl_stage_flops_2d : kernels::rkl_stage_flops_3d) + 3));
   PetscFunctionReturn(0);
 }
 

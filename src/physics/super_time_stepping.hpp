@@ -2,10 +2,12 @@
 // equation. Only neighbour exchange, no global sums.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 namespace eulastic {
 
@@ -27,7 +29,7 @@ struct SuperTimeStepping {
 /// would leave an error of order dt^1.5. M_1 vanishes where no phase is stressed. One stage is plain explicit Euler
 /// and needs no `before`. `rigid` may be null; `rate` and slope have seen its surfaces. `means` (may be null) begin
 /// with what is at `time` and become those that the viscous term has acted with.
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, const BoxSides &box_sides,
                                double kinematic_viscosity, double time, double dt, int stages,
                                const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
                                FieldBlock &velocity_star, const RigidFaces *rigid = nullptr,

@@ -2,9 +2,11 @@
 // and what lives on the surface extended from the cells nearest to it; docs/method.md, section 18.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/box.hpp"
 
 namespace eulastic {
 
@@ -27,8 +29,8 @@ public:
   };
 
   /// `sides`: of the box; they must outlive this.
-  SurfaceCells(const Grid &grid, GhostExchange &exchange, const BoxSides &sides)
-      : grid_(&grid), exchange_(&exchange), sides_(&sides) {}
+  SurfaceCells(const Box &box, GhostExchange &exchange, const BoxSides &sides)
+      : box_(&box), exchange_(&exchange), sides_(&sides) {}
   /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
   /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
@@ -42,7 +44,7 @@ public:
   /// Of a point so many cells from the centre of one of all(), a cell at most; `fields` as find() left them.
   double distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const;
   /// Which of all() lies at an offset from the origin; -1: none.
-  int number(std::ptrdiff_t at) const { return number_[grid_->layout().origin + at]; }
+  int number(std::ptrdiff_t at) const { return number_[box_->layout().origin + at]; }
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
   PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
   /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one
@@ -50,7 +52,7 @@ public:
   PetscErrorCode find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const;
 
 private:
-  Grid::Range near_box(const Phase &phase, int d, int ghosts) const;
+  Box::Range near_box(const Phase &phase, int d, int ghosts) const;
   bool is_beside_solid_side(const Phase &phase) const;
   PetscErrorCode find_level(const Phase &phase, FieldBlock &fields);
   void find_nearest(const Phase &phase, ConstView levels);
@@ -58,7 +60,7 @@ private:
   void describe(const FieldBlock &fields, Cell *cell) const;
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
 
-  const Grid *grid_;
+  const Box *box_;
   GhostExchange *exchange_;
   const BoxSides *sides_;
   std::vector<Cell> cells_;

@@ -22,10 +22,10 @@ struct Terms {
   const double *B[6], *phi, *gradient[3], *rate;
   double G, stiffening, mu, more, wave, kink, fading;  // 1/k = (mu + more (1 - phi))/G + wave/sqrt(G)
 
-  Terms(const Grid &grid, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured) {
-    const int dimension = grid.dimension();
-    const Layout &layout = grid.layout();
-    const Real3 &h = grid.spacing();
+  Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured) {
+    const int dimension = box.dimension();
+    const Layout &layout = box.layout();
+    const Real3 &h = box.spacing();
     const double shortest = *std::min_element(h.begin(), h.begin() + dimension), rho = step.fluid.density;
     const double across = std::sqrt(rho * phase.material.shear_modulus) * shortest;
     stride[0] = 1;
@@ -240,9 +240,9 @@ struct FullPoints {
 }  // namespace
 
 template <int Dim>
-void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const Phase &phase,
-                                const FieldBlock &measured, Piece piece, Location *location) const {
-  const Terms terms(grid, step, phase, measured);
+void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured,
+                                Piece piece, Location *location) const {
+  const Terms terms(box, step, phase, measured);
   const bool centre = location->a == location->b;
   const int own = static_cast<int>(location - locations_.data()), components = centre ? Dim : 1;
   const int first = centre ? 0 : Dim + own - 1;
@@ -289,12 +289,12 @@ void SurfaceCorrection::correct(const Grid &grid, const SurfaceStep &step, const
   work();
 }
 
-PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity,
+PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step, const FieldBlock &velocity,
                                         Phase &phase, FieldBlock &work) {
   PetscFunctionBeginUser;
   if (!phase.material.elastic()) PetscFunctionReturn(0);
   VerbScope scope(Verb::left_cauchy_green);
-  const int dimension = grid.dimension(), team = row_parts(grid);
+  const int dimension = box.dimension(), team = row_parts(box);
   if (locations_.empty()) {
     locations_.emplace_back();
     for (const TensorComponent &c : tensor_components(dimension))
@@ -307,18 +307,18 @@ PetscErrorCode SurfaceCorrection::apply(const Grid &grid, const SurfaceStep &ste
       }
   }
   in_parallel(team, static_cast<int>(locations_.size()) - 1,
-              [&](int l) { find_points(grid, step.sides, phase, &locations_[l + 1]); });
-  find_points(grid, step.sides, phase, &locations_[0]);  // by the edges
-  band_.build_band(grid, phase.fraction[0], phase.rows, 1);
-  measure_centres(grid, velocity, phase.fraction[0], work);
+              [&](int l) { find_points(box, step.sides, phase, &locations_[l + 1]); });
+  find_points(box, step.sides, phase, &locations_[0]);  // by the edges
+  band_.build_band(box, phase.fraction[0], phase.rows, 1);
+  measure_centres(box, velocity, phase.fraction[0], work);
   in_parallel(team, team, [&](int part) {
     for (Location &location : locations_) {
       const Piece piece(location.points.size(), part, team);
       (this->*(dimension == 2 ? &SurfaceCorrection::correct<2> : &SurfaceCorrection::correct<3>))(
-          grid, step, phase, work, piece, &location);
+          box, step, phase, work, piece, &location);
     }
   });
-  const std::ptrdiff_t size = grid.layout().size;
+  const std::ptrdiff_t size = box.layout().size;
   int first = 0;
   for (const Location &location : locations_) {
     const int fields = location.a == location.b ? dimension : 1;

@@ -4,6 +4,8 @@
 // follows from the continuity of traction (K), and what is left of the error is forgotten with strain (F).
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/box.hpp"
 #include "grid/threads.hpp"
 #include "physics/exterior.hpp"
 
@@ -21,7 +23,7 @@ public:
   /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor
   /// behind walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the
   /// velocity, those behind walls too; `work` is a block like B, of any values.
-  PetscErrorCode apply(const Grid &grid, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
+  PetscErrorCode apply(const Box &box, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
                        FieldBlock &work);
 
   /// How far full points are heard, in steps from face to face, and the layers that are read.
@@ -38,11 +40,11 @@ private:
     std::vector<PetscInt> points;     ///< of the surface, owned: offsets from the field's first double
     std::vector<double> next;         ///< their components, corrected, one after the other
   };
-  void find_points(const Grid &grid, const BoxSides &sides, const Phase &phase, Location *location) const;
+  void find_points(const Box &box, const BoxSides &sides, const Phase &phase, Location *location) const;
   /// At the centres of the band: the gradient of phi, up to a factor, and the strain rate, behind each other.
-  void measure_centres(const Grid &grid, const FieldBlock &velocity, ConstView phi, FieldBlock &measured) const;
+  void measure_centres(const Box &box, const FieldBlock &velocity, ConstView phi, FieldBlock &measured) const;
   template <int Dim>
-  void correct(const Grid &grid, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured, Piece piece,
+  void correct(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured, Piece piece,
                Location *location) const;
 
   ActiveSegments band_;              ///< cells that are neither full nor empty with all their neighbours

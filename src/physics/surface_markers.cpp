@@ -16,26 +16,26 @@ namespace {
 constexpr double settling = 0.2;     // of the distance from the surface, in every step
 constexpr double least_label = 0.5;  // of a cell that has one
 
-int in_box(const Grid &grid, int d, int index) {
-  const int n = grid.cells()[d];
-  return std::clamp(grid.image(d, index), 0, n - 1);
+int in_box(const Box &box, int d, int index) {
+  const int n = box.domain_cells()[d];
+  return std::clamp(box.image(d, index), 0, n - 1);
 }
 
 // Into the cell where it is; at a wall not beyond.
-void renew_cell(const Grid &grid, SurfaceMarker *marker) {
-  for (int d = 0; d < grid.dimension(); ++d) {
+void renew_cell(const Box &box, SurfaceMarker *marker) {
+  for (int d = 0; d < box.dimension(); ++d) {
     double &offset = marker->offset[d];
     const double cells = std::floor(offset + 0.5);
     const int to = marker->cell[d] + static_cast<int>(cells);
     offset -= cells;
-    marker->cell[d] = in_box(grid, d, to);
-    if (grid.is_wall(d) && to != marker->cell[d]) offset = to < 0 ? -0.5 : 0.5;
+    marker->cell[d] = in_box(box, d, to);
+    if (box.is_wall(d) && to != marker->cell[d]) offset = to < 0 ? -0.5 : 0.5;
   }
 }
 
-Int3 local_cell(const Grid &grid, const SurfaceMarker &marker) {
+Int3 local_cell(const Box &box, const SurfaceMarker &marker) {
   Int3 local;
-  for (int d = 0; d < 3; ++d) local[d] = marker.cell[d] - grid.layout().begin[d];
+  for (int d = 0; d < 3; ++d) local[d] = marker.cell[d] - box.layout().begin[d];
   return local;
 }
 
@@ -63,14 +63,14 @@ double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
 }
 
 template <int Dim>
-void move_marker(const Grid &grid, double dt, const FieldBlock &velocity, SurfaceMarker *marker) {
-  const Int3 cell = local_cell(grid, *marker);
+void move_marker(const Box &box, double dt, const FieldBlock &velocity, SurfaceMarker *marker) {
+  const Int3 cell = local_cell(box, *marker);
   Real3 half = marker->offset, end = half;
   for (int d = 0; d < Dim; ++d)
-    half[d] += 0.5 * dt / grid.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, marker->offset);
-  for (int d = 0; d < Dim; ++d) end[d] += dt / grid.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, half);
+    half[d] += 0.5 * dt / box.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, marker->offset);
+  for (int d = 0; d < Dim; ++d) end[d] += dt / box.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, half);
   marker->offset = end;
-  renew_cell(grid, marker);
+  renew_cell(box, marker);
 }
 
 template <int Dim>
@@ -93,18 +93,18 @@ std::array<double, 6> metric_of(const kernels::Tensor<Dim> &B, const kernels::Ve
 
 bool SurfaceMarkers::approach(const SurfaceCells &surface, const FieldBlock &fields, double part,
                               SurfaceMarker *marker) const {
-  const int number = surface.number(offset_of(grid_->layout(), local_cell(*grid_, *marker)));
+  const int number = surface.number(offset_of(domain_->layout(), local_cell(*domain_, *marker)));
   if (number < 0) return false;
   const SurfaceCells::Cell &cell = surface.all()[number];
   const double distance = part * surface.distance_at(fields, cell, marker->offset);
-  for (int d = 0; d < 3; ++d) marker->offset[d] -= distance * cell.normal[d] / grid_->spacing()[d];
+  for (int d = 0; d < 3; ++d) marker->offset[d] -= distance * cell.normal[d] / domain_->spacing()[d];
   return true;
 }
 
 void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields, const Phase &phase, int number,
                            int label, std::vector<SurfaceMarker> *markers) const {
   constexpr int approaches = 3;
-  const Int3 &begin = grid_->layout().begin, &cells = grid_->cells();
+  const Int3 &begin = domain_->layout().begin, &cells = domain_->domain_cells();
   for (std::size_t c = 0; c < surface.nearest(); ++c) {
     const SurfaceCells::Cell &cell = surface.all()[c];
     const int own = phase.label ? static_cast<int>(phase.label[0].origin[cell.at]) : 0;
@@ -114,14 +114,14 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields
     marker.number =
         marker.cell[0] + std::int64_t(cells[0]) * (marker.cell[1] + std::int64_t(cells[1]) * marker.cell[2]);
     for (int n = 0; n < approaches; ++n) (void)approach(surface, fields, 1, &marker);
-    for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * grid_->spacing()[d];
+    for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * domain_->spacing()[d];
     marker.normal = cell.normal;
     marker.label = own;
     marker.phase = number;
-    marker.metric = grid_->dimension() == 2
+    marker.metric = domain_->dimension() == 2
                         ? metric_of<2>(tensor_at<2>(phase.tensor.field, cell.at), normal_of<2>(cell.normal))
                         : metric_of<3>(tensor_at<3>(phase.tensor.field, cell.at), normal_of<3>(cell.normal));
-    renew_cell(*grid_, &marker);
+    renew_cell(*domain_, &marker);
     markers->push_back(marker);
   }
 }
@@ -130,13 +130,13 @@ PetscErrorCode SurfaceMarkers::move(double dt, const FieldBlock &velocity, std::
   PetscFunctionBeginUser;
   {
     VerbScope scope(Verb::membrane);
-    const int parts = row_parts(*grid_);
+    const int parts = row_parts(*domain_);
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(markers->size(), part, parts);
       for (std::size_t m = piece.begin; m < piece.end; ++m)
-        (grid_->dimension() == 2 ? move_marker<2> : move_marker<3>)(*grid_, dt, velocity, &(*markers)[m]);
+        (domain_->dimension() == 2 ? move_marker<2> : move_marker<3>)(*domain_, dt, velocity, &(*markers)[m]);
     });
-    scope.flops(double(markers->size()) * (grid_->dimension() == 2 ? 300 : 1200));
+    scope.flops(double(markers->size()) * (domain_->dimension() == 2 ? 300 : 1200));
   }
   PetscCall(exchange(markers));
   PetscFunctionReturn(0);
@@ -146,48 +146,48 @@ PetscErrorCode SurfaceMarkers::send_home(std::vector<SurfaceMarker> *markers) co
   std::vector<int> owners;
   PetscFunctionBeginUser;
   for (const SurfaceMarker &marker : *markers)
-    owners.push_back(grid_->owner(marker.cell[0], marker.cell[1], marker.cell[2]));
-  PetscCall(deliver(grid_->comm(), owners, markers));
+    owners.push_back(domain_->owner(marker.cell[0], marker.cell[1], marker.cell[2]));
+  PetscCall(deliver(domain_->comm(), owners, markers));
   PetscFunctionReturn(0);
 }
 
 // A rank has three cells at least, so that it or its neighbours along a direction own all that is within three.
 PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   PetscFunctionBeginUser;
-  if (grid_->ranks() == 1) {
+  if (domain_->ranks() == 1) {
     all_ = *markers;
     PetscFunctionReturn(0);
   }
   std::vector<int> ranks;
   all_.clear();
   for (const SurfaceMarker &marker : *markers) {
-    const Int3 local = local_cell(*grid_, marker);
+    const Int3 local = local_cell(*domain_, marker);
     bool inside = true;  // nobody else needs it
-    for (int d = 0; d < grid_->dimension(); ++d)
-      inside = inside && (grid_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < grid_->owned()[d]));
+    for (int d = 0; d < domain_->dimension(); ++d)
+      inside = inside && (domain_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < domain_->cells()[d]));
     std::set<int> places[3], to;
     if (inside) {
-      ranks.push_back(grid_->rank());
+      ranks.push_back(domain_->rank());
       all_.push_back(marker);
       continue;
     }
     for (int d = 0; d < 3; ++d)
       for (const int away : {-reach, 0, reach}) {
-        if (d >= grid_->dimension() && away != 0) continue;
-        places[d].insert(grid_->owner_along(d, in_box(*grid_, d, marker.cell[d] + away)));
+        if (d >= domain_->dimension() && away != 0) continue;
+        places[d].insert(domain_->owner_along(d, in_box(*domain_, d, marker.cell[d] + away)));
       }
     for (const int z : places[2])
       for (const int y : places[1])
-        for (const int x : places[0]) to.insert(grid_->rank_at({x, y, z}));
+        for (const int x : places[0]) to.insert(domain_->rank_at({x, y, z}));
     for (const int rank : to) {
       ranks.push_back(rank);
       all_.push_back(marker);
     }
   }
-  PetscCall(deliver(grid_->comm(), ranks, &all_));
+  PetscCall(deliver(domain_->comm(), ranks, &all_));
   markers->clear();
   for (const SurfaceMarker &marker : all_)
-    if (grid_->owner(marker.cell[0], marker.cell[1], marker.cell[2]) == grid_->rank()) markers->push_back(marker);
+    if (domain_->owner(marker.cell[0], marker.cell[1], marker.cell[2]) == domain_->rank()) markers->push_back(marker);
   PetscFunctionReturn(0);
 }
 
@@ -200,11 +200,11 @@ void SurfaceMarkers::settle(const SurfaceCells &surface, const FieldBlock &field
 }
 
 void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const {
-  const Layout &layout = grid_->layout();
-  const int deep = grid_->dimension() == 3 ? 1 : 0;
+  const Layout &layout = domain_->layout();
+  const int deep = domain_->dimension() == 3 ? 1 : 0;
   const auto lost = [&](SurfaceMarker &marker) {
     if (marker.label == 0) return false;
-    const Int3 cell = local_cell(*grid_, marker);
+    const Int3 cell = local_cell(*domain_, marker);
     for (const int beside : {0, 1})  // its own cell as a rule
       for (std::size_t p = 0; p < phases.size(); ++p) {
         if (!phases[p].material.is_membrane()) continue;

@@ -2,8 +2,10 @@
 // so that its strain does not fade; docs/method.md, section 18.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
 #include "field/surface_marker.hpp"
+#include "grid/domain.hpp"
 #include "physics/surface_cells.hpp"
 
 #include <vector>
@@ -16,7 +18,7 @@ public:
   static constexpr int velocity_ghosts = 4;
   /// Cells along each direction: those whose markers a cell's strain comes from, at most.
   static constexpr int reach = 3;
-  explicit SurfaceMarkers(const Grid &grid) : grid_(&grid) {}
+  explicit SurfaceMarkers(const Domain &domain) : domain_(&domain) {}
 
   /// One more at the surface beside each of the owned cells nearest to it, of the body `label`, or of all: the strain
   /// of the phase is now that against their rest. `number`: of the phase; `fields` as SurfaceCells left them.
@@ -49,7 +51,7 @@ private:
   bool approach(const SurfaceCells &surface, const FieldBlock &fields, double part, SurfaceMarker *marker) const;
   void sort(const SurfaceCells &surface, int phase);
 
-  const Grid *grid_;
+  const Domain *domain_;
   std::vector<SurfaceMarker> all_;  ///< since move(): owned ones and those near owned cells
   std::vector<Near> near_;          ///< of the phase that is worked on, by their place in memory
   std::vector<int> begin_;          ///< of those at every offset from the memory's start, and the end

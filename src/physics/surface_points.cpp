@@ -1,4 +1,5 @@
 // SurfaceCorrection: which points are full, which lie at the surface, and what is measured at the centres around.
+#include "grid/box.hpp"
 #include "kernels/surface.hpp"
 #include "physics/surface_correction.hpp"
 
@@ -70,28 +71,28 @@ EULASTIC_CLONES void measure_3d(const Segment &s, ConstView phi, const double *c
 
 }  // namespace
 
-void SurfaceCorrection::find_points(const Grid &grid, const BoxSides &sides, const Phase &phase,
+void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const Phase &phase,
                                     Location *location) const {
-  const Layout &layout = grid.layout();
+  const Layout &layout = box.layout();
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
   const Staggering &at = location->at;
   const bool centre = location->a == location->b;
   location->kind.assign(layout.size, outside);
   location->points.clear();
-  Grid::Range box[3];
+  Box::Range range[3];
   for (int d = 0; d < 3; ++d) {
-    box[d] = grid.points_near(d, at[d], ghosts);
-    if (at[d] && box[d].end == layout.cells[d] + ghosts) ++box[d].end;  // around the last centres
-    if (!grid.is_wall(d)) continue;
-    if (sides[d][0].kind == SideKind::symmetry) box[d].begin = -ghosts;
-    if (sides[d][1].kind == SideKind::symmetry) box[d].end = grid.points_end(d, at[d]) + ghosts;
+    range[d] = box.points_near(d, at[d], ghosts);
+    if (at[d] && range[d].end == layout.cells[d] + ghosts) ++range[d].end;  // around the last centres
+    if (!box.is_wall(d)) continue;
+    if (sides[d][0].kind == SideKind::symmetry) range[d].begin = -ghosts;
+    if (sides[d][1].kind == SideKind::symmetry) range[d].end = box.points_end(d, at[d]) + ghosts;
   }
-  const int last = grid.points_end(0, at[0]);
-  for (int k = box[2].begin; k < box[2].end; ++k)
-    for (int j = box[1].begin; j < box[1].end; ++j) {
+  const int last = box.points_end(0, at[0]);
+  for (int k = range[2].begin; k < range[2].end; ++k)
+    for (int j = range[1].begin; j < range[1].end; ++j) {
       const OccupiedRows::Span span = phase.rows.span(j, k);
-      const int begin = std::max(span.begin, box[0].begin), end = std::min(span.end, box[0].end);
+      const int begin = std::max(span.begin, range[0].begin), end = std::min(span.end, range[0].end);
       if (begin >= end) continue;
       const std::ptrdiff_t first = layout.offset(begin, j, k);
       unsigned char *row = location->kind.data() + first;
@@ -104,7 +105,7 @@ void SurfaceCorrection::find_points(const Grid &grid, const BoxSides &sides, con
       } else {
         flag_edges(end - begin, phi.row(j, k) + begin, stride[location->a], stride[location->b], row);
       }
-      if (j < 0 || j >= grid.points_end(1, at[1]) || k < 0 || k >= grid.points_end(2, at[2])) continue;
+      if (j < 0 || j >= box.points_end(1, at[1]) || k < 0 || k >= box.points_end(2, at[2])) continue;
       for (int i = std::max(begin, 0); i < std::min(end, last); ++i) {
         const void *next = std::memchr(row + i - begin, surface, std::min(end, last) - i);
         if (!next) break;
@@ -112,19 +113,19 @@ void SurfaceCorrection::find_points(const Grid &grid, const BoxSides &sides, con
         location->points.push_back(static_cast<PetscInt>(layout.offset(i, j, k)));
       }
     }
-  location->next.resize(location->points.size() * (centre ? grid.dimension() : 1));
+  location->next.resize(location->points.size() * (centre ? box.dimension() : 1));
 }
 
-void SurfaceCorrection::measure_centres(const Grid &grid, const FieldBlock &velocity, ConstView phi,
+void SurfaceCorrection::measure_centres(const Box &box, const FieldBlock &velocity, ConstView phi,
                                         FieldBlock &measured) const {
-  const int dimension = grid.dimension();
+  const int dimension = box.dimension();
   const double *v[3] = {};
   double *out[4] = {}, inverse[3];
-  for (int d = 0; d < 3; ++d) inverse[d] = 1 / grid.spacing()[d];
+  for (int d = 0; d < 3; ++d) inverse[d] = 1 / box.spacing()[d];
   for (int d = 0; d < dimension; ++d) v[d] = velocity[d].origin;
   for (int f = 0; f <= dimension; ++f) out[f] = measured[f].origin;
-  const Int3 &n = grid.owned();
-  in_parts_of(band_.all(), grid, [&](const Segment *begin, const Segment *end) {
+  const Int3 &n = box.cells();
+  in_parts_of(band_.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *s = begin; s < end; ++s) {
       const Segment near{std::max(s->i_begin, -1), std::min(s->i_end, n[0] + 1), s->j, s->k};
       if (near.size() <= 0 || s->j < -1 || s->j > n[1] || s->k < -1 || s->k > n[2]) continue;

@@ -27,13 +27,13 @@ struct SurfaceCells {
 };
 
 struct Curvature {
-  const Grid &grid;
+  const Box &box;
   ConstView phi;
   View sum, weight;  // by Field
   std::ptrdiff_t stride[3];
 
-  Curvature(const Grid &g, const Phase &phase, FieldBlock &fields)
-      : grid(g), phi(phase.fraction[0]), sum(fields[weighted]), weight(fields[Field::weight]) {
+  Curvature(const Box &g, const Phase &phase, FieldBlock &fields)
+      : box(g), phi(phase.fraction[0]), sum(fields[weighted]), weight(fields[Field::weight]) {
     for (int d = 0; d < 3; ++d) stride[d] = phi.stride(d);
   }
 
@@ -41,7 +41,7 @@ struct Curvature {
   EULASTIC_INLINE bool cut(const double *q) const {
     if (*q > 0 && *q < 1) return true;
     bool jump = false;
-    for (int d = 0; d < grid.dimension(); ++d) jump = jump || q[stride[d]] == 1 - *q || q[-stride[d]] == 1 - *q;
+    for (int d = 0; d < box.dimension(); ++d) jump = jump || q[stride[d]] == 1 - *q || q[-stride[d]] == 1 - *q;
     return jump;
   }
   EULASTIC_INLINE static double weight_of(double q) { return q * (1 - q) + least_weight; }
@@ -63,8 +63,8 @@ EULASTIC_INLINE void end_list(const Curvature &c, SurfaceCells &cells) {
 // From heights, in the owned cells of segments.
 template <int Dim>
 EULASTIC_INLINE long from_heights(const Curvature &c, const Segment *begin, const Segment *end) {
-  const Int3 n = c.grid.owned();
-  const Real3 h = c.grid.spacing();
+  const Int3 n = c.box.cells();
+  const Real3 h = c.box.spacing();
   SurfaceCells cells;
   long count = 0;
   for (const Segment *s = begin; s < end; ++s) {
@@ -148,7 +148,7 @@ EULASTIC_CLONES void power_row(const Faces &faces, const Segment &s, const doubl
 // The plane of a cut cell, and faces between full and empty cells.
 template <int Dim>
 EULASTIC_INLINE double area_at(const Curvature &c, const double *q) {
-  const Real3 h = c.grid.spacing();
+  const Real3 h = c.box.spacing();
   double area = 0, face[3];
   for (int d = 0; d < Dim; ++d) {
     face[d] = (Dim == 2 ? 1 : h[(d + 2) % 3]) * h[(d + 1) % Dim];
@@ -159,9 +159,9 @@ EULASTIC_INLINE double area_at(const Curvature &c, const double *q) {
 
 // Pieces of the band on an owned row.
 template <class Work>
-void for_owned(const Grid &grid, const ActiveSegments &band, int j, int k, const Work &work) {
+void for_owned(const Box &box, const ActiveSegments &band, int j, int k, const Work &work) {
   for (const Segment &s : band.row(j, k)) {
-    const Segment owned{std::max(s.i_begin, 0), std::min(s.i_end, grid.owned()[0]), j, k};
+    const Segment owned{std::max(s.i_begin, 0), std::min(s.i_end, box.cells()[0]), j, k};
     if (owned.size() > 0) work(owned);
   }
 }
@@ -177,12 +177,12 @@ bool SurfaceTension::exists(const std::vector<Phase> &phases) {
 PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fields) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::surface_tension);
-  const bool flat = grid_->dimension() == 2;
-  const Int3 &n = grid_->owned();
-  const int parts = row_parts(*grid_);
-  band_.build_band(*grid_, phase.fraction[0], phase.rows, 1);
-  const Curvature curvature(*grid_, phase, fields);
-  in_row_parts(*grid_, [&](const RowPart &part) {
+  const bool flat = domain_->dimension() == 2;
+  const Int3 &n = domain_->cells();
+  const int parts = row_parts(*domain_);
+  band_.build_band(*domain_, phase.fraction[0], phase.rows, 1);
+  const Curvature curvature(*domain_, phase, fields);
+  in_row_parts(*domain_, [&](const RowPart &part) {
     for_rows_in_blocks(part, [&](int j, int k) {
       const OccupiedRows::Span span = phase.rows.span(j, k);
       const int begin = std::max(span.begin, 0), end = std::min(span.end, n[0]);
@@ -197,7 +197,7 @@ PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fi
         (flat ? from_heights_2d : from_heights_3d)(curvature, band.data() + piece.begin, band.data() + piece.end);
   });
   PetscCall(exchange_->update(fields, 2, &phase.rows));
-  for (int f = 0; f < work_fields; ++f) fill_wall_ghosts_even(*grid_, at_centre, fields[f], 2, &phase.rows);
+  for (int f = 0; f < work_fields; ++f) fill_wall_ghosts_even(*domain_, at_centre, fields[f], 2, &phase.rows);
   std::vector<std::vector<Mended>> mended(parts);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(band.size(), part, parts);
@@ -217,8 +217,8 @@ PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fi
 PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
                                          FieldBlock &force, const ForceSlope &slope) {
   PetscFunctionBeginUser;
-  const int dim = grid_->dimension(), n = grid_->owned()[0];
-  NetForce net(*grid_, balanced && drifts_);
+  const int dim = domain_->dimension(), n = domain_->cells()[0];
+  NetForce net(*domain_, balanced && drifts_);
   WorkSpace::Lease lease;
   PetscCall(work_->take("curvature", work_fields, &lease));
   for (const Phase &phase : phases) {
@@ -226,17 +226,17 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
     if (sigma == 0) continue;
     PetscCall(find_curvature(phase, lease.fields()));
     VerbScope scope(Verb::surface_tension);
-    const Curvature curvature(*grid_, phase, lease.fields());
-    in_row_parts(*grid_, [&](const RowPart &part) {
+    const Curvature curvature(*domain_, phase, lease.fields());
+    in_row_parts(*domain_, [&](const RowPart &part) {
       std::vector<double> added(n);
       for (int d = 0; d < dim; ++d) {
-        const Faces faces{curvature, d, scale * sigma / grid_->spacing()[d]};
+        const Faces faces{curvature, d, scale * sigma / domain_->spacing()[d]};
         for_rows_in_blocks(part, [&](int j, int k) {
           if (band_.idle(j, k)) return;
           std::fill(added.begin(), added.end(), 0.0);
-          for_owned(*grid_, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
+          for_owned(*domain_, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
           add_force_row(n, added.data(), slope.factor, force[d].row(j, k),
-                  slope.field ? (*slope.field)[d].row(j, k) : nullptr);
+                        slope.field ? (*slope.field)[d].row(j, k) : nullptr);
           net.add_row(part.number, d, added.data());
         });
       }
@@ -258,17 +258,17 @@ PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const F
     if (sigma == 0) continue;
     PetscCall(find_curvature(phase, lease.fields()));
     VerbScope scope(Verb::sums);
-    const Curvature curvature(*grid_, phase, lease.fields());
-    const int dim = grid_->dimension(), n = grid_->owned()[0], first = grid_->layout().begin[0];
+    const Curvature curvature(*domain_, phase, lease.fields());
+    const int dim = domain_->dimension(), n = domain_->cells()[0], first = domain_->layout().begin[0];
     const auto add = [&](const RowPart &part, ExactSums &sums) {
       std::vector<double> power(n), area(n);
-      for (const Segment &row : part.rows(*grid_)) {
+      for (const Segment &row : part.rows(*domain_)) {
         if (phase.rows.idle(row.j, row.k)) continue;
         std::fill(power.begin(), power.end(), 0.0);
         std::fill(area.begin(), area.end(), 0.0);
-        for_owned(*grid_, band_, row.j, row.k, [&](const Segment &s) {
+        for_owned(*domain_, band_, row.j, row.k, [&](const Segment &s) {
           for (int d = 0; d < dim; ++d)
-            power_row({curvature, d, sigma / grid_->spacing()[d]}, s, velocity[d].row(row.j, row.k), power.data());
+            power_row({curvature, d, sigma / domain_->spacing()[d]}, s, velocity[d].row(row.j, row.k), power.data());
           const double *q = phase.fraction[0].row(row.j, row.k);
           for (int i = s.i_begin; i < s.i_end; ++i) area[i] = (dim == 2 ? area_at<2> : area_at<3>)(curvature, q + i);
         });
@@ -277,8 +277,8 @@ PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const F
       }
     };
     double sum[2];
-    PetscCall(sum_row_parts(*grid_, 2, add, sum));
-    measured->power += sum[0] * grid_->cell_volume();
+    PetscCall(sum_row_parts(*domain_, 2, add, sum));
+    measured->power += sum[0] * domain_->cell_volume();
     measured->energy += sigma * sum[1];
   }
   PetscFunctionReturn(0);

@@ -2,8 +2,10 @@
 // uniform; docs/method.md, section 17.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
+#include "grid/domain.hpp"
 #include "physics/elastic_force.hpp"
 
 namespace eulastic {
@@ -20,8 +22,8 @@ public:
   static constexpr int work_fields = 2;  ///< of the work space, during each call
 
   /// `drifts`: whether no wall holds the fluid, so that any net force would move all of it for ever.
-  SurfaceTension(const Grid &grid, GhostExchange &exchange, WorkSpace &work, bool drifts)
-      : grid_(&grid), exchange_(&exchange), work_(&work), drifts_(drifts) {}
+  SurfaceTension(const Domain &domain, GhostExchange &exchange, WorkSpace &work, bool drifts)
+      : domain_(&domain), exchange_(&exchange), work_(&work), drifts_(drifts) {}
   static bool exists(const std::vector<Phase> &phases);
 
   /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
@@ -34,7 +36,7 @@ public:
 private:
   PetscErrorCode find_curvature(const Phase &phase, FieldBlock &curvature);
 
-  const Grid *grid_;
+  const Domain *domain_;
   GhostExchange *exchange_;
   WorkSpace *work_;
   bool drifts_;

@@ -11,9 +11,9 @@ namespace eulastic {
 namespace {
 
 template <int Dim>
-EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+EULASTIC_INLINE void tangential_row(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
                                     FieldBlock &out, const Segment &row) {
-  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(grid, viscosity, velocity, row.j, row.k);
+  const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, row.j, row.k);
   const auto component = [&](int x, int y) { return out[kernels::position<Dim>(x, y)].row(row.j, row.k); };
   constexpr int z = Dim - 1;
   double *xx = component(0, 0), *yy = component(1, 1), *zz = component(z, z);
@@ -38,22 +38,22 @@ EULASTIC_INLINE void tangential_row(const Grid &grid, const FieldBlock &viscosit
   }
 }
 
-EULASTIC_CLONES void tangential_row_2d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+EULASTIC_CLONES void tangential_row_2d(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
                                        FieldBlock &out, const Segment &row) {
-  tangential_row<2>(grid, viscosity, velocity, out, row);
+  tangential_row<2>(box, viscosity, velocity, out, row);
 }
-EULASTIC_CLONES void tangential_row_3d(const Grid &grid, const FieldBlock &viscosity, const FieldBlock &velocity,
+EULASTIC_CLONES void tangential_row_3d(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
                                        FieldBlock &out, const Segment &row) {
-  tangential_row<3>(grid, viscosity, velocity, out, row);
+  tangential_row<3>(box, viscosity, velocity, out, row);
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_tangential_force(const Grid &grid, const FieldBlock &stress, double scale, int a,
+EULASTIC_INLINE void add_tangential_force(const Box &box, const FieldBlock &stress, double scale, int a,
                                           const Segment &row, double *out) {
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
   const auto component = [&](int x, int y) { return stress[kernels::position<Dim>(x, y)].row(row.j, row.k); };
   const ConstView q = stress[0];
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const kernels::DivergenceFromCentres<Dim> force{component(a, a), component(a, b), component(a, c),
                                                   q.stride(a),     q.stride(b),     q.stride(c),
                                                   1 / h[a],        1 / h[b],        1 / h[c]};
@@ -61,13 +61,13 @@ EULASTIC_INLINE void add_tangential_force(const Grid &grid, const FieldBlock &st
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(scale, force.at(i), out[i]);
 }
 
-EULASTIC_CLONES void add_tangential_force_2d(const Grid &grid, const FieldBlock &stress, double scale, int a,
+EULASTIC_CLONES void add_tangential_force_2d(const Box &box, const FieldBlock &stress, double scale, int a,
                                              const Segment &row, double *out) {
-  add_tangential_force<2>(grid, stress, scale, a, row, out);
+  add_tangential_force<2>(box, stress, scale, a, row, out);
 }
-EULASTIC_CLONES void add_tangential_force_3d(const Grid &grid, const FieldBlock &stress, double scale, int a,
+EULASTIC_CLONES void add_tangential_force_3d(const Box &box, const FieldBlock &stress, double scale, int a,
                                              const Segment &row, double *out) {
-  add_tangential_force<3>(grid, stress, scale, a, row, out);
+  add_tangential_force<3>(box, stress, scale, a, row, out);
 }
 
 // What a piece that comes later reads and writes that the ones before it did not.
@@ -80,33 +80,32 @@ void prefetch_ahead(const LocalViscosity &viscosity, const FieldBlock &velocity,
 
 }  // namespace
 
-void find_tangential_stress(const Grid &grid, const FieldBlock &velocity, LocalViscosity *viscosity) {
+void find_tangential_stress(const Box &box, const FieldBlock &velocity, LocalViscosity *viscosity) {
   constexpr std::ptrdiff_t ahead = 8;
-  const bool flat = grid.dimension() == 2;
-  in_parts_of(viscosity->stressed.all(), grid, [&](const Segment *begin, const Segment *end) {
+  const bool flat = box.dimension() == 2;
+  in_parts_of(viscosity->stressed.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *cells = begin; cells < end; ++cells) {
       if (!flat && end - cells > ahead) prefetch_ahead(*viscosity, velocity, cells[ahead]);
-      (flat ? tangential_row_2d : tangential_row_3d)(grid, viscosity->fields, velocity, viscosity->stress, *cells);
+      (flat ? tangential_row_2d : tangential_row_3d)(box, viscosity->fields, velocity, viscosity->stress, *cells);
     }
   });
 }
 
-void add_tangential_force(const Grid &grid, const LocalViscosity &viscosity, double scale, int a, const Segment &faces,
+void add_tangential_force(const Box &box, const LocalViscosity &viscosity, double scale, int a, const Segment &faces,
                           double *out) {
   if (viscosity.stressed.all().empty()) return;
   for (Segment s : viscosity.beside.row(faces.j, faces.k)) {
     s.i_begin = std::max(s.i_begin, faces.i_begin);
     s.i_end = std::min(s.i_end, faces.i_end);
-    (grid.dimension() == 2 ? add_tangential_force_2d : add_tangential_force_3d)(grid, viscosity.stress, scale, a, s,
-                                                                                out);
+    (box.dimension() == 2 ? add_tangential_force_2d : add_tangential_force_3d)(box, viscosity.stress, scale, a, s, out);
   }
 }
 
-double tangential_stress_flops(const Grid &grid, const LocalViscosity &viscosity) {
-  const bool flat = grid.dimension() == 2;
+double tangential_stress_flops(const Box &box, const LocalViscosity &viscosity) {
+  const bool flat = box.dimension() == 2;
   return viscosity.stressed.points() *
              (flat ? kernels::tangential_stress_flops_2d : kernels::tangential_stress_flops_3d) +
-         viscosity.beside.points() * grid.dimension() *
+         viscosity.beside.points() * box.dimension() *
              (2 + (flat ? kernels::centred_divergence_flops_2d : kernels::centred_divergence_flops_3d));
 }
 

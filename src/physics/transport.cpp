@@ -16,7 +16,7 @@ namespace {
 constexpr double epsilon = 1e-6;  // WENO5: B is of order 1
 
 struct TransportTerms {
-  const Grid *grid;
+  const Box *box;
   double dt;
   const FieldBlock *velocity;
   Real3 inverse;
@@ -56,7 +56,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity 
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
   double *next = out[f].origin;
   if (Dim == 3) {  // the next plane
-    batch.ahead[0] = now + (1 + Grid::stencil_width) * phi.sz;
+    batch.ahead[0] = now + (1 + Box::stencil_width) * phi.sz;
     batch.ahead[1] = next + phi.sz;
   }
   kernels::advection_rate<Dim>(batch, B[f], carried, t.inverse.data(), epsilon, rate);
@@ -135,20 +135,20 @@ template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
                                   const FieldBlock &B, const Location &location, int j_begin, int j_end, int k,
                                   FieldBlock &out, kernels::Batch &left, std::ptrdiff_t &evolved) {
-  constexpr int reach = Grid::stencil_width;
+  constexpr int reach = Box::stencil_width;
   const int a = location.a, b = location.b;
   const bool centre = location.centre();
   const bool(&at)[3] = location.at;
   const ConstView phi = phase.fraction[0];
-  const int end = t.grid->points_end(0, at[0]);
+  const int end = t.box->points_end(0, at[0]);
   const int first = location.first<Dim>(), last = location.last<Dim>();
   const std::ptrdiff_t da = phi.stride(a), db = phi.stride(b);
   const double threshold = centre ? t.rule.centre : t.rule.edge;
   const auto advance = [&](kernels::Batch &batch)
                            EULASTIC_BODY { advance_batch<Dim>(t, viscosity, phase, B, location, batch, out); };
-  if (k >= t.grid->points_end(2, at[2])) return;
+  if (k >= t.box->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.tensor.evolving.idle_rows(j_begin, j_end, k)) return;
-  for (int j = j_begin; j < std::min(j_end, t.grid->points_end(1, at[1])); ++j) {
+  for (int j = j_begin; j < std::min(j_end, t.box->points_end(1, at[1])); ++j) {
     int done = 0;  // so far
     const auto set_exterior = [&](int begin, int stop) {
       for (int f = first; f < last; ++f) {
@@ -213,7 +213,7 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Viscosity 
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
   kernels::Batch left[count];  // filled through all planes
   Evolved sum;
-  const Int3 &n = t.grid->owned();  // rows at high walls belong to the last part
+  const Int3 &n = t.box->cells();  // rows at high walls belong to the last part
   const int j_end = part.j_end == n[1] ? phase.tensor.evolving.rows_y() : part.j_end;
   const int k_end = part.k_end == n[2] ? phase.tensor.evolving.rows_z() : part.k_end;
   for (int j = part.j_begin; j < j_end; j += block)
@@ -240,31 +240,31 @@ EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, 
 
 }  // namespace
 
-PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
+PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const FieldBlock &velocity,
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   const TransportTerms terms{
-      &grid,       stage.dt,       &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun,
+      &box,        stage.dt,       &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun,
       stage.stale, skips_nothing()};
-  const bool flat = grid.dimension() == 2;
-  const int parts = row_parts(grid);
+  const bool flat = box.dimension() == 2;
+  const int parts = row_parts(box);
   std::vector<Evolved> found(parts);
   in_parallel(parts, parts, [&](int part) {
-    found[part] = (flat ? tensor_2d : tensor_3d)(terms, row_part(grid, part, parts), phase, tensor, next);
+    found[part] = (flat ? tensor_2d : tensor_3d)(terms, row_part(box, part, parts), phase, tensor, next);
   });
   Evolved points;
   for (const Evolved &some : found) points = {points.centres + some.centres, points.edges + some.edges};
-  const double advection = grid.dimension() * (kernels::weno5_flops + 5) + 2;
+  const double advection = box.dimension() * (kernels::weno5_flops + 5) + 2;
   const double diagonal = flat ? kernels::stretch_diagonal_flops_2d : kernels::stretch_diagonal_flops_3d;
   const double shear = flat ? kernels::stretch_shear_flops_2d : kernels::stretch_shear_flops_3d;
-  scope.flops(double(points.centres) * grid.dimension() * (advection + diagonal) +
+  scope.flops(double(points.centres) * box.dimension() * (advection + diagonal) +
               double(points.edges) * (advection + shear));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode reset_exterior(const Grid &grid, const OccupiedRows &before, Phase &phase) {
+PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase &phase) {
   PetscFunctionBeginUser;
   const ConstView phi = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
@@ -272,10 +272,10 @@ PetscErrorCode reset_exterior(const Grid &grid, const OccupiedRows &before, Phas
     const TensorComponent &c = phase.tensor.components()[f];
     const auto [a, b, at] = c;
     const View B = phase.tensor.field[f];
-    for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-      for (int j = 0; j < grid.points_end(1, at[1]); ++j) {
+    for (int k = 0; k < box.points_end(2, at[2]); ++k)
+      for (int j = 0; j < box.points_end(1, at[1]); ++j) {
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
-        for (int i = 0; i < grid.points_end(0, at[0]); ++i)
+        for (int i = 0; i < box.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
             if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // FieldBlock::at_rest
       }

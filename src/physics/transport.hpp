@@ -1,6 +1,7 @@
 // Transport of the solid: (4) for phi, (5) for B, explicit Euler with WENO5.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 
@@ -14,12 +15,12 @@ inline constexpr double negligible_fraction = 1e-16;
 
 /// next = phi - dt v.grad phi at centres; idle rows are set to 0, where `next_rows` does not know that they are.
 /// Three ghosts of both.
-PetscErrorCode advect_fraction(const Grid &grid, double dt, const FieldBlock &velocity, const Phase &phase,
+PetscErrorCode advect_fraction(const Box &box, double dt, const FieldBlock &velocity, const Phase &phase,
                                const OccupiedRows &next_rows, FieldBlock &next);
 
 /// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of
 /// phi, or one more than there are layers.
-PetscErrorCode find_solid(const Grid &grid, Phase &phase);
+PetscErrorCode find_solid(const Box &box, Phase &phase);
 
 /// One Runge-Kutta stage of B.
 struct TensorStage {
@@ -31,10 +32,10 @@ struct TensorStage {
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which
 /// holds B at the start of the step in Heun's second stage. Includes the edges on walls. Three ghosts of v and B,
 /// one of phi.
-PetscErrorCode transport_tensor(const Grid &grid, const TensorStage &stage, const FieldBlock &velocity,
+PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const FieldBlock &velocity,
                                 const Phase &phase, const FieldBlock &tensor, FieldBlock &next);
 
 /// B = I where it does not evolve, without transport, on rows that were or are occupied. One ghost of phi.
-PetscErrorCode reset_exterior(const Grid &grid, const OccupiedRows &before, Phase &phase);
+PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase &phase);
 
 }  // namespace eulastic

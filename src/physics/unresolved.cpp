@@ -1,6 +1,7 @@
 #include "physics/unresolved.hpp"
 
 #include "base/events.hpp"
+#include "grid/domain.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
@@ -50,12 +51,12 @@ bool may_be_unresolved(double trace, int dimension) {
   return (dimension == 2 ? mean * mean : mean * mean * mean) > 0.99 * largest_determinant;  // round-off aside
 }
 
-PetscErrorCode forget_unresolved(const Grid &grid, Phase &phase, long *count) {
+PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
-  const Layout &layout = grid.layout();
-  const Int3 n = grid.owned();
-  const int dimension = grid.dimension(), deep = dimension == 3 ? 1 : 0;
+  const Layout &layout = domain.layout();
+  const Int3 n = domain.cells();
+  const int dimension = domain.dimension(), deep = dimension == 3 ? 1 : 0;
   const ConstView phi = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
   const bool extended = rule.layers > 0;
@@ -104,7 +105,7 @@ PetscErrorCode forget_unresolved(const Grid &grid, Phase &phase, long *count) {
         for (int d = 0; d < dimension; ++d) phase.tensor.field[d](i, j, k) *= factor;
         ++found;
       }
-  PetscCallMPI(MPI_Allreduce(&found, count, 1, MPI_LONG, MPI_SUM, grid.comm()));
+  PetscCallMPI(MPI_Allreduce(&found, count, 1, MPI_LONG, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
 

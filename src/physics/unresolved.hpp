@@ -1,6 +1,8 @@
 // Where the grid does not resolve B it is mended or forgotten: docs/method.md, section 7.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "physics/transport.hpp"
 
 namespace eulastic {
@@ -17,12 +19,12 @@ bool may_be_unresolved(double trace, int dimension);
 /// extended, the diagonals get the factor that makes det B 1. Where it is reset, B = I there and B_ab = 0 on the edges
 /// around; full cells that exceed their limit then, as neighbours of those, get such a factor. Only owned points; what
 /// is extended from them is not made anew. `count`: such centres of all ranks. Collective. Two ghosts of B, one of phi.
-PetscErrorCode forget_unresolved(const Grid &grid, Phase &phase, long *count);
+PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count);
 
 /// The same, if the largest trace leaves room for it.
-inline PetscErrorCode find_and_forget(const Grid &grid, double trace, Phase &phase, long *count) {
+inline PetscErrorCode find_and_forget(const Domain &box, double trace, Phase &phase, long *count) {
   *count = 0;
-  return may_be_unresolved(trace, grid.dimension()) ? forget_unresolved(grid, phase, count) : 0;
+  return may_be_unresolved(trace, box.dimension()) ? forget_unresolved(box, phase, count) : 0;
 }
 
 }  // namespace eulastic

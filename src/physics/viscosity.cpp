@@ -67,9 +67,9 @@ struct Mixture {
   }
 };
 
-void fill_row(const Grid &grid, const std::vector<Phase> &phases, const Mixture &mixture, int j, int k, double *solid,
+void fill_row(const Box &box, const std::vector<Phase> &phases, const Mixture &mixture, int j, int k, double *solid,
               double *fluidity, double *difference) {
-  const Int3 &n = grid.owned();
+  const Int3 &n = box.cells();
   const int begin = -ghosts, end = n[0] + ghosts;
   const bool owned = j >= 0 && j < n[1] && k >= 0 && k < n[2];
   for (double *row : {solid, fluidity, difference}) std::fill(row + begin, row + end, 0.0);
@@ -121,11 +121,11 @@ EULASTIC_CLONES void along_surface_3d(const Segment &row, const Mixture &mixture
 }
 
 // Beside sides of the box nothing: no edge on a side feels it. Behind planes of symmetry all is mirrored.
-void clear_beside_sides(const Grid &grid, const BoxSides &sides, const Segment &row, double *values) {
+void clear_beside_sides(const Box &box, const BoxSides &sides, const Segment &row, double *values) {
   const int place[3] = {0, row.j, row.k};
-  for (const auto [d, high] : grid.sides()) {
-    if (!grid.touches(d, high) || sides[d][high].kind == SideKind::symmetry) continue;
-    const int first = grid.owned()[d] - 1;
+  for (const auto [d, high] : box.sides()) {
+    if (!box.touches(d, high) || sides[d][high].kind == SideKind::symmetry) continue;
+    const int first = box.cells()[d] - 1;
     if (d > 0 && (high ? place[d] >= first : place[d] <= 0)) std::fill(values + row.i_begin, values + row.i_end, 0.0);
     if (d > 0) continue;
     const int begin = high ? std::max(row.i_begin, first) : row.i_begin;
@@ -135,8 +135,8 @@ void clear_beside_sides(const Grid &grid, const BoxSides &sides, const Segment &
 }
 
 // Beside rigid bodies neither: what faces inside of them hold is nobody's.
-void clear_beside_rigid(const Grid &grid, const std::vector<Phase> &phases, const Segment &row, double *values) {
-  const int deep = grid.dimension() == 3 ? 1 : 0;
+void clear_beside_rigid(const Box &box, const std::vector<Phase> &phases, const Segment &row, double *values) {
+  const int deep = box.dimension() == 3 ? 1 : 0;
   for (const Phase &phase : phases) {
     if (!phase.material.is_rigid()) continue;
     const ConstView phi = phase.fraction[0];
@@ -160,12 +160,12 @@ void clear(const ActiveSegments &cells, View field) {
 
 // visit(j, k, scratch) for all rows, those of `layers` of ghosts too.
 template <class Row>
-void for_rows_with_ghosts(const Grid &grid, int layers, const Row &visit) {
-  const int deep = grid.dimension() == 3 ? layers : 0, parts = row_parts(grid);
-  const int rows = grid.owned()[1] + 2 * layers, planes = grid.owned()[2] + 2 * deep;
+void for_rows_with_ghosts(const Box &box, int layers, const Row &visit) {
+  const int deep = box.dimension() == 3 ? layers : 0, parts = row_parts(box);
+  const int rows = box.cells()[1] + 2 * layers, planes = box.cells()[2] + 2 * deep;
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(std::size_t(rows) * planes, part, parts);
-    RowScratch scratch(grid, 1);
+    RowScratch scratch(box, 1);
     for (std::size_t r = piece.begin; r < piece.end; ++r)
       visit(static_cast<int>(r % rows) - layers, static_cast<int>(r / rows) - deep, scratch.row(0));
   });
@@ -194,15 +194,15 @@ void ViscosityContrast::add(const Material &material, double stiffness) {
   kelvin_voigt = std::min(kelvin_voigt, 2 * weakest / stiffness);
 }
 
-LocalViscosity::LocalViscosity(const Grid &grid)
-    : fields(grid, viscosity_fields(grid.dimension())),
-      stress(grid, static_cast<int>(tensor_components(grid.dimension()).size())) {}
+LocalViscosity::LocalViscosity(const Box &box)
+    : fields(box, viscosity_fields(box.dimension())),
+      stress(box, static_cast<int>(tensor_components(box.dimension()).size())) {}
 
-PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
+PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSides &sides,
                                  const std::vector<Phase> &phases, LocalViscosity *viscosity) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  const int dim = grid.dimension(), end = grid.owned()[0] + 1;
+  const int dim = box.dimension(), end = box.cells()[0] + 1;
   FieldBlock &fields = viscosity->fields;
   const FieldBlock fluidity = fields.part(0, 1), difference = viscosity->stress.part(0, 1);
   const Mixture mixture(fluid, phases, fluidity, difference);
@@ -210,37 +210,37 @@ PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const Box
   const int along = viscosity_along_surface(dim);
   for (int c = 0; c < viscosity->stress.count(); ++c) clear(viscosity->stressed, viscosity->stress[c]);
   clear(viscosity->cut, fields[along]);
-  for_rows_with_ghosts(grid, ghosts, [&](int j, int k, double *solid) {
-    fill_row(grid, phases, mixture, j, k, solid, centre.row(j, k), mixed.row(j, k));
+  for_rows_with_ghosts(box, ghosts, [&](int j, int k, double *solid) {
+    fill_row(box, phases, mixture, j, k, solid, centre.row(j, k), mixed.row(j, k));
   });
   OccupiedRows rows = phases.front().rows;
   for (const Phase &phase : phases) rows.join(phase.rows);
-  viscosity->cut.build_band(grid, difference[0], rows, 1);
+  viscosity->cut.build_band(box, difference[0], rows, 1);
   const View surface[4] = {fields[along], fields[along + 1], fields[along + 2], fields[along + dim]};
   const std::vector<Segment> &cut = viscosity->cut.all();
-  const int parts = row_parts(grid);
+  const int parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(cut.size(), part, parts);
     for (std::size_t s = piece.begin; s < piece.end; ++s) {
-      (dim == 2 ? along_surface_2d : along_surface_3d)(cut[s], mixture, grid.spacing(), surface);
-      clear_beside_sides(grid, sides, cut[s], surface[0].row(cut[s].j, cut[s].k));
-      clear_beside_rigid(grid, phases, cut[s], surface[0].row(cut[s].j, cut[s].k));
+      (dim == 2 ? along_surface_2d : along_surface_3d)(cut[s], mixture, box.spacing(), surface);
+      clear_beside_sides(box, sides, cut[s], surface[0].row(cut[s].j, cut[s].k));
+      clear_beside_rigid(box, phases, cut[s], surface[0].row(cut[s].j, cut[s].k));
     }
   });
-  viscosity->stressed.build_within(grid, viscosity->cut, surface[0]);
-  viscosity->beside.build(grid, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);
-  for_rows_with_ghosts(grid, 1, [&](int j, int k, double *) {
+  viscosity->stressed.build_within(box, viscosity->cut, surface[0]);
+  viscosity->beside.build(box, surface[0], rows, 1e-9 * std::fabs(mixture.most), 1, 1);
+  for_rows_with_ghosts(box, 1, [&](int j, int k, double *) {
     if (j < 0 || k < 0) return;
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b)
         edge_row(centre.row(j, k), centre.stride(a), centre.stride(b), 0, end,
                  fields[viscosity_of_edge(dim, a, b)].row(j, k));
   });
-  for_rows_with_ghosts(grid, ghosts, [&](int j, int k, double *) {
+  for_rows_with_ghosts(box, ghosts, [&](int j, int k, double *) {
     centre_row(-1, end, centre.row(j, k));
     std::fill(mixed.row(j, k) - ghosts, mixed.row(j, k) + end + 1, 0.0);
   });
-  scope.flops(grid.owned_count() * (6. * double(phases.size()) + (dim == 2 ? 7 : 15)) +
+  scope.flops(box.cell_count() * (6. * double(phases.size()) + (dim == 2 ? 7 : 15)) +
               viscosity->cut.points() * (dim == 2 ? 90 : 330));
   PetscFunctionReturn(0);
 }

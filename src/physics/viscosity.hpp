@@ -1,6 +1,7 @@
 // The viscosity where a species has another one than the fluid; docs/method.md, "Viscosity contrast".
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
@@ -44,7 +45,7 @@ struct LocalViscosity {
   FieldBlock stress;        ///< symmetric, at centres: work space of the force; 0 but for `stressed`
 
   LocalViscosity() = default;
-  explicit LocalViscosity(const Grid &grid);
+  explicit LocalViscosity(const Box &box);
   std::size_t bytes() const { return fields.bytes() + stress.bytes(); }
   explicit operator bool() const { return static_cast<bool>(fields); }
 };
@@ -52,7 +53,7 @@ struct LocalViscosity {
 /// Harmonic means, weighted by the solid fractions at centres and of four centres on edges; along surfaces what
 /// arithmetic means have more, but for cells beside sides of the box that are no planes of symmetry. Centres with one
 /// layer of ghosts, edges of owned cells on both sides; two ghosts of phi.
-PetscErrorCode compute_viscosity(const Grid &grid, const Fluid &fluid, const BoxSides &sides,
+PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSides &sides,
                                  const std::vector<Phase> &phases, LocalViscosity *viscosity);
 
 }  // namespace eulastic

@@ -19,12 +19,12 @@ struct Faces : Segment {
 };
 
 template <int Dim>
-EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Grid &grid, const FieldBlock &viscosity,
+EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, const FieldBlock &viscosity,
                                                              const FieldBlock &v, int a, int j, int k) {
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
   const auto row = [=](const FieldBlock &block, int f) { return block[f].row(j, k); };
   const ConstView q = v[0];
-  const Real3 &h = grid.spacing();
+  const Real3 &h = box.spacing();
   return {row(v, a),
           row(v, b),
           row(v, c),
@@ -40,9 +40,9 @@ EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Grid &grid, c
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_force(const Grid &grid, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
+EULASTIC_INLINE void add_force(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
                                FieldBlock &out, int a, const Faces &row) {
-  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, viscosity, velocity, a, row.j, row.k);
+  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(box, viscosity, velocity, a, row.j, row.k);
   double *sum = out[a].row(row.j, row.k);
   if (row.side != 0) {
     for (int i = row.i_begin; i < row.i_end; ++i)
@@ -53,13 +53,13 @@ EULASTIC_INLINE void add_force(const Grid &grid, const FieldBlock &viscosity, do
   for (int i = row.i_begin; i < row.i_end; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
 }
 
-EULASTIC_CLONES void add_force_2d(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                  const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
-  add_force<2>(grid, viscosity, scale, velocity, out, a, row);
+EULASTIC_CLONES void add_force_2d(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
+                                  FieldBlock &out, int a, const Faces &row) {
+  add_force<2>(box, viscosity, scale, velocity, out, a, row);
 }
-EULASTIC_CLONES void add_force_3d(const Grid &grid, const FieldBlock &viscosity, double scale,
-                                  const FieldBlock &velocity, FieldBlock &out, int a, const Faces &row) {
-  add_force<3>(grid, viscosity, scale, velocity, out, a, row);
+EULASTIC_CLONES void add_force_3d(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
+                                  FieldBlock &out, int a, const Faces &row) {
+  add_force<3>(box, viscosity, scale, velocity, out, a, row);
 }
 
 struct StageTerms {
@@ -71,9 +71,9 @@ struct StageTerms {
 };
 
 template <int Dim>
-EULASTIC_INLINE void stage_row(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
+EULASTIC_INLINE void stage_row(const Box &box, const StageTerms &s, int a, const Faces &row) {
   const int j = row.j, k = row.k;
-  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(grid, *s.viscosity, *s.now, a, j, k);
+  const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(box, *s.viscosity, *s.now, a, j, k);
   const double *w = (*s.now)[a].row(j, k), *m = (*s.rate)[a].row(j, k);
   const double *m1 = s.slope ? (*s.slope)[a].row(j, k) : m;
   const double along_slope = s.slope ? s.c.slope : 0;
@@ -95,11 +95,11 @@ EULASTIC_INLINE void stage_row(const Grid &grid, const StageTerms &s, int a, con
   for (int i = row.i_begin; i < row.i_end; ++i) stage(i, stress.force(i));
 }
 
-EULASTIC_CLONES void stage_row_2d(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
-  stage_row<2>(grid, s, a, row);
+EULASTIC_CLONES void stage_row_2d(const Box &box, const StageTerms &s, int a, const Faces &row) {
+  stage_row<2>(box, s, a, row);
 }
-EULASTIC_CLONES void stage_row_3d(const Grid &grid, const StageTerms &s, int a, const Faces &row) {
-  stage_row<3>(grid, s, a, row);
+EULASTIC_CLONES void stage_row_3d(const Box &box, const StageTerms &s, int a, const Faces &row) {
+  stage_row<3>(box, s, a, row);
 }
 
 // M_0 with the force of the start, and W_1.
@@ -120,27 +120,26 @@ EULASTIC_CLONES void end_row(const Segment &row, const double *increment, const 
 
 // visit(component, faces) for all owned rows, and the faces of open sides that are no row's.
 template <class Visit>
-void for_velocity_rows(const Grid &grid, const Visit &visit) {
-  const auto open_low = [&](int a) { return grid.is_open(a, false) && grid.touches_low(a); };
+void for_velocity_rows(const Box &box, const Visit &visit) {
+  const auto open_low = [&](int a) { return box.is_open(a, false) && box.touches_low(a); };
   const bool open[3] = {open_low(0), open_low(1), open_low(2)};
-  in_row_parts(grid, [&](const RowPart &part) {
+  in_row_parts(box, [&](const RowPart &part) {
     for_rows_in_blocks(part, [&](int j, int k) {
-      for (int a = 0; a < grid.dimension(); ++a) {
+      for (int a = 0; a < box.dimension(); ++a) {
         const int first = a == 0 && open[0] ? 1 : 0;
         if (first > 0) visit(a, Faces{{0, first, j, k}, -1});
-        visit(a, Faces{{first, grid.owned()[0], j, k}, a > 0 && open[a] && (a == 1 ? j : k) == 0 ? -1 : 0});
+        visit(a, Faces{{first, box.cells()[0], j, k}, a > 0 && open[a] && (a == 1 ? j : k) == 0 ? -1 : 0});
       }
     });
   });
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &faces : grid.open_high_faces(a)) visit(a, Faces{faces, 1});
+  for (int a = 0; a < box.dimension(); ++a)
+    for (const Segment &faces : box.open_high_faces(a)) visit(a, Faces{faces, 1});
 }
 
 // What a stage reads of the row that comes RowAhead::rows later: of what its stencil reads, the row ahead of it.
-void prefetch_ahead(const Grid &grid, const LocalViscosity &viscosity, const StageTerms &s, int a, int j, int k) {
-  if (grid.dimension() == 2) return;
-  const int n = grid.owned()[0], begin = j / block_rows * block_rows,
-            end = std::min(begin + block_rows, grid.owned()[1]);
+void prefetch_ahead(const Box &box, const LocalViscosity &viscosity, const StageTerms &s, int a, int j, int k) {
+  if (box.dimension() == 2) return;
+  const int n = box.cells()[0], begin = j / block_rows * block_rows, end = std::min(begin + block_rows, box.cells()[1]);
   const RowAhead next(begin, end, j, k);
   prefetch((*s.now)[a].row(next.j, next.k + 1), n);
   prefetch((*s.rate)[a].row(next.j, next.k), n);
@@ -148,31 +147,31 @@ void prefetch_ahead(const Grid &grid, const LocalViscosity &viscosity, const Sta
   if (s.slope) prefetch((*s.slope)[a].row(next.j, next.k), n);
   prefetch((*s.viscosity)[a + 1].row(next.j, next.k + 1), n);
   if (a == 0) prefetch((*s.viscosity)[0].row(next.j, next.k), n);
-  if (viscosity.stressed.all().empty() || next.k >= grid.owned()[2]) return;
+  if (viscosity.stressed.all().empty() || next.k >= box.cells()[2]) return;
   for (const Segment &piece : viscosity.beside.row(next.j, next.k))
     for (const int c : {a, a + 3}) prefetch(viscosity.stress[c].row(next.j, next.k + 1) + piece.i_begin, piece.size());
 }
 
 // Walls move, and more comes in, by that from one time to another.
-BoxSides sides_of_increment(const BoxSides &box, double from, double to) {
-  BoxSides sides = box;
+BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
+  BoxSides sides = box_sides;
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t side = 0; side < 2; ++side) {
-      const Real3 u = box[d][side].motion.at(from), v = box[d][side].motion.at(to);
+      const Real3 u = box_sides[d][side].motion.at(from), v = box_sides[d][side].motion.at(to);
       sides[d][side].motion = {{v[0] - u[0], v[1] - u[1], v[2] - u[2]}, 0, 0};
-      sides[d][side].given = {box[d][side].given.at(to) - box[d][side].given.at(from), 0, 0, {}};
+      sides[d][side].given = {box_sides[d][side].given.at(to) - box_sides[d][side].given.at(from), 0, 0, {}};
       sides[d][side].fed.reset();
     }
   return sides;
 }
 
-void close_walls(const Grid &grid, FieldBlock &velocity) {
-  for (int d = 0; d < grid.dimension(); ++d)
-    if (grid.is_wall(d)) close_wall_faces(grid, velocity[d], d);
+void close_walls(const Box &box, FieldBlock &velocity) {
+  for (int d = 0; d < box.dimension(); ++d)
+    if (box.is_wall(d)) close_wall_faces(box, velocity[d], d);
 }
 
-double force_flops(const Grid &grid) {
-  return grid.dimension() == 2 ? kernels::viscous_force_flops_2d : kernels::viscous_force_flops_3d;
+double force_flops(const Box &box) {
+  return box.dimension() == 2 ? kernels::viscous_force_flops_2d : kernels::viscous_force_flops_3d;
 }
 
 EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, const double *D, double *p) {
@@ -182,21 +181,20 @@ EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, c
 
 }  // namespace
 
-PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
+PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
                                  FieldBlock &out) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
-  find_tangential_stress(grid, velocity, &viscosity);
-  for_velocity_rows(grid, [&](int a, const Faces &row) {
-    (grid.dimension() == 2 ? add_force_2d : add_force_3d)(grid, viscosity.fields, scale, velocity, out, a, row);
-    if (row.side == 0) add_tangential_force(grid, viscosity, scale, a, row, out[a].row(row.j, row.k));
+  find_tangential_stress(box, velocity, &viscosity);
+  for_velocity_rows(box, [&](int a, const Faces &row) {
+    (box.dimension() == 2 ? add_force_2d : add_force_3d)(box, viscosity.fields, scale, velocity, out, a, row);
+    if (row.side == 0) add_tangential_force(box, viscosity, scale, a, row, out[a].row(row.j, row.k));
   });
-  scope.flops(grid.owned_count() * grid.dimension() * (force_flops(grid) + 2) +
-              tangential_stress_flops(grid, viscosity));
+  scope.flops(box.cell_count() * box.dimension() * (force_flops(box) + 2) + tangential_stress_flops(box, viscosity));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+PetscErrorCode super_time_step(const Box &box, GhostExchange &exchange, const BoxSides &box_sides,
                                LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
                                const RigidFaces *rigid, double viscosity_beside_rigid, RigidMeans *means) {
@@ -204,12 +202,12 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   VerbScope scope(Verb::viscous);
   const double first = rkl_first_step(stages, dt);
   const FieldBlock *slope = work.slope ? &work.slope : nullptr;
-  for (int d = 0; slope && d < grid.dimension(); ++d)  // bodies do not come to open sides
-    for (const Segment &face : grid.open_high_faces(d)) {
+  for (int d = 0; slope && d < box.dimension(); ++d)  // bodies do not come to open sides
+    for (const Segment &face : box.open_high_faces(d)) {
       double *row = work.slope[d].row(face.j, face.k);
       std::fill(row + face.i_begin, row + face.i_end, 0.0);
     }
-  for_velocity_rows(grid, [&](int a, const Faces &row) {
+  for_velocity_rows(box, [&](int a, const Faces &row) {
     first_row(row, -0.5 * dt, slope ? (*slope)[a].row(row.j, row.k) : nullptr, first, work.rate[a].row(row.j, row.k),
               work.now[a].row(row.j, row.k));
   });
@@ -217,8 +215,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
   for (int j = 2; j <= stages; ++j) {
     PetscCall(exchange.update(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
-    fill_wall_ghosts_velocity(grid, sides_of_increment(box, time, reached), 0, work.now, 2);
-    find_tangential_stress(grid, work.now, &viscosity);
+    fill_wall_ghosts_velocity(box, sides_of_increment(box_sides, time, reached), 0, work.now, 2);
+    find_tangential_stress(box, work.now, &viscosity);
     const StageTerms stage{&viscosity.fields,
                            &work.rate,
                            slope,
@@ -228,8 +226,8 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
                            j == 2};
     std::unique_ptr<RigidStage> beside;
     if (rigid) beside = std::make_unique<RigidStage>(*rigid, viscosity_beside_rigid, time, reached, weights[j], means);
-    for_velocity_rows(grid, [&](int a, const Faces &row) {
-      if (row.j < grid.owned()[1] && row.k < grid.owned()[2]) prefetch_ahead(grid, viscosity, stage, a, row.j, row.k);
+    for_velocity_rows(box, [&](int a, const Faces &row) {
+      if (row.j < box.cells()[1] && row.k < box.cells()[2]) prefetch_ahead(box, viscosity, stage, a, row.j, row.k);
       const RigidFaces::Row faces = rigid ? rigid->row(a, row.j, row.k) : RigidFaces::Row{};
       if (faces.all) return;
       thread_local std::vector<double> held;
@@ -237,36 +235,36 @@ PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const 
       if (!faces.empty()) {
         if (j == 2) std::fill(out + row.i_begin, out + row.i_end, 0.0);
         const ConstView w = work.now[a];
-        beside->hold(faces, grid.dimension(), a, row.i_begin, row.i_end, stage.c, w.row(row.j, row.k), {1, w.sy, w.sz},
+        beside->hold(faces, box.dimension(), a, row.i_begin, row.i_end, stage.c, w.row(row.j, row.k), {1, w.sy, w.sz},
                      work.rate[a].row(row.j, row.k), slope ? (*slope)[a].row(row.j, row.k) : nullptr, out, &held);
       }
-      (grid.dimension() == 2 ? stage_row_2d : stage_row_3d)(grid, stage, a, row);
+      (box.dimension() == 2 ? stage_row_2d : stage_row_3d)(box, stage, a, row);
       if (row.side == 0)
-        add_tangential_force(grid, viscosity, stage.c.viscous, a, row, out);  // bodies do not come to open sides
+        add_tangential_force(box, viscosity, stage.c.viscous, a, row, out);  // bodies do not come to open sides
       if (!faces.empty()) RigidStage::release(faces, row.i_begin, row.i_end, held, out);
     });
     work.now.swap(work.before);
   }
-  close_walls(grid, work.now);
-  for_velocity_rows(grid, [&](int a, const Faces &row) {
+  close_walls(box, work.now);
+  for_velocity_rows(box, [&](int a, const Faces &row) {
     end_row(row, work.now[a].row(row.j, row.k), velocity[a].row(row.j, row.k), velocity_star[a].row(row.j, row.k));
   });
-  scope.flops(grid.owned_count() * grid.dimension() * ((stages - 1) * (force_flops(grid) + 9) + 3) +
-              (stages - 1) * tangential_stress_flops(grid, viscosity));
+  scope.flops(box.cell_count() * box.dimension() * ((stages - 1) * (force_flops(box) + 9) + 3) +
+              (stages - 1) * tangential_stress_flops(box, viscosity));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,
-                               const FieldBlock &divergence, FieldBlock &pressure) {
+PetscErrorCode rotate_pressure(const Box &box, const FieldBlock &viscosity, double factor, const FieldBlock &divergence,
+                               FieldBlock &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
-  in_row_parts(grid, [&](const RowPart &owned) {
-    const RowPart part = owned.with_ghosts(grid);
+  in_row_parts(box, [&](const RowPart &owned) {
+    const RowPart part = owned.with_ghosts(box);
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j)
-        rotate_row(grid.owned()[0], factor, viscosity[0].row(j, k), divergence[0].row(j, k), pressure[0].row(j, k));
+        rotate_row(box.cells()[0], factor, viscosity[0].row(j, k), divergence[0].row(j, k), pressure[0].row(j, k));
   });
-  scope.flops(grid.owned_count() * 3);
+  scope.flops(box.cell_count() * 3);
   PetscFunctionReturn(0);
 }
 

@@ -2,25 +2,26 @@
 // update.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "physics/super_time_stepping.hpp"
 #include "physics/viscosity.hpp"
 
 namespace eulastic {
 
 /// out += scale div(tau(v))/rho at owned faces; two ghosts of v, corners included. `viscosity`: compute_viscosity().
-PetscErrorCode add_viscous_force(const Grid &grid, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
+PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
                                  FieldBlock &out);
 
 /// super_time_step() with this stress for the Laplacian: its components see each other, so that ghosts are exchanged
 /// before every stage. Cut faces of rigid bodies have the kinematic viscosity of the fluid beside them.
-PetscErrorCode super_time_step(const Grid &grid, GhostExchange &exchange, const BoxSides &box,
+PetscErrorCode super_time_step(const Box &box, GhostExchange &exchange, const BoxSides &box_sides,
                                LocalViscosity &viscosity, double time, double dt, int stages,
                                const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
                                const RigidFaces *rigid = nullptr, double viscosity_beside_rigid = 0,
                                RigidMeans *means = nullptr);
 
 /// p -= factor nu D*, in one ghost layer too: the rotational update where nu is that of the place.
-PetscErrorCode rotate_pressure(const Grid &grid, const FieldBlock &viscosity, double factor,
-                               const FieldBlock &divergence, FieldBlock &pressure);
+PetscErrorCode rotate_pressure(const Box &box, const FieldBlock &viscosity, double factor, const FieldBlock &divergence,
+                               FieldBlock &pressure);
 
 }  // namespace eulastic

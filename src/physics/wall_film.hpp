@@ -13,7 +13,7 @@ class WallFilm {
 public:
   static constexpr int work_fields = 2;  ///< scratch of find()
 
-  explicit WallFilm(const Grid &grid) : grid_(&grid) {}
+  explicit WallFilm(const Box &box) : box_(&box) {}
   /// Finds the cells and faces beside walls: solid sides of the box, and rigid bodies of `phases` that do not travel.
   /// Three ghosts of phi; `scratch`: work_fields fields.
   void find(const BoxSides &sides, const std::vector<const Phase *> &rigid, FieldBlock &scratch);
@@ -35,7 +35,7 @@ private:
   static double force_on(const Face &face, double pressure, const double *phi);
   double pressure_of(const Phase &phase) const;
 
-  const Grid *grid_;
+  const Box *box_;
   std::vector<Face> faces_;  ///< owned
   std::vector<Cell> cells_;  ///< owned
 };

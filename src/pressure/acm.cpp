@@ -15,11 +15,11 @@ namespace {
 constexpr int sum_count = 6;  // A1, A2, A3, B1, B2 of (13) and <p> of (6)
 
 template <int Dim>
-EULASTIC_INLINE void add_sums(const Grid &grid, const RowPart &part, ConstView divergence, ConstView pressure,
+EULASTIC_INLINE void add_sums(const Box &box, const RowPart &part, ConstView divergence, ConstView pressure,
                               ExactSums &sums) {
-  const Int3 n = grid.owned();
-  const std::int64_t begin = grid.layout().begin[0];
-  const InverseSquares h = grid.inverse_squares();
+  const Int3 n = box.cells();
+  const std::int64_t begin = box.layout().begin[0];
+  const InverseSquares h = box.inverse_squares();
   const std::ptrdiff_t sy = divergence.sy, sz = divergence.sz;
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const double *D = divergence.row(j, k), *p = pressure.row(j, k);
@@ -38,26 +38,26 @@ EULASTIC_INLINE void add_sums(const Grid &grid, const RowPart &part, ConstView d
   });
 }
 
-EULASTIC_CLONES void add_sums_2d(const Grid &grid, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
-  add_sums<2>(grid, part, D, p, s);
+EULASTIC_CLONES void add_sums_2d(const Box &box, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<2>(box, part, D, p, s);
 }
-EULASTIC_CLONES void add_sums_3d(const Grid &grid, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
-  add_sums<3>(grid, part, D, p, s);
+EULASTIC_CLONES void add_sums_3d(const Box &box, const RowPart &part, ConstView D, ConstView p, ExactSums &s) {
+  add_sums<3>(box, part, D, p, s);
 }
 
 // What the formula says, ghosts included.
-void increment_everywhere(const Grid &grid, const kernels::AcmIncrement &formula, const FieldBlock &divergence,
+void increment_everywhere(const Box &box, const kernels::AcmIncrement &formula, const FieldBlock &divergence,
                           const FieldBlock &pressure, FieldBlock &increment) {
-  in_row_parts(grid, [&](const RowPart &owned) {
-    const RowPart part = owned.with_ghosts(grid);
+  in_row_parts(box, [&](const RowPart &owned) {
+    const RowPart part = owned.with_ghosts(box);
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j) {
         const double *D = divergence[0].row(j, k), *p = pressure[0].row(j, k);
         double *out = increment[0].row(j, k);
-        for (int i = -1; i < grid.owned()[0] + 1; ++i) out[i] = formula(D[i], p[i]);
+        for (int i = -1; i < box.cells()[0] + 1; ++i) out[i] = formula(D[i], p[i]);
       }
   });
-  fill_ghosts_of_increment(grid, increment[0], 1);
+  fill_ghosts_of_increment(box, increment[0], 1);
 }
 
 }  // namespace
@@ -77,21 +77,21 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
 PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
-  const int dim = grid_->dimension();
-  const bool open = grid_->any_open();
-  if (open) fill_ghosts_of_increment(*grid_, pressure[0], 1);
+  const int dim = domain_->dimension();
+  const bool open = domain_->any_open();
+  if (open) fill_ghosts_of_increment(*domain_, pressure[0], 1);
   double total[sum_count];
   PetscCall(sum_row_parts(
-      *grid_, sum_count,
+      *domain_, sum_count,
       [&](const RowPart &part, ExactSums &sums) {
-        (dim == 2 ? add_sums_2d : add_sums_3d)(*grid_, part, divergence[0], pressure[0], sums);
+        (dim == 2 ? add_sums_2d : add_sums_3d)(*domain_, part, divergence[0], pressure[0], sums);
       },
       total));
   last_ = acm_coefficients({total[0], total[1], total[2], total[3], total[4]});
   sound_speed_ = last_.sound_speed(dt);
-  formula_ = {last_.kappa, last_.g, 1 / dt, open ? 0 : total[5] / grid_->cell_count()};
-  if (open) increment_everywhere(*grid_, formula_, divergence, pressure, increment);
-  scope.flops(grid_->owned_count() * (2 * (4 * dim + 1) + 12));
+  formula_ = {last_.kappa, last_.g, 1 / dt, open ? 0 : total[5] / domain_->domain_cell_count()};
+  if (open) increment_everywhere(*domain_, formula_, divergence, pressure, increment);
+  scope.flops(domain_->cell_count() * (2 * (4 * dim + 1) + 12));
   PetscFunctionReturn(0);
 }
 

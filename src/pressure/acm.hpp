@@ -1,7 +1,9 @@
 // The paper's adaptive artificial compressibility method, one explicit step: (11), (12), (13).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
+#include "grid/domain.hpp"
 #include "kernels/momentum.hpp"
 #include "pressure/pressure_solver.hpp"
 
@@ -27,16 +29,16 @@ AcmCoefficients acm_coefficients(const AcmSums &sums);
 
 class AcmSolver : public PressureSolver {
 public:
-  explicit AcmSolver(const Grid &grid) : grid_(&grid) {}
+  explicit AcmSolver(const Domain &domain) : domain_(&domain) {}
   /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and
   /// ghosts of the pressure behind sides are lost.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
   const AcmCoefficients &last() const { return last_; }
-  const kernels::AcmIncrement *formula() const override { return grid_->any_open() ? nullptr : &formula_; }
+  const kernels::AcmIncrement *formula() const override { return domain_->any_open() ? nullptr : &formula_; }
   double sound_speed() const override { return sound_speed_; }
 
 private:
-  const Grid *grid_;
+  const Domain *domain_;
   AcmCoefficients last_;
   kernels::AcmIncrement formula_{};
   double sound_speed_ = 0;

@@ -2,28 +2,29 @@
 
 #include "base/events.hpp"
 #include "field/open_sides.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
 
-PetscErrorCode AcmSweepSolver::create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options,
+PetscErrorCode AcmSweepSolver::create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options,
                                       WorkSpace &work) {
   PetscFunctionBeginUser;
-  PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= SweepSums::most, grid.comm(),
+  PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= SweepSums::most, domain.comm(),
              PETSC_ERR_ARG_OUTOFRANGE, "sweeps %d, memory %d", options.sweeps_max, options.memory);
-  grid_ = &grid;
+  domain_ = &domain;
   exchange_ = &exchange;
   options_ = options;
   if (options.multigrid) {
     multigrid_ = std::make_unique<Multigrid>();
-    PetscCall(multigrid_->create(grid));
+    PetscCall(multigrid_->create(domain));
   }
   work_ = &work;
   PetscCall(work.reserve(work_fields));
-  memory_ = IncrementMemory(grid, options.memory);
-  if (options.memory == 0 && options.multigrid) own_scratch_ = FieldBlock(grid, 1);
+  memory_ = IncrementMemory(domain, options.memory);
+  if (options.memory == 0 && options.multigrid) own_scratch_ = FieldBlock(domain, 1);
   PetscFunctionReturn(0);
 }
 
@@ -51,34 +52,34 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   direction_ = lease.part(2, 1);
   SolveState state{dt, increment, memory_ ? divergence[0] : residual_[0]};
   if (memory_) {
-    PetscCall(memory_.update_ghosts(*grid_, *exchange_));
+    PetscCall(memory_.update_ghosts(*domain_, *exchange_));
     directions_.clear();
     for (int n = 0; n < memory_.count(); ++n) directions_.push_back(memory_.increment(n)[0]);
     memory_.turn();
-    sums_.start(*grid_, memory_.count());
+    sums_.start(*domain_, memory_.count());
     PetscCall(sweep(false, state));
   } else {
-    for (const Segment &s : grid_->rows())
+    for (const Segment &s : domain_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
     PetscCall(exchange_->update(residual_, Multigrid::halo));
-    fill_ghosts_of_increment(*grid_, residual_[0], 1);
-    if (!multigrid_) sums_.start(*grid_, 1);
+    fill_ghosts_of_increment(*domain_, residual_[0], 1);
+    if (!multigrid_) sums_.start(*domain_, 1);
   }
   FieldBlock correction = lease.part(3, 1), scratch;  // multigrid may swap them
   if (multigrid_) scratch = memory_ ? memory_.increment(0) : own_scratch_.part(0, 1);
   for (int s = 1; s <= options_.sweeps_max && !state.done; ++s) {
     if (multigrid_) {
-      const SweepTask next{grid_, nullptr, 1, state.recurs, state.residual, state.before};
-      sums_.start(*grid_, next.directions());
+      const SweepTask next{domain_, nullptr, 1, state.recurs, state.residual, state.before};
+      sums_.start(*domain_, next.directions());
       for (FieldBlock *field : {&residual_, &correction, &scratch})
-        clear_open_ghosts(*grid_, (*field)[0], Multigrid::halo);
+        clear_open_ghosts(*domain_, (*field)[0], Multigrid::halo);
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
                                     SweepTask rows = next;
                                     rows.q = &q;
                                     sums_.add_inner(rows, thread, j_begin, j_end, k);
                                   }));
-      fill_ghosts_of_increment(*grid_, correction[0], 1);
+      fill_ghosts_of_increment(*domain_, correction[0], 1);
       scope.flops(multigrid_->flops());
     }
     directions_.assign(1, multigrid_ ? correction[0] : residual_[0]);
@@ -91,17 +92,17 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
 
 PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
   PetscFunctionBeginUser;
-  const SweepTask task{grid_,        directions_.data(), static_cast<int>(directions_.size()),
+  const SweepTask task{domain_,      directions_.data(), static_cast<int>(directions_.size()),
                        state.recurs, state.residual,     state.before};
   SweepMinimum minimum;
   double mean = 0;
   PetscCall(sums_.find_minimum(task, &minimum, &mean));
-  residual_rms_ = std::sqrt(minimum.square / grid_->cell_count());
+  residual_rms_ = std::sqrt(minimum.square / domain_->domain_cell_count());
   state.done = last || !(residual_rms_ > target_);  // NaN is done
   const int n = task.directions();
-  const double laplacians = task.stencils * (4 * grid_->dimension() + 1) + task.recurs;
+  const double laplacians = task.stencils * (4 * domain_->dimension() + 1) + task.recurs;
   const double products = 2 + n + 0.5 * n * (n + 1);
-  PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * products + 2 * n + 2)));
+  PetscCall(PetscLogFlops(domain_->cell_count() * (laplacians + 2 * products + 2 * n + 2)));
   const bool pending = state.pending;
   const Increment how = !pending && !state.done ? Increment::later
                         : state.first           ? (pending ? Increment::set_two : Increment::set)
@@ -119,21 +120,21 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
                 state.increment[0],
                 {}};
   const ConstView D = step.new_residual;
-  const SweepTask next{grid_, &D, 1, true, D, task.residual};
+  const SweepTask next{domain_, &D, 1, true, D, task.residual};
   if (!multigrid_ && !state.done) {
-    sums_.start(*grid_, next.directions());
-    if (grid_->wraps_x())
+    sums_.start(*domain_, next.directions());
+    if (domain_->wraps_x())
       step.after = [&](int thread, int j_begin, int j_end, int k) { sums_.add_inner(next, thread, j_begin, j_end, k); };
   }
   take_step(step);
   if (state.done) PetscFunctionReturn(0);
-  PetscCall(PetscLogFlops(grid_->owned_count() * (laplacians + 2 * n)));
+  PetscCall(PetscLogFlops(domain_->cell_count() * (laplacians + 2 * n)));
   residual_.swap(before_);
   state.before = task.residual;
   state.residual = D;
   state.recurs = true;
   PetscCall(exchange_->update(residual_, Multigrid::halo));
-  fill_ghosts_of_increment(*grid_, residual_[0], 1);
+  fill_ghosts_of_increment(*domain_, residual_[0], 1);
   PetscFunctionReturn(0);
 }
 

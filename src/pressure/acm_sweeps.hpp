@@ -5,7 +5,9 @@
 // residuals). Without multigrid D itself takes the place of V(D), as in (11). Scalars only.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/work_space.hpp"
+#include "grid/domain.hpp"
 #include "pressure/increment_memory.hpp"
 #include "pressure/multigrid.hpp"
 #include "pressure/pressure_solver.hpp"
@@ -23,7 +25,7 @@ class AcmSweepSolver final : public PressureSolver {
 public:
   static constexpr int work_fields = 4;  ///< of the work space, during a solve
   /// Collective; `grid`, `exchange` and `work` must outlive the solver.
-  PetscErrorCode create(const Grid &grid, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
+  PetscErrorCode create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
 
   /// The increment has zero mean where no side is open. It is NaN where D is not finite anywhere.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
@@ -41,7 +43,7 @@ private:
   /// One sweep over directions_.
   PetscErrorCode sweep(bool last, SolveState &state);
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   GhostExchange *exchange_ = nullptr;
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
@@ -49,8 +51,8 @@ private:
   FieldBlock residual_, before_, direction_;  ///< of the work space, during a solve
   FieldBlock own_scratch_;                    ///< without memory
   IncrementMemory memory_;
-  std::vector<ConstView> directions_;         ///< of this sweep, but for d
-  RowSums sums_;                              ///< of this sweep or, once it is done, of the next
+  std::vector<ConstView> directions_;  ///< of this sweep, but for d
+  RowSums sums_;                       ///< of this sweep or, once it is done, of the next
   double target_ = 0, residual_rms_ = 0;
   long sweeps_ = 0;
 };

@@ -1,4 +1,5 @@
 #include "pressure/agglomeration.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -7,32 +8,32 @@ namespace {
 
 // copy(values of the box, first of its cells in the field, number) for all rows of a box; local indices of `field`.
 template <class F>
-void each_row(const Box &box, const Int3 &field_begin, const F &copy) {
+void each_row(const CellBlock &box, const Int3 &field_begin, const F &copy) {
   const Int3 first{box.begin[0] - field_begin[0], box.begin[1] - field_begin[1], box.begin[2] - field_begin[2]};
   for (int k = 0; k < box.cells[2]; ++k)
     for (int j = 0; j < box.cells[1]; ++j)
       copy(box.cells[0] * (j + std::ptrdiff_t(box.cells[1]) * k), first[0], first[1] + j, first[2] + k, box.cells[0]);
 }
 
-Box owned(const FieldBlock &block) { return {block.layout().begin, block.layout().cells}; }
+CellBlock owned(const FieldBlock &block) { return {block.layout().begin, block.layout().cells}; }
 
-void pack(const FieldBlock &block, const Box &box, double *values) {
+void pack(const FieldBlock &block, const CellBlock &box, double *values) {
   each_row(box, block.layout().begin,
            [&](std::ptrdiff_t at, int i, int j, int k, int n) { std::copy_n(block[0].row(j, k) + i, n, values + at); });
 }
 
-void unpack(const double *values, const Box &box, FieldBlock &block) {
+void unpack(const double *values, const CellBlock &box, FieldBlock &block) {
   each_row(box, block.layout().begin,
            [&](std::ptrdiff_t at, int i, int j, int k, int n) { std::copy_n(values + at, n, block[0].row(j, k) + i); });
 }
 
 }  // namespace
 
-PetscErrorCode Agglomeration::create(const Grid &from, const Grid &to) {
+PetscErrorCode Agglomeration::create(const Domain &from, const Domain &to) {
   PetscFunctionBeginUser;
   from_ = &from;
   to_ = &to;
-  values_.resize(static_cast<std::size_t>(std::max(from.owned_count(), to.owned_count())));
+  values_.resize(static_cast<std::size_t>(std::max(from.cell_count(), to.cell_count())));
   other_.resize(values_.size());
   if (!everywhere()) {
     PetscCall(move_.create(from.comm(), Partition(from), Partition(to)));
@@ -41,7 +42,7 @@ PetscErrorCode Agglomeration::create(const Grid &from, const Grid &to) {
   int cells = 0;
   for (int rank = 0; rank < from.ranks(); ++rank) {
     const Layout theirs = from.layout_of(rank);
-    const Box box{theirs.begin, theirs.cells};
+    const CellBlock box{theirs.begin, theirs.cells};
     displacements_.push_back(cells);
     counts_.push_back(static_cast<int>(box.size()));
     cells += counts_.back();
@@ -57,7 +58,7 @@ PetscErrorCode Agglomeration::forward(const FieldBlock &from, FieldBlock &to) {
     PetscCallMPI(MPI_Allgatherv(values_.data(), counts_[from_->rank()], MPI_DOUBLE, other_.data(), counts_.data(),
                                 displacements_.data(), MPI_DOUBLE, from_->comm()));
     const double *theirs = other_.data();
-    for (const Box &box : boxes_) {
+    for (const CellBlock &box : boxes_) {
       unpack(theirs, box, to);
       theirs += box.size();
     }
@@ -70,7 +71,7 @@ PetscErrorCode Agglomeration::forward(const FieldBlock &from, FieldBlock &to) {
 
 PetscErrorCode Agglomeration::backward(const FieldBlock &to, FieldBlock &from) {
   PetscFunctionBeginUser;
-  const Box mine = owned(from);
+  const CellBlock mine = owned(from);
   pack(to, everywhere() ? mine : owned(to), values_.data());
   if (!everywhere()) PetscCall(move_.backward(values_, other_));
   unpack(values_.data(), mine, from);

@@ -7,8 +7,8 @@
 
 namespace eulastic {
 
-IncrementMemory::IncrementMemory(const Grid &grid, int count) {
-  if (count > 0) block_ = FieldBlock(grid, count);
+IncrementMemory::IncrementMemory(const Box &box, int count) {
+  if (count > 0) block_ = FieldBlock(box, count);
 }
 
 FieldBlock *IncrementMemory::saved() {
@@ -25,11 +25,11 @@ void IncrementMemory::clear() {
   ghosts_valid_ = false;
 }
 
-PetscErrorCode IncrementMemory::update_ghosts(const Grid &grid, GhostExchange &exchange) {
+PetscErrorCode IncrementMemory::update_ghosts(const Box &box, GhostExchange &exchange) {
   PetscFunctionBeginUser;
   if (std::exchange(ghosts_valid_, true)) PetscFunctionReturn(0);
   PetscCall(exchange.update(block_, 1));
-  for (int f = 0; f < count(); ++f) fill_ghosts_of_increment(grid, block_[f], 1);
+  for (int f = 0; f < count(); ++f) fill_ghosts_of_increment(box, block_[f], 1);
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 // The pressure increments of the last steps: directions that a solve begins with.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 
 namespace eulastic {
@@ -9,7 +10,7 @@ class IncrementMemory {
 public:
   IncrementMemory() = default;
   /// Of `count` steps; 0: none.
-  IncrementMemory(const Grid &grid, int count);
+  IncrementMemory(const Box &box, int count);
   explicit operator bool() const { return bool(block_); }
   int count() const { return block_.count(); }
   std::size_t bytes() const { return block_.bytes(); }
@@ -22,7 +23,7 @@ public:
   /// All become 0; owned cells may be written then, through saved().
   void clear();
   /// One ghost layer of all, if anybody may have written.
-  PetscErrorCode update_ghosts(const Grid &grid, GhostExchange &exchange);
+  PetscErrorCode update_ghosts(const Box &box, GhostExchange &exchange);
 
 private:
   FieldBlock block_;

@@ -15,15 +15,15 @@ constexpr int most_iterations = 1000;
 constexpr int fewest_levels = 3;     // of the geometric preset
 constexpr double dense_cells = 512;  // the largest coarsest grid that is solved by singular values
 
-double shortest(const Grid &grid) {
-  const Real3 &h = grid.spacing();
-  return *std::min_element(h.begin(), h.begin() + grid.dimension());
+double shortest(const Box &box) {
+  const Real3 &h = box.spacing();
+  return *std::min_element(h.begin(), h.begin() + box.dimension());
 }
 
 // A in A q = b: minus the Laplacian times the cell volume, on the cells of any level. In units of V/h^2 (V the volume,
 // h the shortest side of the finest cells), so that PETSc's absolute thresholds know no length.
 PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
-  const Grid &grid = *static_cast<const Grid *>(context);
+  const Domain &domain = *static_cast<const Domain *>(context);
   DM dm;
   DMDALocalInfo info;
   Handle<MatNullSpace, MatNullSpaceDestroy> constants;
@@ -32,9 +32,9 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
   PetscCall(DMDAGetLocalInfo(dm, &info));
   const PetscInt cells[3] = {info.mx, info.my, info.mz};
   double volume = 1, coupling[3] = {};
-  for (int d = 0; d < grid.dimension(); ++d) {
-    volume *= double(grid.cells()[d]) / double(cells[d]);
-    coupling[d] = std::pow(shortest(grid) / grid.spec().length[d] * double(cells[d]), 2);
+  for (int d = 0; d < domain.dimension(); ++d) {
+    volume *= double(domain.domain_cells()[d]) / double(cells[d]);
+    coupling[d] = std::pow(shortest(domain) / domain.domain_shape().length[d] * double(cells[d]), 2);
   }
   PetscCall(MatZeroEntries(matrix));
   for (PetscInt k = info.zs; k < info.zs + info.zm; ++k)
@@ -45,11 +45,11 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
         MatStencil column[7] = {row};
         double value[7] = {};
         PetscInt count = 1;
-        for (int d = 0; d < grid.dimension(); ++d)
+        for (int d = 0; d < domain.dimension(); ++d)
           for (const PetscInt way : {-1, 1}) {
             const PetscInt other = cell[d] + way;
-            if (grid.is_wall(d) && (other < 0 || other >= cells[d])) {
-              if (grid.is_open(d, way > 0)) value[0] += 2 * volume * coupling[d];  // 0 half a cell away
+            if (domain.is_wall(d) && (other < 0 || other >= cells[d])) {
+              if (domain.is_open(d, way > 0)) value[0] += 2 * volume * coupling[d];  // 0 half a cell away
               continue;
             }
             column[count] = row;
@@ -62,8 +62,8 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
       }
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
-  if (grid.any_open()) PetscFunctionReturn(0);
-  PetscCall(MatNullSpaceCreate(grid.comm(), PETSC_TRUE, 0, nullptr, constants.put()));
+  if (domain.any_open()) PetscFunctionReturn(0);
+  PetscCall(MatNullSpaceCreate(domain.comm(), PETSC_TRUE, 0, nullptr, constants.put()));
   PetscCall(MatSetNullSpace(matrix, constants.get()));
   PetscFunctionReturn(0);
 }
@@ -72,23 +72,23 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
 // which coarsens along the strong couplings only.
 constexpr double about_equal = 1.5;
 
-bool about_equal_spacing(const Grid &grid) {
-  const Real3 &h = grid.spacing();
-  return *std::max_element(h.begin(), h.begin() + grid.dimension()) <= about_equal * shortest(grid);
+bool about_equal_spacing(const Box &box) {
+  const Real3 &h = box.spacing();
+  return *std::max_element(h.begin(), h.begin() + box.dimension()) <= about_equal * shortest(box);
 }
 
 // Grids, while every direction can be halved and leaves every rank a cell; and the cells of the coarsest. Where ranks
 // are not even, PETSc moves both ends of a coarse one by up to a cell.
-int geometric_levels(const Grid &grid, double *coarsest) {
-  const int least = grid.spec().starts[0].empty() ? 1 : 3;
-  Int3 cells = grid.cells(), narrowest = cells;
+int geometric_levels(const Domain &domain, double *coarsest) {
+  const int least = domain.spec().starts[0].empty() ? 1 : 3;
+  Int3 cells = domain.domain_cells(), narrowest = cells;
   for (int d = 0; d < 3; ++d)
-    for (int p = 0; p < grid.processors(d); ++p)
-      narrowest[d] = std::min(narrowest[d], grid.first_cell(d, p + 1) - grid.first_cell(d, p));
+    for (int p = 0; p < domain.processors(d); ++p)
+      narrowest[d] = std::min(narrowest[d], domain.first_cell(d, p + 1) - domain.first_cell(d, p));
   const auto halves = [&](int d) { return cells[d] % 2 == 0 && cells[d] / 2 >= 2 && narrowest[d] / 2 >= least; };
   int levels = 1;
-  for (; halves(0) && halves(1) && (grid.dimension() == 2 || halves(2)); ++levels)
-    for (int d = 0; d < grid.dimension(); ++d) cells[d] /= 2, narrowest[d] /= 2;
+  for (; halves(0) && halves(1) && (domain.dimension() == 2 || halves(2)); ++levels)
+    for (int d = 0; d < domain.dimension(); ++d) cells[d] /= 2, narrowest[d] /= 2;
   *coarsest = double(cells[0]) * cells[1] * cells[2];
   return levels;
 }
@@ -113,18 +113,18 @@ PetscErrorCode set_from_options(KSP ksp) {
 
 }  // namespace
 
-PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
+PetscErrorCode KspSolver::create(const Domain &domain, GhostExchange &exchange) {
   PetscFunctionBeginUser;
-  grid_ = &grid;
+  domain_ = &domain;
   exchange_ = &exchange;
-  PetscCall(grid.create_dm(DMDA_STENCIL_STAR, 1, cells_.put()));
+  PetscCall(domain.create_dm(DMDA_STENCIL_STAR, 1, cells_.put()));
   PetscCall(DMDASetInterpolationType(cells_.get(), DMDA_Q0));
   PetscCall(DMCreateGlobalVector(cells_.get(), rhs_.put()));
   PetscCall(VecDuplicate(rhs_.get(), solution_.put()));
-  PetscCall(KSPCreate(grid.comm(), ksp_.put()));
+  PetscCall(KSPCreate(domain.comm(), ksp_.put()));
   PetscCall(KSPSetOptionsPrefix(ksp_.get(), "pressure_"));
   PetscCall(KSPSetDM(ksp_.get(), cells_.get()));
-  PetscCall(KSPSetComputeOperators(ksp_.get(), assemble, const_cast<Grid *>(&grid)));
+  PetscCall(KSPSetComputeOperators(ksp_.get(), assemble, const_cast<Domain *>(&domain)));
   PetscCall(set_preset());
   PetscCall(set_from_options(ksp_.get()));
   PetscCall(KSPSetUp(ksp_.get()));
@@ -134,7 +134,7 @@ PetscErrorCode KspSolver::create(const Grid &grid, GhostExchange &exchange) {
 
 PetscErrorCode KspSolver::set_preset() {
   double coarsest;
-  const int levels = geometric_levels(*grid_, &coarsest);
+  const int levels = geometric_levels(*domain_, &coarsest);
   PC pc, smoother;
   KSP level;
   PetscFunctionBeginUser;
@@ -142,10 +142,10 @@ PetscErrorCode KspSolver::set_preset() {
   PetscCall(KSPSetSupportedNorm(ksp_.get(), KSP_NORM_UNPRECONDITIONED, PC_LEFT, 4));  // that of div v: preferred
   PetscCall(KSPSetTolerances(ksp_.get(), relative_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
   PetscCall(KSPGetPC(ksp_.get(), &pc));
-  if (levels < fewest_levels || !about_equal_spacing(*grid_)) {
+  if (levels < fewest_levels || !about_equal_spacing(*domain_)) {
     PetscCall(PCSetType(pc, PCGAMG));
     PetscReal threshold = 0.05;
-    if (!about_equal_spacing(*grid_)) PetscCall(PCGAMGSetThreshold(pc, &threshold, 1));
+    if (!about_equal_spacing(*domain_)) PetscCall(PCGAMGSetThreshold(pc, &threshold, 1));
     PetscFunctionReturn(0);
   }
   PetscCall(PCSetType(pc, PCMG));
@@ -164,28 +164,28 @@ PetscErrorCode KspSolver::set_preset() {
 }
 
 PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
-  const double factor = -shortest(*grid_) * shortest(*grid_) / dt;
+  const double factor = -shortest(*domain_) * shortest(*domain_) / dt;
   ExactSums sum(1);
   double mean, rest;
   PetscFunctionBeginUser;
-  for (const Segment &s : grid_->rows())
-    sum.add_row(0, divergence[0].row(s.j, s.k), s.size(), grid_->layout().begin[0]);
-  PetscCall(sum.reduce(grid_->comm(), &mean));
-  mean = grid_->any_open() ? 0 : mean / grid_->cell_count();
-  PetscCall(to_global_vector(*grid_, divergence[0], rhs_.get()));
+  for (const Segment &s : domain_->rows())
+    sum.add_row(0, divergence[0].row(s.j, s.k), s.size(), domain_->layout().begin[0]);
+  PetscCall(sum.reduce(domain_->comm(), &mean));
+  mean = domain_->any_open() ? 0 : mean / domain_->domain_cell_count();
+  PetscCall(to_global_vector(*domain_, divergence[0], rhs_.get()));
   PetscCall(VecShift(rhs_.get(), -mean));
   PetscCall(VecScale(rhs_.get(), factor));
   PetscCall(VecNorm(rhs_.get(), NORM_2, &rest));
   // D is a constant, but for the rounding of its mean: no increment removes it.
-  if (rest <= 1e-15 * std::abs(factor * mean) * std::sqrt(grid_->cell_count()))
+  if (rest <= 1e-15 * std::abs(factor * mean) * std::sqrt(domain_->domain_cell_count()))
     PetscCall(VecSet(solution_.get(), 0));
   else if (!std::isfinite(rest))
     PetscCall(VecSet(solution_.get(), NAN));
   else
     PetscCall(iterate());
-  PetscCall(from_global_vector(*grid_, solution_.get(), increment[0]));
+  PetscCall(from_global_vector(*domain_, solution_.get(), increment[0]));
   PetscCall(exchange_->update(increment, 1));
-  fill_ghosts_of_increment(*grid_, increment[0], 1);
+  fill_ghosts_of_increment(*domain_, increment[0], 1);
   PetscFunctionReturn(0);
 }
 
@@ -202,7 +202,7 @@ PetscErrorCode KspSolver::iterate() {
   PetscCall(KSPGetTolerances(ksp_.get(), nullptr, nullptr, nullptr, &limit));
   PetscCall(KSPGetResidualNorm(ksp_.get(), &residual));
   SETERRQ(
-      grid_->comm(), PETSC_ERR_NOT_CONVERGED,
+      domain_->comm(), PETSC_ERR_NOT_CONVERGED,
       "-pressure_solver ksp did not converge (%s, residual %g); accepted: a larger -pressure_ksp_max_it (now %ld) or "
       "-pressure_ksp_rtol, another -pressure_ksp_type or -pressure_pc_type",
       KSPConvergedReasons[reason], residual, static_cast<long>(limit));

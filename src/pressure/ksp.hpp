@@ -5,6 +5,7 @@
 #pragma once
 
 #include "field/ghost_exchange.hpp"
+#include "grid/domain.hpp"
 #include "pressure/pressure_solver.hpp"
 
 #include <petscksp.h>
@@ -18,7 +19,7 @@ public:
   /// Collective; `grid` and `exchange` must outlive the solver. Everything is set up here, so that afterwards PETSc
   /// can tell which options it has read. Fails with PETSC_ERR_USER_INPUT and PETSc's message where it cannot take the
   /// value of an option.
-  PetscErrorCode create(const Grid &grid, GhostExchange &exchange);
+  PetscErrorCode create(const Domain &domain, GhostExchange &exchange);
 
   /// The increment with lap(increment) = (divergence - its mean) / dt, up to the tolerance of the KSP on rms(D); its
   /// mean is 0 to round-off. All NaN if D is not finite. Fails if the KSP does not converge. Leaves `pressure` alone.
@@ -31,7 +32,7 @@ private:
   PetscErrorCode set_preset();
   PetscErrorCode iterate();
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   GhostExchange *exchange_ = nullptr;
   DmHandle cells_;
   KspHandle ksp_;

@@ -3,7 +3,8 @@
 // two open ones (odd about it), DCT-IV or DST-IV, which are their own inverses, between one of each.
 #pragma once
 
-#include "grid/grid.hpp"
+#include "base/petsc.hpp"
+#include "grid/box.hpp"
 
 #include <memory>
 

@@ -8,6 +8,8 @@
 // and continued by every rank for itself, down to one cell.
 #pragma once
 
+#include "base/petsc.hpp"
+#include "grid/domain.hpp"
 #include "pressure/multigrid_level.hpp"
 
 #include <functional>
@@ -21,7 +23,7 @@ public:
   using RowsDone = std::function<void(ConstView, int, int, int, int)>;
 
   /// Builds all levels, collectively; keeps no reference to `grid`.
-  PetscErrorCode create(const Grid &grid);
+  PetscErrorCode create(const Domain &domain);
   /// solution = V rhs, about the q with lap q = rhs. `rhs`: `halo` ghost layers valid. `solution`: one ghost layer
   /// valid on return; `scratch` is lost. All on the grid. Ghosts behind closed sides are neither used (but must be
   /// finite) nor set; behind open sides they must be 0, of all three, as many as are exchanged, and stay so.
@@ -34,10 +36,10 @@ public:
   std::size_t bytes() const;
   /// The levels of a grid, the finest first, without fields: each has half the cells of the one before it or, while
   /// these are too few for a rank, the same cells on fewer ranks, in the end all of them on every rank. `grid` may be
-  /// Grid::planned.
-  static std::vector<std::unique_ptr<MultigridLevel>> plan(const Grid &grid);
+  /// Domain::planned.
+  static std::vector<std::unique_ptr<MultigridLevel>> plan(const Domain &domain);
   /// How the levels of plan() are shared, for people: how many there are, and the cells from which on ranks are joined.
-  static std::string shares(const Grid &grid);
+  static std::string shares(const Domain &domain);
   struct Relaxations;
 
 private:

@@ -1,4 +1,5 @@
 #include "pressure/multigrid_level.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,23 +34,23 @@ std::vector<double> centres(const std::vector<double> &widths) {
 
 }  // namespace
 
-MultigridLevel::MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &finest_spacing)
-    : grid_(std::move(grid)), exchange_(grid_), widths_(widths), finest_spacing_(finest_spacing) {
+MultigridLevel::MultigridLevel(Domain &&grid, const Widths &widths, const Real3 &finest_spacing)
+    : domain_(std::move(grid)), exchange_(domain_), widths_(widths), finest_spacing_(finest_spacing) {
   double diagonal = 0;
   for (int d = 0; d < 3; ++d) {
     const std::vector<double> &w = widths_[d];
-    const int cells = grid_.cells()[d], begin = grid_.layout().begin[d];
+    const int cells = domain_.domain_cells()[d], begin = domain_.layout().begin[d];
     const double h = finest_spacing[d];
-    for (int local = -reach; local < grid_.owned()[d] + reach; ++local) {
+    for (int local = -reach; local < domain_.cells()[d] + reach; ++local) {
       const int g = image(begin + local, cells), below = image(g - 1, cells), above = image(g + 1, cells);
-      const bool low_wall = grid_.boundary(d) == Boundary::wall && g == 0;
-      const bool high_wall = grid_.boundary(d) == Boundary::wall && g == cells - 1;
+      const bool low_wall = domain_.boundary(d) == Boundary::wall && g == 0;
+      const bool high_wall = domain_.boundary(d) == Boundary::wall && g == cells - 1;
       const auto coupling = [&](bool side, bool open, int other) {
         if (side && open) return 2 / (h * h * w[g] * w[g]);  // to the 0 on it
         return cells == 1 || side ? 0 : 2 / (h * h * w[g] * (w[g] + w[other]));
       };
-      low_[d].push_back(coupling(low_wall, grid_.is_open(d, false), below));
-      high_[d].push_back(coupling(high_wall, grid_.is_open(d, true), above));
+      low_[d].push_back(coupling(low_wall, domain_.is_open(d, false), below));
+      high_[d].push_back(coupling(high_wall, domain_.is_open(d, true), above));
     }
     if (cells > 1)
       diagonal += 2 / (h * h * w[0] * w[0]);
@@ -62,37 +63,38 @@ MultigridLevel::MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &f
 std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
   // Beyond this ratio of spacings the stiffer direction goes first: relaxation smooths little along the other.
   constexpr double about_equal = 1.25;
-  Int3 cells = grid_.cells();
+  Int3 cells = domain_.domain_cells();
   Widths widths;
   double smallest = HUGE_VAL;
   for (int d = 0; d < 3; ++d)
     if (cells[d] > 1) smallest = std::min(smallest, widths_[d][0] * finest_spacing_[d]);
   for (int d = 0; d < 3; ++d) {
     const bool halve = cells[d] > 1 && widths_[d][0] * finest_spacing_[d] <= about_equal * smallest;
-    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0], grid_.is_open(d, true));
+    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0], domain_.is_open(d, true));
     widths[d].assign(cells[d], 0.0);
-    for (int i = 0; i < grid_.cells()[d]; ++i) widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
+    for (int i = 0; i < domain_.domain_cells()[d]; ++i)
+      widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
   }
-  return std::make_unique<MultigridLevel>(grid_.coarse(cells, false), widths, finest_spacing_);
+  return std::make_unique<MultigridLevel>(domain_.coarse(cells, false), widths, finest_spacing_);
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::everywhere() const {
-  return std::make_unique<MultigridLevel>(grid_.coarse(grid_.cells(), true), widths_, finest_spacing_);
+  return std::make_unique<MultigridLevel>(domain_.coarse(domain_.domain_cells(), true), widths_, finest_spacing_);
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::joined(const std::array<bool, 3> &along) const {
-  return std::make_unique<MultigridLevel>(grid_.joined(along), widths_, finest_spacing_);
+  return std::make_unique<MultigridLevel>(domain_.joined(along), widths_, finest_spacing_);
 }
 
 std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
   std::array<bool, 3> result{};
   for (int d = 0; d < 3; ++d) {
-    int holders = 0, least = coarse.grid_.cells()[d];
-    for (int p = 0; p < grid_.processors(d); ++p) {
-      const auto cells = [&](const Grid &grid) { return grid.first_cell(d, p + 1) - grid.first_cell(d, p); };
-      if (cells(grid_) == 0) continue;
+    int holders = 0, least = coarse.domain_.domain_cells()[d];
+    for (int p = 0; p < domain_.processors(d); ++p) {
+      const auto cells = [&](const Domain &domain) { return domain.first_cell(d, p + 1) - domain.first_cell(d, p); };
+      if (cells(domain_) == 0) continue;
       ++holders;
-      least = std::min(least, cells(coarse.grid_));
+      least = std::min(least, cells(coarse.domain_));
     }
     result[d] = holders > 1 && least < 2;
   }
@@ -100,12 +102,12 @@ std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
 }
 
 LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const {
-  const int fine_cells = grid_.cells()[d], coarse_cells = coarse.grid_.cells()[d];
-  const int fine_begin = grid_.layout().begin[d], coarse_begin = coarse.grid_.layout().begin[d];
-  const int coarse_owned = coarse.grid_.owned()[d];
+  const int fine_cells = domain_.domain_cells()[d], coarse_cells = coarse.domain_.domain_cells()[d];
+  const int fine_begin = domain_.layout().begin[d], coarse_begin = coarse.domain_.layout().begin[d];
+  const int coarse_owned = coarse.domain_.cells()[d];
   const std::vector<double> &fine_width = widths_[d], &coarse_width = coarse.widths_[d];
   const std::vector<double> fine_centre = centres(fine_width), coarse_centre = centres(coarse_width);
-  const bool wall = grid_.boundary(d) == Boundary::wall;
+  const bool wall = domain_.boundary(d) == Boundary::wall;
   LineTransfer line;
   line.stride = coarse_cells < fine_cells ? 2 : 1;
   line.first = line.stride * coarse_begin - fine_begin;
@@ -122,7 +124,7 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     const int way = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + way;
     *share = 0;
     if (way != 0 && wall && (other < 0 || other >= coarse_cells)) {
-      if (!grid_.is_open(d, other >= coarse_cells)) return 0;
+      if (!domain_.is_open(d, other >= coarse_cells)) return 0;
       *share = 2 * std::abs(distance) / coarse_width[parent];
       return way;
     }
@@ -130,7 +132,7 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
     return way;
   };
-  for (int i = -reach; i < grid_.owned()[d] + reach; ++i) {
+  for (int i = -reach; i < domain_.cells()[d] + reach; ++i) {
     const int g = image(fine_begin + i, fine_cells), turns = (fine_begin + i - g) / fine_cells;
     double share;
     const int way = neighbour(g, &share);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "field/ghost_exchange.hpp"
+#include "grid/domain.hpp"
 #include "kernels/poisson.hpp"
 #include "pressure/agglomeration.hpp"
 
@@ -41,14 +42,14 @@ class MultigridLevel {
 public:
   using Widths = std::array<std::vector<double>, 3>;  ///< of all cells, in units of the finest spacing
 
-  MultigridLevel(Grid &&grid, const Widths &widths, const Real3 &finest_spacing);
+  MultigridLevel(Domain &&grid, const Widths &widths, const Real3 &finest_spacing);
   MultigridLevel(const MultigridLevel &) = delete;
 
-  const Grid &grid() const { return grid_; }
+  const Domain &domain() const { return domain_; }
   GhostExchange &exchange() { return exchange_; }
-  bool single_cell() const { return grid_.cell_count() == 1; }
+  bool single_cell() const { return domain_.domain_cell_count() == 1; }
   /// Whether this rank holds cells.
-  bool has_cells() const { return grid_.owned_count() > 0; }
+  bool has_cells() const { return domain_.cell_count() > 0; }
   /// 1 / (sum over directions of -2/h^2): the step of an undamped relaxation.
   double step() const { return step_; }
   kernels::LineCoefficients coefficients(int j, int k) const {
@@ -59,20 +60,20 @@ public:
   std::unique_ptr<MultigridLevel> coarser() const;
   /// The same cells, all of them on every rank.
   std::unique_ptr<MultigridLevel> everywhere() const;
-  /// The same cells on fewer ranks: Grid::joined.
+  /// The same cells on fewer ranks: Domain::joined.
   std::unique_ptr<MultigridLevel> joined(const std::array<bool, 3> &along) const;
   /// In which directions, of those that several ranks share, one of them would have fewer than two cells of `coarse`.
   std::array<bool, 3> thin(const MultigridLevel &coarse) const;
   /// The transfer to `coarse` along direction d.
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 
-  FieldBlock rhs, solution, scratch;  ///< empty until allocated: the finest level works on its caller's
-  int depth = 1;                      ///< stages of a pass of smoothing
-  std::array<LineTransfer, 3> lines;  ///< to the next level, if that has fewer cells
+  FieldBlock rhs, solution, scratch;             ///< empty until allocated: the finest level works on its caller's
+  int depth = 1;                                 ///< stages of a pass of smoothing
+  std::array<LineTransfer, 3> lines;             ///< to the next level, if that has fewer cells
   std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if that has the same cells on other ranks
 
 private:
-  Grid grid_;
+  Domain domain_;
   GhostExchange exchange_;
   Widths widths_;
   Real3 finest_spacing_;

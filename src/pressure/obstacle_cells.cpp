@@ -33,19 +33,20 @@ PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next,
   PetscCall(exchange_->update(pressure, 1));
   std::size_t at = 0;
   const View p = pressure[0];
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
       const Int3 cell{cells_[c].i, row.j, row.k};
       const double *is_known = &known[0](cell[0], cell[1], cell[2]);
       double *value = &p(cell[0], cell[1], cell[2]);
       if (*is_known != 0) continue;
       double sum = 0, count = 0;
-      for (int d = 0; d < grid_->dimension(); ++d) {
+      for (int d = 0; d < domain_->dimension(); ++d) {
         double pair[2] = {};
         for (int high = 0; high < 2; ++high) {
           const std::ptrdiff_t step = high ? p.stride(d) : -p.stride(d);
-          const int global = grid_->layout().begin[d] + cell[d] + (high ? 1 : -1);
-          if ((grid_->is_wall(d) && (global < 0 || global >= grid_->cells()[d])) || is_known[step] == 0) continue;
+          const int global = domain_->layout().begin[d] + cell[d] + (high ? 1 : -1);
+          if ((domain_->is_wall(d) && (global < 0 || global >= domain_->domain_cells()[d])) || is_known[step] == 0)
+            continue;
           pair[high] = value[step];
           ++count;
         }
@@ -66,9 +67,9 @@ void ObstacleSolver::copy_closed(const FieldBlock &from, FieldBlock *to) const {
 
 PetscErrorCode ObstacleSolver::spread(double part, FieldBlock &divergence) const {
   PetscFunctionBeginUser;
-  const int faces = 2 * grid_->dimension();
+  const int faces = 2 * domain_->dimension();
   std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     double *D = divergence[0].row(row.j, row.k);
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
       const double open = std::accumulate(cells_[c].open, cells_[c].open + faces, 0.0) / faces;
@@ -77,7 +78,7 @@ PetscErrorCode ObstacleSolver::spread(double part, FieldBlock &divergence) const
     ++at;
   }
   PetscCall(exchange_->update(divergence, 1));
-  fill_ghosts_of_increment(*grid_, divergence[0], 1);
+  fill_ghosts_of_increment(*domain_, divergence[0], 1);
   PetscFunctionReturn(0);
 }
 

@@ -15,52 +15,52 @@ constexpr double round_off = 1e-12;  // of the first residual: further on direct
 constexpr int patience = 12;         // iterations without progress: round-off
 
 template <int Dim>
-EULASTIC_INLINE void laplacian_rows(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+EULASTIC_INLINE void laplacian_rows(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
                                     FieldBlock &out) {
-  const InverseSquares h = grid.inverse_squares();
+  const InverseSquares h = box.inverse_squares();
   const ConstView from = q[0];
   const std::ptrdiff_t sy = from.sy, sz = from.sz;
-  for (const Segment &s : part.rows(grid)) {
+  for (const Segment &s : part.rows(box)) {
     const double *u = from.row(s.j, s.k);
     double *to = out[0].row(s.j, s.k);
 #pragma omp simd
     for (int i = s.i_begin; i < s.i_end; ++i) to[i] = dt * kernels::laplacian<Dim>(u + i, sy, sz, h);
   }
 }
-EULASTIC_CLONES void laplacian_2d(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+EULASTIC_CLONES void laplacian_2d(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
                                   FieldBlock &out) {
-  laplacian_rows<2>(grid, part, dt, q, out);
+  laplacian_rows<2>(box, part, dt, q, out);
 }
-EULASTIC_CLONES void laplacian_3d(const Grid &grid, const RowPart &part, double dt, const FieldBlock &q,
+EULASTIC_CLONES void laplacian_3d(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
                                   FieldBlock &out) {
-  laplacian_rows<3>(grid, part, dt, q, out);
+  laplacian_rows<3>(box, part, dt, q, out);
 }
 
-EULASTIC_CLONES void add_products(const Grid &grid, const RowPart &part, ConstView a, ConstView b, ConstView c,
+EULASTIC_CLONES void add_products(const Box &box, const RowPart &part, ConstView a, ConstView b, ConstView c,
                                   ConstView d, ExactSums &sums) {
-  for (const Segment &s : part.rows(grid)) {
+  for (const Segment &s : part.rows(box)) {
     const double *p = a.row(s.j, s.k), *q = b.row(s.j, s.k), *r = c.row(s.j, s.k), *t = d.row(s.j, s.k);
     const auto products = [=](int i, auto add) EULASTIC_BODY {
       add(0, p[i], q[i]);
       add(1, r[i], t[i]);
     };
-    add_row_sums<2>(s.size(), grid.layout().begin[0], products, sums);
+    add_row_sums<2>(s.size(), box.layout().begin[0], products, sums);
   }
 }
 
-void add_values(const Grid &grid, const RowPart &part, ConstView a, ExactSums &sums) {
-  for (const Segment &s : part.rows(grid)) {
+void add_values(const Box &box, const RowPart &part, ConstView a, ExactSums &sums) {
+  for (const Segment &s : part.rows(box)) {
     const double *p = a.row(s.j, s.k);
     add_row_sums<1>(
-        s.size(), grid.layout().begin[0], [=](int i, auto add) EULASTIC_BODY { add(0, p[i], 1); }, sums);
+        s.size(), box.layout().begin[0], [=](int i, auto add) EULASTIC_BODY { add(0, p[i], 1); }, sums);
   }
 }
 
 // to = scale to + factor from, with a layer of ghosts.
-EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scale, double factor,
-                             const FieldBlock &from, FieldBlock &to) {
-  const RowPart part = owned.with_ghosts(grid);
-  const int n = grid.owned()[0];
+EULASTIC_CLONES void combine(const Box &box, const RowPart &owned, double scale, double factor, const FieldBlock &from,
+                             FieldBlock &to) {
+  const RowPart part = owned.with_ghosts(box);
+  const int n = box.cells()[0];
   for (int k = part.k_begin; k < part.k_end; ++k)
     for (int j = part.j_begin; j < part.j_end; ++j) {
       const double *x = from[0].row(j, k);
@@ -70,20 +70,20 @@ EULASTIC_CLONES void combine(const Grid &grid, const RowPart &owned, double scal
     }
 }
 
-void combine_all(const Grid &grid, double scale, double factor, const FieldBlock &from, FieldBlock &to) {
-  in_row_parts(grid, [&](const RowPart &part) { combine(grid, part, scale, factor, from, to); });
-  (void)PetscLogFlops(grid.owned_count() * 3);
+void combine_all(const Box &box, double scale, double factor, const FieldBlock &from, FieldBlock &to) {
+  in_row_parts(box, [&](const RowPart &part) { combine(box, part, scale, factor, from, to); });
+  (void)PetscLogFlops(box.cell_count() * 3);
 }
 
 }  // namespace
 
-ObstacleSolver::ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
+ObstacleSolver::ObstacleSolver(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
                                double accuracy, int memory, std::unique_ptr<PressureSolver> other)
-    : grid_(&grid),
+    : domain_(&domain),
       exchange_(&exchange),
       work_(&work),
       other_(std::move(other)),
-      memory_(grid, memory),
+      memory_(domain, memory),
       accuracy_(accuracy) {
   follow(faces);
 }
@@ -102,16 +102,16 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
   cells_.clear();
   first_.clear();
   travels_ = faces.travels;
-  const Int3 &n = grid_->owned();
-  const Real3 &h = grid_->spacing();
+  const Int3 &n = domain_->cells();
+  const Real3 &h = domain_->spacing();
   // How far faces are open, and how far it is from them to the surface through the cell, in parts of the spacing.
   std::vector<std::array<double, 6>> open(n[0]), depth(n[0]);
   std::vector<int> body(n[0]);
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     first_.push_back(cells_.size());
     for (auto *cells : {&open, &depth})
       for (auto &cell : *cells) cell.fill(1);
-    for (int d = 0; d < grid_->dimension(); ++d)
+    for (int d = 0; d < domain_->dimension(); ++d)
       for (int high = 0; high < 2; ++high) {
         const int shift = d == 0 && high, face = 2 * d + high;
         faces.find_beside(d, high, row.j, row.k, &body);
@@ -127,8 +127,8 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
     for (int i = 0; i < n[0]; ++i) {
       if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
       Beside cell{i, {}};
-      std::copy_n(open[i].begin(), 2 * grid_->dimension(), cell.open);  // 2-D has no faces along z
-      for (int d = 0; d < grid_->dimension(); ++d) {
+      std::copy_n(open[i].begin(), 2 * domain_->dimension(), cell.open);  // 2-D has no faces along z
+      for (int d = 0; d < domain_->dimension(); ++d) {
         const double *at = &open[i][2 * d], *to = &depth[i][2 * d];
         cell.response = std::max(cell.response, at[0] > 0 && at[1] > 0 ? 0.5 * (at[0] + at[1]) : to[0] + to[1]);
       }
@@ -140,21 +140,21 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
 
 // dt div(open grad q); q has a layer of ghosts.
 void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) const {
-  in_row_parts(*grid_, [&](const RowPart &part) {
-    (grid_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*grid_, part, dt, q, out);
+  in_row_parts(*domain_, [&](const RowPart &part) {
+    (domain_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*domain_, part, dt, q, out);
   });
-  (void)PetscLogFlops(grid_->owned_count() * (4 * grid_->dimension() + 1) +
-                      double(cells_.size()) * (7 * grid_->dimension() + 1));
+  (void)PetscLogFlops(domain_->cell_count() * (4 * domain_->dimension() + 1) +
+                      double(cells_.size()) * (7 * domain_->dimension() + 1));
   const ConstView from = q[0];
-  const Real3 &h = grid_->spacing();
+  const Real3 &h = domain_->spacing();
   std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     const double *u = from.row(row.j, row.k);
     double *to = out[0].row(row.j, row.k);
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
       const int i = cells_[c].i;
       double sum = 0;
-      for (int d = 0; d < grid_->dimension(); ++d) {
+      for (int d = 0; d < domain_->dimension(); ++d) {
         const std::ptrdiff_t s = from.stride(d);
         const double *open = cells_[c].open + 2 * d;
         sum += (open[0] * (u[i - s] - u[i]) + open[1] * (u[i + s] - u[i])) / (h[d] * h[d]);
@@ -169,14 +169,14 @@ void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) cons
 // served by what earlier increments were.
 PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const {
   PetscFunctionBeginUser;
-  const Real3 &h = grid_->spacing();
+  const Real3 &h = domain_->spacing();
   std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     const double *r = residual[0].row(row.j, row.k);
     double *q = correction[0].row(row.j, row.k);
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
       double open = 0, all = 0;
-      for (int d = 0; d < grid_->dimension(); ++d) {
+      for (int d = 0; d < domain_->dimension(); ++d) {
         open += (cells_[c].open[2 * d] + cells_[c].open[2 * d + 1]) / (h[d] * h[d]);
         all += 2 / (h[d] * h[d]);
       }
@@ -185,7 +185,7 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, 
     ++at;
   }
   PetscCall(exchange_->update(correction, 1));
-  fill_ghosts_of_increment(*grid_, correction[0], 1);
+  fill_ghosts_of_increment(*domain_, correction[0], 1);
   PetscFunctionReturn(0);
 }
 
@@ -196,28 +196,28 @@ PetscErrorCode ObstacleSolver::normalise(const FieldBlock &pressure, FieldBlock 
   PetscFunctionBeginUser;
   const View q = increment[0];
   for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
-  if (!grid_->any_open()) {
+  if (!domain_->any_open()) {
     if (closed_count_ < 0) {
       closed_count_ = 0;
       for_closed_cells([&](const Int3 &) { ++closed_count_; });
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed_count_, 1, MPI_INT64_T, MPI_SUM, grid_->comm()));
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &closed_count_, 1, MPI_INT64_T, MPI_SUM, domain_->comm()));
     }
     const auto add = [&](const RowPart &part, ExactSums &sums) {
-      add_values(*grid_, part, q, sums);
+      add_values(*domain_, part, q, sums);
       if (!travels_) return;
       const ConstView p = pressure[0];
-      add_values(*grid_, part, p, sums);
+      add_values(*domain_, part, p, sums);
       if (part.first) for_closed_cells([&](const Int3 &cell) { sums.add(0, -p(cell[0], cell[1], cell[2])); });
     };
     double sum;
-    PetscCall(sum_row_parts(*grid_, 1, add, &sum));
-    const double mean = sum / std::max(1.0, grid_->cell_count() - double(closed_count_));
-    for (const Segment &row : grid_->rows())
+    PetscCall(sum_row_parts(*domain_, 1, add, &sum));
+    const double mean = sum / std::max(1.0, domain_->domain_cell_count() - double(closed_count_));
+    for (const Segment &row : domain_->rows())
       for (int i = row.i_begin; i < row.i_end; ++i) q(i, row.j, row.k) -= mean;
     for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
   }
   PetscCall(exchange_->update(increment, 1));
-  fill_ghosts_of_increment(*grid_, q, 1);
+  fill_ghosts_of_increment(*domain_, q, 1);
   PetscFunctionReturn(0);
 }
 
@@ -226,9 +226,10 @@ PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b
   PetscFunctionBeginUser;
   double total[2];
   PetscCall(sum_row_parts(
-      *grid_, 2,
-      [&](const RowPart &part, ExactSums &sums) { add_products(*grid_, part, a[0], b[0], c[0], d[0], sums); }, total));
-  PetscCall(PetscLogFlops(grid_->owned_count() * 4));
+      *domain_, 2,
+      [&](const RowPart &part, ExactSums &sums) { add_products(*domain_, part, a[0], b[0], c[0], d[0], sums); },
+      total));
+  PetscCall(PetscLogFlops(domain_->cell_count() * 4));
   *ab = total[0];
   *cd = total[1];
   PetscFunctionReturn(0);
@@ -245,9 +246,9 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
   increment.clear();
   double square, ignored, last = 0;
   PetscCall(products(residual, residual, residual, residual, &square, &ignored));
-  const double cells = grid_->cell_count(), target = std::max(target_, round_off * std::sqrt(square / cells));
+  const double cells = domain_->domain_cell_count(), target = std::max(target_, round_off * std::sqrt(square / cells));
   const int remembered = memory_ ? memory_.count() : 0;
-  if (memory_) PetscCall(memory_.update_ghosts(*grid_, *exchange_));
+  if (memory_) PetscCall(memory_.update_ghosts(*domain_, *exchange_));
   double best = square;
   for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
     const double rms = std::sqrt(square / cells);
@@ -266,7 +267,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     } else {  // `image` still is A p of the direction before
       double coupling;
       PetscCall(products(correction, image, residual, residual, &coupling, &ignored));
-      combine_all(*grid_, -coupling / last, 1, correction, direction);
+      combine_all(*domain_, -coupling / last, 1, correction, direction);
     }
     apply(dt, direction, image);
     double curvature, projection;
@@ -275,10 +276,10 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     if (curvature == 0 && n < remembered) continue;  // nothing is remembered yet
     if (curvature == 0) break;
     const double step = projection / curvature;
-    combine_all(*grid_, 1, step, direction, increment);
-    combine_all(*grid_, 1, -step, image, residual);
+    combine_all(*domain_, 1, step, direction, increment);
+    combine_all(*domain_, 1, -step, image, residual);
     PetscCall(exchange_->update(residual, 1));
-    fill_ghosts_of_increment(*grid_, residual[0], 1);
+    fill_ghosts_of_increment(*domain_, residual[0], 1);
     PetscCall(products(residual, residual, residual, residual, &square, &ignored));
     if (square < 0.5 * best) {
       best = square;

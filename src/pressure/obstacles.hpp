@@ -4,9 +4,11 @@
 // flexible, as that one may stop early (Notay, SIAM J. Sci. Comput. 22, 2000).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/rigid_faces.hpp"
 #include "field/work_space.hpp"
+#include "grid/domain.hpp"
 #include "pressure/increment_memory.hpp"
 #include "pressure/pressure_solver.hpp"
 
@@ -21,8 +23,8 @@ public:
 
   /// `accuracy`: of the target that is asked for, 1 or less. `memory`: increments of earlier steps that are directions
   /// to begin with. All must outlive the solver.
-  ObstacleSolver(const Grid &grid, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces, double accuracy,
-                 int memory, std::unique_ptr<PressureSolver> other);
+  ObstacleSolver(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
+                 double accuracy, int memory, std::unique_ptr<PressureSolver> other);
   /// The faces have changed: bodies travel.
   void follow(const RigidFaces &faces);
   /// Cells whose faces are all closed get what the pressure around them is, two layers deep: nothing corrects it there,
@@ -60,7 +62,7 @@ private:
   PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
                           double *ab, double *cd) const;
 
-  const Grid *grid_;
+  const Domain *domain_;
   GhostExchange *exchange_;
   WorkSpace *work_;
   std::unique_ptr<PressureSolver> other_;
@@ -76,7 +78,7 @@ private:
 template <class Work>
 void ObstacleSolver::for_closed_cells(const Work &work) const {
   std::size_t at = 0;
-  for (const Segment &row : grid_->rows()) {
+  for (const Segment &row : domain_->rows()) {
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c)
       if (cells_[c].closed()) work(Int3{cells_[c].i, row.j, row.k});
     ++at;

@@ -1,6 +1,7 @@
 // One interface for all ways to make the velocity solenoidal: (10) exactly, or (11) by artificial compressibility.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/field_block.hpp"
 
 namespace eulastic {

@@ -1,14 +1,15 @@
 #include "pressure/redistribute.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
 namespace eulastic {
 
-Partition::Partition(const Grid &grid) : cells_(grid.cells()) {
-  for (int d = 0; d < 3; ++d) parts_[d] = grid.processors(d);
-  for (int rank = 0; rank < grid.ranks(); ++rank) {
-    const Layout layout = grid.layout_of(rank);
+Partition::Partition(const Domain &domain) : cells_(domain.domain_cells()) {
+  for (int d = 0; d < 3; ++d) parts_[d] = domain.processors(d);
+  for (int rank = 0; rank < domain.ranks(); ++rank) {
+    const Layout layout = domain.layout_of(rank);
     boxes_.push_back({layout.begin, layout.cells});
     positions_.push_back({rank % parts_[0], rank / parts_[0] % parts_[1], rank / parts_[0] / parts_[1]});
   }
@@ -18,7 +19,7 @@ Partition Partition::complete(int direction, int other) const {
   Partition result = *this;
   const std::int64_t parts = parts_[direction];
   for (int rank = 0; rank < ranks(); ++rank) {
-    Box &box = result.boxes_[rank];
+    CellBlock &box = result.boxes_[rank];
     Int3 &position = result.positions_[rank];
     const std::int64_t part = position[direction], cells = box.cells[other];
     const int low = static_cast<int>(cells * part / parts), high = static_cast<int>(cells * (part + 1) / parts);
@@ -39,10 +40,10 @@ PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, cons
   PetscFunctionBeginUser;
   if (from == to) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(comm, &me));
-  const Box &mine = to.box(me);
+  const CellBlock &mine = to.box(me);
   std::vector<PetscSFNode> roots(mine.size());
   for (int rank = 0; rank < from.ranks(); ++rank) {
-    const Box &theirs = from.box(rank);
+    const CellBlock &theirs = from.box(rank);
     Int3 low, high;
     for (int d = 0; d < 3; ++d) {
       low[d] = std::max(mine.begin[d], theirs.begin[d]);

@@ -11,9 +11,10 @@ namespace eulastic {
 
 bool SmacSolver::available() { return true; }
 
-PetscErrorCode SmacSolver::create(const Grid &grid, GhostExchange &exchange, std::unique_ptr<PressureSolver> *solver) {
+PetscErrorCode SmacSolver::create(const Domain &domain, GhostExchange &exchange,
+                                  std::unique_ptr<PressureSolver> *solver) {
   PetscFunctionBeginUser;
-  std::unique_ptr<SmacSolver> smac(new SmacSolver(grid, exchange));
+  std::unique_ptr<SmacSolver> smac(new SmacSolver(domain, exchange));
   PetscCall(smac->set_up());
   *solver = std::move(smac);
   PetscFunctionReturn(0);
@@ -21,36 +22,37 @@ PetscErrorCode SmacSolver::create(const Grid &grid, GhostExchange &exchange, std
 
 PetscErrorCode SmacSolver::set_up() {
   PetscFunctionBeginUser;
-  const bool flat = grid_->dimension() == 2;
+  const bool flat = domain_->dimension() == 2;
   // Every move hands the cut to a direction whose lines are done or still to come, so that slabs move only once.
-  const Partition own(*grid_), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
-  PetscCall(to_x_.create(grid_->comm(), own, x));
-  PetscCall(to_z_.create(grid_->comm(), x, z));
-  PetscCall(to_y_.create(grid_->comm(), z, y));
-  const int me = grid_->rank();
+  const Partition own(*domain_), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
+  PetscCall(to_x_.create(domain_->comm(), own, x));
+  PetscCall(to_z_.create(domain_->comm(), x, z));
+  PetscCall(to_y_.create(domain_->comm(), z, y));
+  const int me = domain_->rank();
   box_x_ = x.box(me);
   box_z_ = z.box(me);
   box_y_ = y.box(me);
   const std::ptrdiff_t size = std::max({own.box(me).size(), box_x_.size(), box_z_.size(), box_y_.size()});
   values_.resize(size);
-  other_.resize(grid_->ranks() > 1 ? size : 0);
+  other_.resize(domain_->ranks() > 1 ? size : 0);
 
   const auto scaled = [&](const LineTransform &transform, int d, std::vector<double> &stiffness) {
-    const double ratio = grid_->spacing()[1] / grid_->spacing()[d];
+    const double ratio = domain_->spacing()[1] / domain_->spacing()[d];
     for (int m = 0; m < box_y_.cells[d]; ++m)
       stiffness.push_back(ratio * ratio * transform.stiffness(box_y_.begin[d] + m));
   };
-  PetscCall(transform_x_.create(grid_->boundary(0), grid_->cells()[0], grid_->spec().open[0]));
+  PetscCall(transform_x_.create(domain_->boundary(0), domain_->domain_cells()[0], domain_->domain_shape().open[0]));
   scaled(transform_x_, 0, stiffness_x_);
   flops_ = 2 * transform_x_.flops_per_line() * box_x_.cells[1] * box_x_.cells[2];
   if (flat) {
     stiffness_z_ = {0.0};
   } else {
-    PetscCall(transform_z_.create(grid_->boundary(2), grid_->cells()[2], grid_->spec().open[2]));
+    PetscCall(transform_z_.create(domain_->boundary(2), domain_->domain_cells()[2], domain_->domain_shape().open[2]));
     scaled(transform_z_, 2, stiffness_z_);
     flops_ += 2 * transform_z_.flops_per_line() * box_z_.cells[0] * box_z_.cells[1];
   }
-  lines_y_ = TridiagonalLines(grid_->cells()[1], grid_->boundary(1) == Boundary::periodic, grid_->spec().open[1]);
+  lines_y_ = TridiagonalLines(domain_->domain_cells()[1], domain_->boundary(1) == Boundary::periodic,
+                              domain_->domain_shape().open[1]);
   flops_ += TridiagonalLines::flops_per_value * double(box_y_.size());
   PetscFunctionReturn(0);
 }
@@ -60,30 +62,30 @@ PetscErrorCode SmacSolver::solve(double dt, const FieldBlock &divergence, FieldB
   {
     VerbScope scope(Verb::smac);
     scope.flops(flops_);
-    const Int3 owned = grid_->owned();
+    const Int3 owned = domain_->cells();
     const auto packed = [&](int j, int k) { return values_.begin() + owned[0] * (j + std::ptrdiff_t(owned[1]) * k); };
     const std::ptrdiff_t lines_x = std::ptrdiff_t(box_x_.cells[1]) * box_x_.cells[2];
     const std::ptrdiff_t lines_z = std::ptrdiff_t(box_z_.cells[0]) * box_z_.cells[1];
-    const bool flat = grid_->dimension() == 2;
+    const bool flat = domain_->dimension() == 2;
     double gain = transform_x_.gain();
     if (!flat) gain *= transform_z_.gain();
 
-    for (const Segment &s : grid_->rows()) std::copy_n(divergence[0].row(s.j, s.k), owned[0], packed(s.j, s.k));
+    for (const Segment &s : domain_->rows()) std::copy_n(divergence[0].row(s.j, s.k), owned[0], packed(s.j, s.k));
     PetscCall(to_x_.forward(values_, other_));
     transform_x_.forward(values_.data(), lines_x, box_x_.cells[0], 1);
     PetscCall(to_z_.forward(values_, other_));
     if (!flat) transform_z_.forward(values_.data(), lines_z, 1, lines_z);
     PetscCall(to_y_.forward(values_, other_));
-    solve_y(-grid_->spacing()[1] * grid_->spacing()[1] / (dt * gain));
+    solve_y(-domain_->spacing()[1] * domain_->spacing()[1] / (dt * gain));
     PetscCall(to_y_.backward(values_, other_));
     if (!flat) transform_z_.backward(values_.data(), lines_z, 1, lines_z);
     PetscCall(to_z_.backward(values_, other_));
     transform_x_.backward(values_.data(), lines_x, box_x_.cells[0], 1);
     PetscCall(to_x_.backward(values_, other_));
-    for (const Segment &s : grid_->rows()) std::copy_n(packed(s.j, s.k), owned[0], increment[0].row(s.j, s.k));
+    for (const Segment &s : domain_->rows()) std::copy_n(packed(s.j, s.k), owned[0], increment[0].row(s.j, s.k));
   }
   PetscCall(exchange_->update(increment, 1));
-  fill_ghosts_of_increment(*grid_, increment[0], 1);
+  fill_ghosts_of_increment(*domain_, increment[0], 1);
   PetscFunctionReturn(0);
 }
 
@@ -108,9 +110,9 @@ void SmacSolver::solve_y(double factor) {
 
 bool SmacSolver::available() { return false; }
 
-PetscErrorCode SmacSolver::create(const Grid &grid, GhostExchange &, std::unique_ptr<PressureSolver> *) {
+PetscErrorCode SmacSolver::create(const Domain &domain, GhostExchange &, std::unique_ptr<PressureSolver> *) {
   PetscFunctionBeginUser;
-  SETERRQ(grid.comm(), PETSC_ERR_SUP, "-pressure_solver smac needs FFTW, and this eulastic was built without it");
+  SETERRQ(domain.comm(), PETSC_ERR_SUP, "-pressure_solver smac needs FFTW, and this eulastic was built without it");
 }
 
 #endif

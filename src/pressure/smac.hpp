@@ -2,7 +2,9 @@
 // a (cyclic) tridiagonal system in y; the same bits on any number of ranks.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/ghost_exchange.hpp"
+#include "grid/domain.hpp"
 #include "pressure/line_transforms.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "pressure/redistribute.hpp"
@@ -15,21 +17,21 @@ public:
   /// Whether this build has FFTW.
   static bool available();
   /// Collective on the grid's communicator; `grid` and `exchange` must outlive the solver. Fails without FFTW.
-  static PetscErrorCode create(const Grid &grid, GhostExchange &exchange, std::unique_ptr<PressureSolver> *solver);
+  static PetscErrorCode create(const Domain &domain, GhostExchange &exchange, std::unique_ptr<PressureSolver> *solver);
 
   /// The zero-mean increment with lap(increment) = (divergence - its mean) / dt. Leaves `pressure` alone.
   PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
 
 private:
-  SmacSolver(const Grid &grid, GhostExchange &exchange) : grid_(&grid), exchange_(&exchange) {}
+  SmacSolver(const Domain &domain, GhostExchange &exchange) : domain_(&domain), exchange_(&exchange) {}
   PetscErrorCode set_up();
   /// All y lines of `values_`, times `factor`.
   void solve_y(double factor);
 
-  const Grid *grid_;
+  const Domain *domain_;
   GhostExchange *exchange_;
   Redistribution to_x_, to_z_, to_y_;  ///< grid -> complete x -> complete z -> complete y lines
-  Box box_x_, box_z_, box_y_;          ///< mine, with complete lines
+  CellBlock box_x_, box_z_, box_y_;    ///< mine, with complete lines
   LineTransform transform_x_, transform_z_;
   TridiagonalLines lines_y_;
   std::vector<double> stiffness_x_, stiffness_z_;  ///< (h_y / h)^2 times the eigenvalues in box_y_

@@ -1,6 +1,7 @@
 #include "pressure/sweep_passes.hpp"
 
 #include "grid/blocks.hpp"
+#include "grid/domain.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
@@ -31,9 +32,9 @@ EULASTIC_INLINE void for_directions(int stencils, bool recurs, Work work) {
 template <int Dim, int Stencils, bool Recurs>
 EULASTIC_INLINE void add_sums(const SweepTask &t, const RowPart &part, char *all_summed, ExactSums &sums) {
   constexpr int directions = Stencils + Recurs;
-  const Int3 n = t.grid->owned();
-  const std::int64_t begin = t.grid->layout().begin[0];
-  const InverseSquares h = t.grid->inverse_squares();
+  const Int3 n = t.domain->cells();
+  const std::int64_t begin = t.domain->layout().begin[0];
+  const InverseSquares h = t.domain->inverse_squares();
   const std::ptrdiff_t sy = t.residual.sy, sz = t.residual.sz;
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     char &summed = all_summed[j + std::size_t(n[1]) * k];
@@ -83,9 +84,9 @@ template <int Dim, int Stencils, bool Recurs, Increment How>
 EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
   constexpr bool adds = How == Increment::add || How == Increment::add_two,
                  two = How == Increment::set_two || How == Increment::add_two;
-  const Int3 n = t.grid->owned();
-  const InverseSquares h = t.grid->inverse_squares();
-  const Sides sides(*t.grid);
+  const Int3 n = t.domain->cells();
+  const InverseSquares h = t.domain->inverse_squares();
+  const Sides sides(*t.domain);
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
   double c[Stencils + Recurs];
@@ -128,7 +129,7 @@ EULASTIC_INLINE void take_step(const StepTask &t, const RowPart &part) {
     }
     sides.wrap(out);
   };
-  for_rows_in_blocks(part.with_ghosts(*t.grid), row, [&](int j_begin, int j_end, int k) EULASTIC_BODY {
+  for_rows_in_blocks(part.with_ghosts(*t.domain), row, [&](int j_begin, int j_end, int k) EULASTIC_BODY {
     if (Dim == 3 && t.after && k - 1 > part.k_begin) t.after(part.number, j_begin - 1, j_end - 1, k - 1);
   });
 }
@@ -152,13 +153,13 @@ EULASTIC_CLONES void take_step_3d(const StepTask &t, const RowPart &part) { take
 
 }  // namespace
 
-void RowSums::start(const Grid &grid, int directions) {
-  sums_.assign(row_parts(grid), ExactSums(sum_count(directions)));
-  summed_.assign(std::size_t(grid.owned()[1]) * grid.owned()[2], 0);
+void RowSums::start(const Domain &domain, int directions) {
+  sums_.assign(row_parts(domain), ExactSums(sum_count(directions)));
+  summed_.assign(std::size_t(domain.cells()[1]) * domain.cells()[2], 0);
 }
 
 void RowSums::add_inner(const SweepTask &task, int thread, int j_begin, int j_end, int k) {
-  const Int3 &n = task.grid->owned();
+  const Int3 &n = task.domain->cells();
   if (k < 1 || k >= n[2] - 1) return;
   add_sums_3d(task, {thread, std::max(j_begin, 1), std::min(j_end, n[1] - 1), k, k + 1, false, false}, summed_.data(),
               sums_[thread]);
@@ -167,17 +168,17 @@ void RowSums::add_inner(const SweepTask &task, int thread, int j_begin, int j_en
 PetscErrorCode RowSums::find_minimum(const SweepTask &task, SweepMinimum *minimum, double *mean) {
   PetscFunctionBeginUser;
   const int count = task.directions();
-  in_row_parts(*task.grid, [&](const RowPart &part) {
-    (task.grid->dimension() == 2 ? add_sums_2d : add_sums_3d)(task, part, summed_.data(), sums_[part.number]);
+  in_row_parts(*task.domain, [&](const RowPart &part) {
+    (task.domain->dimension() == 2 ? add_sums_2d : add_sums_3d)(task, part, summed_.data(), sums_[part.number]);
   });
   double total[sum_count(most)];
-  PetscCall(reduce_parts(task.grid->comm(), sums_, total));
+  PetscCall(reduce_parts(task.domain->comm(), sums_, total));
   SweepSums sums;
   sums.directions = count;
   int s = 0;
   sums.square = total[s++];
-  *mean = total[s++] / task.grid->cell_count();
-  if (task.grid->any_open()) *mean = 0;  // is not free
+  *mean = total[s++] / task.domain->domain_cell_count();
+  if (task.domain->any_open()) *mean = 0;  // is not free
   for (int f = 0; f < count; ++f) sums.with[f] = total[s++];
   for (int f = 0; f < count; ++f)
     for (int g = 0; g <= f; ++g) sums.product[f][g] = total[s++];
@@ -191,8 +192,8 @@ PetscErrorCode RowSums::find_minimum(const SweepTask &task, SweepMinimum *minimu
 }
 
 void take_step(const StepTask &task) {
-  in_row_parts(*task.grid,
-               [&](const RowPart &part) { (task.grid->dimension() == 2 ? take_step_2d : take_step_3d)(task, part); });
+  in_row_parts(*task.domain,
+               [&](const RowPart &part) { (task.domain->dimension() == 2 ? take_step_2d : take_step_3d)(task, part); });
 }
 
 }  // namespace eulastic

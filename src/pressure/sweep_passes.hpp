@@ -1,7 +1,9 @@
 // What a pressure sweep does with rows: the sums that say how far to go, and the step.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/exact_sum.hpp"
+#include "grid/domain.hpp"
 #include "pressure/minimise.hpp"
 
 #include <functional>
@@ -11,7 +13,7 @@ namespace eulastic {
 /// D and the directions that it is minimised over: q_f, whose Laplacians L_f are taken, and, if `recurs`, the step d
 /// before, of which L is the D before less D. One ghost layer of the q_f is read.
 struct SweepTask {
-  const Grid *grid;
+  const Domain *domain;
   const ConstView *q;
   int stencils;  ///< how many q_f: 1 to SweepSums::most, 1 if `recurs`
   bool recurs;
@@ -23,7 +25,7 @@ struct SweepTask {
 /// Exact sums of a sweep, of rows in any order, as soon as somebody has them at hand.
 class RowSums {
 public:
-  void start(const Grid &grid, int directions);
+  void start(const Domain &domain, int directions);
   /// Adds rows j_begin <= j < j_end of plane k (3-D) but those at the ends of y and z, by this thread.
   void add_inner(const SweepTask &task, int thread, int j_begin, int j_end, int k);
   /// Adds all rows that are not yet in and finds the coefficients and the mean of q_0. Collective. What D before - D

@@ -34,18 +34,18 @@ PetscErrorCode Solver::check_sides(bool start) {
   int found[3] = {-1, 0, 0};  // what is held and where, whether any leave whole, whether any flow out
   PetscFunctionBeginUser;
   for (int p = 0; p < static_cast<int>(now_.phases.size()); ++p)
-    for (const auto [d, high] : grid_->sides()) {
+    for (const auto [d, high] : domain_->sides()) {
       const SideKind kind = spec_.sides[d][high].kind;
       if (now_.phases[p].material.is_rigid() || !volume_crosses(kind)) continue;
       const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
-      if (!has_solid(*grid_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
+      if (!has_solid(*domain_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
         continue;
       if (stops)
         found[0] = std::max(found[0], p * 6 + 2 * d + high);
       else
         found[leave_whole(now_.phases[p].material) ? 1 : 2] = 1;
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 3, MPI_INT, MPI_MAX, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 3, MPI_INT, MPI_MAX, domain_->comm()));
   const int held = found[0];
   if (held >= 0)
     crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
@@ -76,23 +76,23 @@ PetscErrorCode Solver::take_out_bodies(bool whole) {
   PetscFunctionBeginUser;
   for (Phase &phase : now_.phases) {
     if (!concerned(phase)) continue;
-    if (whole) PetscCall(carry_labels(*grid_, *exchange_, &phase));
-    for (const auto [d, high] : grid_->sides())
-      if (grid_->is_open(d, high)) mark_leaving(*grid_, d, high, free_layers, whole, &phase, &leaves);
+    if (whole) PetscCall(carry_labels(*domain_, *exchange_, &phase));
+    for (const auto [d, high] : domain_->sides())
+      if (domain_->is_open(d, high)) mark_leaving(*domain_, d, high, free_layers, whole, &phase, &leaves);
   }
-  PetscCall(bodies_.connect(*grid_, now_.phases, {}, &owners, &references));
+  PetscCall(bodies_.connect(*domain_, now_.phases, {}, &owners, &references));
   PetscCall(agree());
   if (!whole) {
     for (const Phase &phase : now_.phases)
-      if (concerned(phase)) mark_staying(*grid_, free_layers, phase, &leaves);
+      if (concerned(phase)) mark_staying(*domain_, free_layers, phase, &leaves);
     PetscCall(agree());
     int any = std::any_of(leaves.begin(), leaves.end(), [](const auto &of) { return of.second == Leaving::leaves; });
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, grid_->comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, domain_->comm()));
     if (!any) PetscFunctionReturn(0);
   }
   for (Phase &phase : now_.phases) {
     if (!concerned(phase)) continue;
-    take_out(*grid_, leaves, &phase);
+    take_out(*domain_, leaves, &phase);
     PetscCall(settle(phase));
   }
   if (whole && membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
@@ -109,7 +109,7 @@ PetscErrorCode Solver::feed_bodies() {
   PetscFunctionBeginUser;
   PetscCall(feeders_->find_passed(now_.phases, &passed));
   if (passed.empty()) PetscFunctionReturn(0);
-  PetscCall(copy_bodies(*grid_, *exchange_, passed, &now_.phases, &copies));
+  PetscCall(copy_bodies(*domain_, *exchange_, passed, &now_.phases, &copies));
   for (const BodyCopy &copy : copies) {
     if (copy.phase < 0) {  // it has left
       feeders_->forget(copy.label);
@@ -117,19 +117,19 @@ PetscErrorCode Solver::feed_bodies() {
     }
     const Int3 shift = feeders_->shift_of(copy.label);
     BodyRoom room;
-    PetscCall(find_room(*grid_, copy, shift, contact_reach, now_.phases, &room));
+    PetscCall(find_room(*domain_, copy, shift, contact_reach, now_.phases, &room));
     if (room.fullest > full) continue;
     int p = copy.phase;
     if (now_.phases[p].separate && room.near[p]) {
       const int phases = static_cast<int>(now_.phases.size());
       for (p = 0; p < phases; ++p)
         if (now_.phases[p].species == now_.phases[copy.phase].species && !room.near[p]) break;
-      if (p == phases) add_colour(*grid_, copy.phase, &now_.phases);
+      if (p == phases) add_colour(*domain_, copy.phase, &now_.phases);
     }
-    PetscCall(bodies_.add_like(*grid_, copy.label, shift));
+    PetscCall(bodies_.add_like(*domain_, copy.label, shift));
     feeders_->come_in(copy.label, bodies_.bodies());
     feeders_->forget(copy.label);
-    put_body(*grid_, copy, shift, bodies_.bodies(), &now_.phases[p]);
+    put_body(*domain_, copy, shift, bodies_.bodies(), &now_.phases[p]);
     PetscCall(settle(now_.phases[p]));
     if (now_.phases[p].material.is_membrane())
       PetscCall(membranes_->place_markers(now_.phases[p], p, bodies_.bodies(), &now_.markers));
@@ -139,7 +139,7 @@ PetscErrorCode Solver::feed_bodies() {
 
 Fluid Solver::driven_fluid() const {
   Fluid fluid = spec_.fluid;
-  const Real3 drive = pressure_drive(spec_.sides, grid_->spec().length, fluid.density);
+  const Real3 drive = pressure_drive(spec_.sides, domain_->domain_shape().length, fluid.density);
   for (int d = 0; d < 3; ++d) fluid.body_force.force[d] = std::fabs(fluid.body_force.force[d]) + drive[d];
   for (const Phase &phase : now_.phases) {
     const BodyForce &own = phase.material.body_force;
@@ -155,7 +155,7 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
   constexpr double dt = 1;
   const int times = spec_.pressure == PressureKind::acm && spec_.acm_of_the_paper() ? 200 : 1;
   WorkSpace::Lease of_velocity, increment;
-  FieldBlock none(*grid_, 1);  // without a pressure its relaxation has nothing to do
+  FieldBlock none(*domain_, 1);  // without a pressure its relaxation has nothing to do
   PetscFunctionBeginUser;
   PetscCall(work_->take("divergence", 1, &of_velocity));
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
@@ -163,17 +163,17 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
   pressure_solver_->set_target(0);
   for (int n = 0; n < times; ++n) {
     PetscCall(exchange_->update(velocity, 1));
-    PetscCall(compute_divergence(*grid_, density, velocity, divergence));
+    PetscCall(compute_divergence(*domain_, density, velocity, divergence));
     PetscCall(exchange_->update(divergence, 1));
-    fill_ghosts_of_increment(*grid_, divergence[0], 1);
+    fill_ghosts_of_increment(*domain_, divergence[0], 1);
     PetscCall(pressure_solver_->solve(dt, divergence, none, increment.fields()));
     if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
-      PetscCall(correct_velocity(*grid_, density, dt, 0, *formula, divergence, velocity, none));
+      PetscCall(correct_velocity(*domain_, density, dt, 0, *formula, divergence, velocity, none));
     else
-      PetscCall(correct_velocity(*grid_, density, dt, 0, increment.fields(), divergence, velocity, none));
+      PetscCall(correct_velocity(*domain_, density, dt, 0, increment.fields(), divergence, velocity, none));
     respect_rigid(now_.time, dt, increment.fields(), velocity);
-    if (rigid_ && is_rate) clear_rigid_faces(*grid_, rigid_->faces(), velocity);
-    for (const Segment &row : grid_->rows()) {
+    if (rigid_ && is_rate) clear_rigid_faces(*domain_, rigid_->faces(), velocity);
+    for (const Segment &row : domain_->rows()) {
       const double *q = none[0].row(row.j, row.k);
       double *p = pressure[0].row(row.j, row.k);
       for (int i = 0; i < row.i_end; ++i) p[i] += q[i];
@@ -185,26 +185,26 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
 
 // The first step would do both as well, with a pressure that grows as 1/dt; the next would start from that.
 PetscErrorCode Solver::start_flow() {
-  const int dim = grid_->dimension();
+  const int dim = domain_->dimension();
   double largest = 0;
-  FieldBlock unused(*grid_, 1), rate(*grid_, dim), no_advection;
+  FieldBlock unused(*domain_, 1), rate(*domain_, dim), no_advection;
   PetscFunctionBeginUser;
   PetscCall(project_start(false, now_.velocity, unused));
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Grid::stencil_width));
-  for_points(grid_->rows(),
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Box::stencil_width));
+  for_points(domain_->rows(),
              [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now_.pressure[0](i, j, k))); });
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, domain_->comm()));
   if (largest > 0) PetscFunctionReturn(0);  // of a file
-  fill_ghosts_of_given_pressure(*grid_, spec_.sides, now_.time, spec_.fluid.density, now_.velocity, now_.pressure[0]);
+  fill_ghosts_of_given_pressure(*domain_, spec_.sides, now_.time, spec_.fluid.density, now_.velocity, now_.pressure[0]);
   const MomentumStep now{now_.time, 1, speed_scale(1), {}};
-  PetscCall(momentum_rate(*grid_, spec_.fluid, now, now_.velocity, now_.pressure, {}, no_advection, rate));
+  PetscCall(momentum_rate(*domain_, spec_.fluid, now, now_.velocity, now_.pressure, {}, no_advection, rate));
   for (int d = 0; d < dim; ++d)
-    if (grid_->is_wall(d)) {
-      close_wall_faces(*grid_, rate[d], d);
-      set_inflow_faces(*grid_, rates_of(spec_.sides, now_.time), 0, rate[d], d);
+    if (domain_->is_wall(d)) {
+      close_wall_faces(*domain_, rate[d], d);
+      set_inflow_faces(*domain_, rates_of(spec_.sides, now_.time), 0, rate[d], d);
     }
   const double nu = spec_.fluid.kinematic_viscosity();
-  if (rigid_) see_rigid_surfaces(*grid_, rigid_->faces(), nu, nu, now_.time, 0, now_.velocity, rate, nullptr);
+  if (rigid_) see_rigid_surfaces(*domain_, rigid_->faces(), nu, nu, now_.time, 0, now_.velocity, rate, nullptr);
   PetscCall(project_start(true, rate, now_.pressure));
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   PetscFunctionReturn(0);

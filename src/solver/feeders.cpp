@@ -19,17 +19,17 @@ Feeders::~Feeders() {
   for (Stretch &stretch : stretches_) (void)MPI_Comm_free(&stretch.line);
 }
 
-PetscErrorCode Feeders::create(const Grid &grid, const BoxSides &sides) {
+PetscErrorCode Feeders::create(const Domain &domain, const BoxSides &sides) {
   PetscFunctionBeginUser;
-  grid_ = &grid;
-  const Int3 place = grid.place_of(grid.rank());
-  for (int d = 0; d < grid.dimension(); ++d)
+  domain_ = &domain;
+  const Int3 place = domain.place_of(domain.rank());
+  for (int d = 0; d < domain.dimension(); ++d)
     for (const int high : {0, 1}) {
       if (sides[d][high].feeder == 0) continue;
       Int3 first = place;
       first[d] = 0;
       MPI_Comm line;
-      PetscCallMPI(MPI_Comm_split(grid.comm(), grid.rank_at(first), place[d], &line));
+      PetscCallMPI(MPI_Comm_split(domain.comm(), domain.rank_at(first), place[d], &line));
       stretches_.push_back({d, high, sides[d][high].feeder, line});
     }
   PetscFunctionReturn(0);
@@ -37,10 +37,10 @@ PetscErrorCode Feeders::create(const Grid &grid, const BoxSides &sides) {
 
 template <class Visit>
 void Feeders::for_cells(const Stretch &stretch, const Visit &visit) const {
-  const int d = stretch.d, deep = stretch.cells + beyond, begin = grid_->layout().begin[d];
-  Int3 from{}, to = grid_->owned();
+  const int d = stretch.d, deep = stretch.cells + beyond, begin = domain_->layout().begin[d];
+  Int3 from{}, to = domain_->cells();
   if (stretch.high)
-    from[d] = std::max(0, grid_->cells()[d] - deep - begin);
+    from[d] = std::max(0, domain_->domain_cells()[d] - deep - begin);
   else
     to[d] = std::min(to[d], deep - begin);
   for (int k = from[2]; k < to[2]; ++k)
@@ -62,8 +62,8 @@ PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::strin
         change[s] = std::max(change[s], std::fabs(here[next] - here[0]));
       });
     }
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, change.data(), static_cast<int>(change.size()), MPI_DOUBLE, MPI_MAX, grid_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, change.data(), static_cast<int>(change.size()), MPI_DOUBLE, MPI_MAX,
+                             domain_->comm()));
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
       *wrong = std::string("-inflow_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
@@ -74,25 +74,25 @@ PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::strin
 PetscErrorCode Feeders::feed_velocity(double time, const FieldBlock &velocity, BoxSides *sides) const {
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
-    const int d = stretch.d, N = grid_->cells()[d];
+    const int d = stretch.d, N = domain_->domain_cells()[d];
     const int end = stretch.high ? N - stretch.cells : stretch.cells;
     Side &side = (*sides)[d][stretch.high];
     auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(*grid_, velocity[d], d, end, stretch.line, fed.get()));
+    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, end, stretch.line, fed.get()));
     ExactSums sums(1);
     double sum, cells = 1;
-    for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : grid_->cells()[e];
-    const Int3 &n = grid_->owned();
+    for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : domain_->domain_cells()[e];
+    const Int3 &n = domain_->cells();
     // One rank of the line adds, that which has the faces.
-    const bool adds = grid_->owner_along(d, end) == grid_->place_of(grid_->rank())[d];
+    const bool adds = domain_->owner_along(d, end) == domain_->place_of(domain_->rank())[d];
     fed->for_each([&](const Int3 &at, double &value) {
       bool own = adds;
       for (int e = 0; e < 3; ++e) own = own && (e == d || (at[e] >= 0 && at[e] < n[e]));
       if (own) sums.add(0, value);
     });
-    PetscCall(sums.reduce(grid_->comm(), &sum));
+    PetscCall(sums.reduce(domain_->comm(), &sum));
     const double missing = (stretch.high ? -1 : 1) * side.given.at(time) - sum / cells;
-    fed->for_each([&](const Int3 &at, double &value) { value += missing * inflow_shape(*grid_, side, d, at); });
+    fed->for_each([&](const Int3 &at, double &value) { value += missing * inflow_shape(*domain_, side, d, at); });
     side.fed = std::move(fed);
   }
   PetscFunctionReturn(0);
@@ -103,7 +103,8 @@ PetscErrorCode Feeders::recall_velocity(const FieldBlock &velocity, BoxSides *si
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d;
     auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(*grid_, velocity[d], d, stretch.high ? grid_->cells()[d] : 0, stretch.line, fed.get()));
+    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, stretch.high ? domain_->domain_cells()[d] : 0, stretch.line,
+                                fed.get()));
     (*sides)[d][stretch.high].fed = std::move(fed);
   }
   PetscFunctionReturn(0);
@@ -131,15 +132,15 @@ PetscErrorCode Feeders::start(const std::vector<Phase> &phases) {
 }
 
 PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
-  std::vector<int> some, all, counts(grid_->ranks()), begins(grid_->ranks() + 1, 0);
+  std::vector<int> some, all, counts(domain_->ranks()), begins(domain_->ranks() + 1, 0);
   PetscFunctionBeginUser;
   for (const auto &[label, stretch] : here) some.insert(some.end(), {label, stretch});
   const int count = static_cast<int>(some.size());
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, grid_->comm()));
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, domain_->comm()));
   std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
   all.resize(begins.back());
   PetscCallMPI(
-      MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, grid_->comm()));
+      MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, domain_->comm()));
   inside_.clear();
   for (std::size_t n = 0; n < all.size(); n += 2) {
     int &stretch = inside_.try_emplace(all[n], all[n + 1]).first->second;
@@ -159,7 +160,7 @@ PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, std::vecto
     if (at != inside.end() && *at == label && inside_.at(label) == stretch) still[at - inside.begin()] = 1;
   });
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, grid_->comm()));
+      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, domain_->comm()));
   for (std::size_t n = 0; n < inside.size(); ++n)
     if (still[n] == 0) labels->push_back(inside[n]);
   PetscFunctionReturn(0);

@@ -2,8 +2,10 @@
 // (docs/method.md, section 20).
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 #include <map>
 #include <string>
@@ -21,7 +23,7 @@ public:
   Feeders(const Feeders &) = delete;
   Feeders &operator=(const Feeders &) = delete;
   ~Feeders();
-  PetscErrorCode create(const Grid &grid, const BoxSides &sides);
+  PetscErrorCode create(const Domain &domain, const BoxSides &sides);
   int count() const { return static_cast<int>(stretches_.size()); }
   /// One line if rigid bodies are not the same all along a stretch.
   PetscErrorCode check_lumen(const std::vector<Phase> &phases, std::string *wrong) const;
@@ -57,7 +59,7 @@ private:
   template <class Visit>
   void for_bodies(const std::vector<Phase> &phases, const Visit &visit) const;
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   std::vector<Stretch> stretches_;
   std::map<int, int> inside_;  ///< the same on all ranks
 };

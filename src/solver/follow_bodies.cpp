@@ -14,16 +14,16 @@ PetscErrorCode Solver::settle(Phase &phase) {
   const OccupiedRows before = phase.rows;
   PetscCall(find_rows(phase));
   if (phase.material.is_membrane()) {
-    PetscCall(find_solid(*grid_, phase));
+    PetscCall(find_solid(*domain_, phase));
     PetscCall(membranes_->extend(&phase));
     PetscFunctionReturn(0);
   }
-  PetscCall(reset_exterior(*grid_, before, phase));
-  PetscCall(find_solid(*grid_, phase));
+  PetscCall(reset_exterior(*domain_, before, phase));
+  PetscCall(find_solid(*domain_, phase));
   if (!phase.material.elastic()) PetscFunctionReturn(0);
-  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*domain_, phase));
   PetscCall(extend_exterior(phase, phase.tensor.field, &phase.rows));
-  PetscCall(update_tensor_ghosts(phase.tensor.field, Grid::stencil_width, &phase.rows));
+  PetscCall(update_tensor_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
 
@@ -32,12 +32,12 @@ PetscErrorCode Solver::settle(Phase &phase) {
 PetscErrorCode Solver::find_rows(Phase &phase) {
   PetscFunctionBeginUser;
   constexpr double much = 0.25;
-  const int ghosts = grid_->spec().ghosts;
-  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));
+  const int ghosts = domain_->spec().ghosts;
+  PetscCall(phase.rows.find(*domain_, phase.fraction[0]));
   PetscCall(exchange_->update(phase.fraction, ghosts, &phase.rows));
-  PetscCall(phase.rows.find(*grid_, phase.fraction[0]));  // with what others have
-  fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &phase.rows);
-  const Int3 &n = grid_->owned();
+  PetscCall(phase.rows.find(*domain_, phase.fraction[0]));  // with what others have
+  fill_wall_ghosts_even(*domain_, at_centre, phase.fraction[0], ghosts, &phase.rows);
+  const Int3 &n = domain_->cells();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
     for (FieldBlock *block : {&phase.fraction, &phase.tensor.field, &next_fraction_, &next_tensor_})
       if (block != &phase.tensor.field || phase.material.carries_tensor()) block->leave_rest();
@@ -49,7 +49,7 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
   for (std::size_t p = 0; p < now_.phases.size(); ++p) {
     long count = 0;
     if (!now_.phases[p].material.elastic()) continue;
-    PetscCall(find_and_forget(*grid_, extremes.trace[p], now_.phases[p], &count));
+    PetscCall(find_and_forget(*domain_, extremes.trace[p], now_.phases[p], &count));
     now_.forgotten += count;
     if (count > 0) PetscCall(settle(now_.phases[p]));
   }
@@ -58,7 +58,7 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
 
 // The next velocity and the slope beside it.
 FieldBlock Solver::idle_tensor(int components) {
-  return flow_.part(velocity_star_.data() == flow_.data() ? 0 : grid_->dimension(), components);
+  return flow_.part(velocity_star_.data() == flow_.data() ? 0 : domain_->dimension(), components);
 }
 
 PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
@@ -77,7 +77,7 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
   PetscCall(transport(phases_now_, 0.5 * now_.dt - looks_back_));
   PetscCall(fill_rigid(now_.time, &phases_now_));
   for (Phase &copy : phases_now_)
-    if (copy.label) PetscCall(carry_labels(*grid_, *exchange_, &copy));  // cells that the half step has reached
+    if (copy.label) PetscCall(carry_labels(*domain_, *exchange_, &copy));  // cells that the half step has reached
   phases_now_step_ = now_.step;
   PetscFunctionReturn(0);
 }
@@ -111,7 +111,7 @@ PetscErrorCode Solver::look_behind(const Look &look) {
   } const restore{swap};
   PetscCall(fill_rigid(now_.time, &now_.phases));
   for (Phase &phase : now_.phases)
-    if (phase.label) PetscCall(label_new_cells(*grid_, *exchange_, &phase));
+    if (phase.label) PetscCall(label_new_cells(*domain_, *exchange_, &phase));
   PetscCall(look());
   PetscFunctionReturn(0);
 }
@@ -157,8 +157,8 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   now_.travel += now_.crossing_rate * dt;
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
   PetscCall(fill_rigid(now_.time + dt, &now_.phases));
-  for (Phase &phase : now_.phases) PetscCall(carry_labels(*grid_, *exchange_, &phase));
-  PetscCall(bodies_.follow(*grid_, now_.phases));
+  for (Phase &phase : now_.phases) PetscCall(carry_labels(*domain_, *exchange_, &phase));
+  PetscCall(bodies_.follow(*domain_, now_.phases));
   if (feeders_) PetscCall(feed_bodies());
   PetscCall(separate_bodies());
   if (membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
@@ -169,7 +169,7 @@ PetscErrorCode Solver::follow_bodies(double dt) {
 PetscErrorCode Solver::separate_bodies() {
   PetscFunctionBeginUser;
   Separation result;
-  PetscCall(eulastic::separate_bodies(*grid_, *exchange_, {}, &now_.phases, &result));
+  PetscCall(eulastic::separate_bodies(*domain_, *exchange_, {}, &now_.phases, &result));
   crowded_ = result.crowded;
   for (const int p : result.changed) PetscCall(settle(now_.phases[p]));
   PetscFunctionReturn(0);

@@ -8,10 +8,10 @@ namespace eulastic {
 namespace {
 
 // Behind the side it stands on, a pressure of 1 there.
-void raise_ghosts(const Grid &grid, int d, bool high, View pressure) {
+void raise_ghosts(const Box &box, int d, bool high, View pressure) {
   const std::ptrdiff_t inward = high ? -pressure.stride(d) : pressure.stride(d);
   const std::ptrdiff_t ghost = high ? 0 : -pressure.stride(d);  // of the cell above the face
-  for_points(grid.faces_on(d, high), [&](int i, int j, int k) {
+  for_points(box.faces_on(d, high), [&](int i, int j, int k) {
     double *at = &pressure(i, j, k) + ghost;
     *at = 2 - at[inward];
   });
@@ -26,11 +26,12 @@ PetscErrorCode Solver::measure_loads(const FieldBlock &velocity, std::vector<dou
     const auto [d, high] = loads_->side(n);
     const ConstView v = velocity[d];
     const int outward = high ? 1 : -1;
-    for_points(grid_->faces_on(d, high), [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
+    for_points(domain_->faces_on(d, high), [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
   }
   flow->resize(loads_->count());
-  PetscCall(sums.reduce(grid_->comm(), flow->data()));
-  for (int n = 0; n < loads_->count(); ++n) (*flow)[n] *= grid_->cell_volume() / grid_->spacing()[loads_->side(n)[0]];
+  PetscCall(sums.reduce(domain_->comm(), flow->data()));
+  for (int n = 0; n < loads_->count(); ++n)
+    (*flow)[n] *= domain_->cell_volume() / domain_->spacing()[loads_->side(n)[0]];
   PetscFunctionReturn(0);
 }
 
@@ -38,15 +39,15 @@ PetscErrorCode Solver::find_responses() {
   PetscFunctionBeginUser;
   for (int n = 0; n < loads_->count(); ++n) {
     const auto [d, high] = loads_->side(n);
-    FieldBlock pressure(*grid_, 1), velocity(*grid_, grid_->dimension());
-    const double push = (high ? -2 : 2) / (spec_.fluid.density * grid_->spacing()[d]);
+    FieldBlock pressure(*domain_, 1), velocity(*domain_, domain_->dimension());
+    const double push = (high ? -2 : 2) / (spec_.fluid.density * domain_->spacing()[d]);
     View v = velocity[d];
-    for_points(grid_->faces_on(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
-    if (rigid_) open_faces(*grid_, rigid_->faces(), velocity);
+    for_points(domain_->faces_on(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
+    if (rigid_) open_faces(*domain_, rigid_->faces(), velocity);
     PetscCall(project_start(true, velocity, pressure));
     PetscCall(exchange_->update(pressure, 1));
-    fill_ghosts_of_increment(*grid_, pressure[0], 1);
-    raise_ghosts(*grid_, d, high, pressure[0]);
+    fill_ghosts_of_increment(*domain_, pressure[0], 1);
+    raise_ghosts(*domain_, d, high, pressure[0]);
     std::vector<double> flow;
     PetscCall(measure_loads(velocity, &flow));
     loads_->set_response(n, std::move(pressure), flow);
@@ -66,9 +67,10 @@ PetscErrorCode Solver::settle_loads(double dt, const FieldBlock &divergence, Fie
   std::vector<double> flow;
   PetscFunctionBeginUser;
   PetscCall(measure_loads(velocity_star_, &flow));
-  loads_->add_up(*grid_, loads_->settle(dt, flow), increment);
+  loads_->add_up(*domain_, loads_->settle(dt, flow), increment);
   if (rigid_impulse_) rigid_impulse_->add_increment(increment, obstacles_ != nullptr);
-  PetscCall(correct_velocity(*grid_, spec_.fluid.density, dt, 0, increment, divergence, velocity_star_, now_.pressure));
+  PetscCall(
+      correct_velocity(*domain_, spec_.fluid.density, dt, 0, increment, divergence, velocity_star_, now_.pressure));
   respect_rigid(now_.time + dt, dt, increment, velocity_star_);
   PetscFunctionReturn(0);
 }

@@ -90,9 +90,9 @@ std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &fl
   return changes;
 }
 
-void OutletLoads::add_up(const Grid &grid, const std::vector<double> &changes, FieldBlock &increment) const {
-  const Int3 n = grid.owned();
-  const int last = grid.dimension() == 3 ? 1 : 0;
+void OutletLoads::add_up(const Box &box, const std::vector<double> &changes, FieldBlock &increment) const {
+  const Int3 n = box.cells();
+  const int last = box.dimension() == 3 ? 1 : 0;
   for (int k = -last; k < n[2] + last; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       double *q = increment[0].row(j, k);

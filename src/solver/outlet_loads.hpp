@@ -26,7 +26,7 @@ public:
   /// change.
   std::vector<double> settle(double dt, const std::vector<double> &flow);
   /// increment = sum of changes times responses, ghosts included.
-  void add_up(const Grid &grid, const std::vector<double> &changes, FieldBlock &increment) const;
+  void add_up(const Box &box, const std::vector<double> &changes, FieldBlock &increment) const;
 
   /// `sides` with the present pressures on those that are loaded.
   BoxSides with_pressures(const BoxSides &sides) const;

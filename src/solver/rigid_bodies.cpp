@@ -16,14 +16,14 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   if (rigid_ && !rigid_->exist()) rigid_.reset();
   if (rigid_) PetscCall(rigid_->place(now_.time, now_.time));
   if (!rigid_ || spec_.acm_of_the_paper()) PetscFunctionReturn(0);
-  PetscCall(work_->reserve(work_fields(spec_, grid_->dimension(), {grid_->any_open(), false, false, false, true})));
+  PetscCall(work_->reserve(work_fields(spec_, domain_->dimension(), {domain_->any_open(), false, false, false, true})));
   if (spec_.pressure == PressureKind::acm) {
     auto sweeps = std::make_unique<AcmSweepSolver>();
-    PetscCall(sweeps->create(*grid_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
+    PetscCall(sweeps->create(*domain_, *exchange_, {spec_.acm_sweeps_max, 0, spec_.acm_coarse}, *work_));
     pressure_solver_ = std::move(sweeps);
   }
   const double accuracy = spec_.pressure == PressureKind::acm ? 1 : 1e-6;
-  auto obstacles = std::make_unique<ObstacleSolver>(*grid_, *exchange_, *work_, rigid_->faces(), accuracy,
+  auto obstacles = std::make_unique<ObstacleSolver>(*domain_, *exchange_, *work_, rigid_->faces(), accuracy,
                                                     spec_.acm_memory, std::move(pressure_solver_));
   obstacles_ = obstacles.get();
   pressure_solver_ = std::move(obstacles);
@@ -51,8 +51,8 @@ PetscErrorCode Solver::fill_rigid(double time, std::vector<Phase> *phases) {
 void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const {
   if (!rigid_) return;
   if (!spec_.acm_of_the_paper())
-    correct_cut_faces(*grid_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);
-  impose_rigid_motion(*grid_, rigid_->faces(), time, velocity);
+    correct_cut_faces(*domain_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);
+  impose_rigid_motion(*domain_, rigid_->faces(), time, velocity);
 }
 
 // From the state alone, until a step says more.
@@ -60,7 +60,7 @@ PetscErrorCode Solver::start_rigid_loads() {
   PetscFunctionBeginUser;
   if (!rigid_ || rigid_->travel()) PetscFunctionReturn(0);
   PetscCall(rigid_->measure_gaps(now_.phases));
-  rigid_impulse_ = std::make_unique<RigidImpulse>(*grid_, rigid_->faces(), spec_.fluid);
+  rigid_impulse_ = std::make_unique<RigidImpulse>(*domain_, rigid_->faces(), spec_.fluid);
   rigid_impulse_->begin(now_.time, now_.time, now_.velocity);
   rigid_impulse_->set_pressure(now_.pressure);
   PetscFunctionReturn(0);
@@ -96,14 +96,14 @@ PetscErrorCode Solver::travelling_loads(std::vector<RigidLoad> *loads) {
   PetscCall(viscosity_now(&viscosity));
   if (viscosity) fluid.viscosity = 0;
   const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
-  FieldBlock none, no_pressure(*grid_, 1);
+  FieldBlock none, no_pressure(*domain_, 1);
   PetscCall(rigid_->place(now_.time, now_.time));
   WorkSpace::Lease rate;
-  PetscCall(work_->take("loads on rigid bodies", grid_->dimension(), &rate));
-  PetscCall(momentum_rate(*grid_, fluid, step, now_.velocity, no_pressure, *phases, none, rate.fields()));
-  add_species_forces(*grid_, *phases, now_.time, 1, rate.fields());
-  if (viscosity) PetscCall(add_viscous_force(*grid_, viscosity_, 1, now_.velocity, rate.fields()));
-  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, no_pressure,
+  PetscCall(work_->take("loads on rigid bodies", domain_->dimension(), &rate));
+  PetscCall(momentum_rate(*domain_, fluid, step, now_.velocity, no_pressure, *phases, none, rate.fields()));
+  add_species_forces(*domain_, *phases, now_.time, 1, rate.fields());
+  if (viscosity) PetscCall(add_viscous_force(*domain_, viscosity_, 1, now_.velocity, rate.fields()));
+  PetscCall(measure_rigid_loads(*domain_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, no_pressure,
                                 rate.fields(), force, loads));
   // Pressure is that of another time, when the bodies were elsewhere.
   const double time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
@@ -113,9 +113,9 @@ PetscErrorCode Solver::travelling_loads(std::vector<RigidLoad> *loads) {
   alone.body_force = {};
   std::vector<RigidLoad> of_pressure;
   PetscCall(rigid_->place(time, time));
-  PetscCall(momentum_rate(*grid_, alone, step, now_.velocity, now_.pressure, {}, none, rate.fields()));
-  PetscCall(measure_rigid_loads(*grid_, rigid_->faces(), alone, time, true, now_.velocity, now_.pressure, rate.fields(),
-                                {}, &of_pressure));
+  PetscCall(momentum_rate(*domain_, alone, step, now_.velocity, now_.pressure, {}, none, rate.fields()));
+  PetscCall(measure_rigid_loads(*domain_, rigid_->faces(), alone, time, true, now_.velocity, now_.pressure,
+                                rate.fields(), {}, &of_pressure));
   for (std::size_t b = 0; b < loads->size(); ++b) {
     RigidLoad &load = (*loads)[b];
     for (int d = 0; d < 3; ++d) {
@@ -134,7 +134,7 @@ PetscErrorCode Solver::add_rigid_dissipation(double *dissipation) {
   if (rigid_->travel()) PetscCall(rigid_->place(now_.time, now_.time));
   double beside_surfaces = 0;
   PetscCall(
-      measure_rigid_dissipation(*grid_, rigid_->faces(), spec_.fluid, now_.time, now_.velocity, &beside_surfaces));
+      measure_rigid_dissipation(*domain_, rigid_->faces(), spec_.fluid, now_.time, now_.velocity, &beside_surfaces));
   *dissipation += beside_surfaces;
   PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
   PetscFunctionReturn(0);

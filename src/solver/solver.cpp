@@ -29,44 +29,44 @@ int Solver::work_fields(const Method &method, int dimension, const Parts &parts)
   return std::max({pressure, momentum, membranes, tensor, interface});
 }
 
-PetscErrorCode Solver::create(const Grid &grid, const SolverSpec &spec) {
+PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   PetscFunctionBeginUser;
-  grid_ = &grid;
+  domain_ = &domain;
   spec_ = spec;
-  const int dim = grid.dimension();
-  exchange_ = std::make_unique<GhostExchange>(grid);
-  work_ = std::make_unique<WorkSpace>(grid);
+  const int dim = domain.dimension();
+  exchange_ = std::make_unique<GhostExchange>(domain);
+  work_ = std::make_unique<WorkSpace>(domain);
   if (spec.pressure == PressureKind::smac) {
-    PetscCall(SmacSolver::create(grid, *exchange_, &pressure_solver_));
+    PetscCall(SmacSolver::create(domain, *exchange_, &pressure_solver_));
   } else if (spec.pressure == PressureKind::ksp) {
     auto ksp = std::make_unique<KspSolver>();
-    PetscCall(ksp->create(grid, *exchange_));
+    PetscCall(ksp->create(domain, *exchange_));
     pressure_solver_ = std::move(ksp);
   } else if (spec.acm_of_the_paper()) {
-    pressure_solver_ = std::make_unique<AcmSolver>(grid);
+    pressure_solver_ = std::make_unique<AcmSolver>(domain);
   } else {
     auto sweeps = std::make_unique<AcmSweepSolver>();
-    PetscCall(sweeps->create(grid, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}, *work_));
+    PetscCall(sweeps->create(domain, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}, *work_));
     pressure_solver_ = std::move(sweeps);
   }
-  now_.velocity = FieldBlock(grid, dim);
-  now_.pressure = FieldBlock(grid, 1);
-  velocity_star_ = FieldBlock(grid, dim);
-  PetscCall(work_->reserve(work_fields(spec, dim, {grid.any_open()})));
+  now_.velocity = FieldBlock(domain, dim);
+  now_.pressure = FieldBlock(domain, 1);
+  velocity_star_ = FieldBlock(domain, dim);
+  PetscCall(work_->reserve(work_fields(spec, dim, {domain.any_open()})));
   if (!OutletLoads::none(spec.sides)) loads_ = std::make_unique<OutletLoads>(spec.sides);
   if (Feeders::exist(spec.sides)) {
     feeders_ = std::make_unique<Feeders>();
-    PetscCall(feeders_->create(grid, spec.sides));
+    PetscCall(feeders_->create(domain, spec.sides));
   }
-  if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(grid, dim);
+  if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(domain, dim);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
-  if (rigid_) impose_rigid_motion(*grid_, rigid_->faces(), now_.time, now_.velocity);
-  PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
-  fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
+  if (rigid_) impose_rigid_motion(*domain_, rigid_->faces(), now_.time, now_.velocity);
+  PetscCall(exchange_->update(now_.velocity, Box::stencil_width));
+  fill_wall_ghosts_velocity(*domain_, spec_.sides, now_.time, now_.velocity, Box::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (volume_crosses(spec_.sides)) PetscCall(start_flow());
   if (loads_) PetscCall(find_responses());
@@ -74,31 +74,31 @@ PetscErrorCode Solver::prepare() {
   PetscCall(start_rigid_loads());
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
-    const int dim = grid_->dimension();
+    const int dim = domain_->dimension();
     velocity_star_ = {};
-    FieldBlock flow(*grid_, 3 * dim);
-    std::copy_n(now_.velocity.data(), grid_->layout().size * dim, flow.data());
+    FieldBlock flow(*domain_, 3 * dim);
+    std::copy_n(now_.velocity.data(), domain_->layout().size * dim, flow.data());
     now_.velocity = flow.part(0, dim);
     slope_ = flow.part(dim, dim);
     velocity_star_ = flow.part(2 * dim, dim);
     flow_ = std::move(flow);
   }
   if (SurfaceTension::exists(now_.phases))
-    surface_tension_ = std::make_unique<SurfaceTension>(*grid_, *exchange_, *work_, drifts());
+    surface_tension_ = std::make_unique<SurfaceTension>(*domain_, *exchange_, *work_, drifts());
   if (MembraneTransport::exists(now_.phases))
-    membranes_ = std::make_unique<MembraneTransport>(*grid_, *exchange_, *work_, spec_.sides, drifts());
+    membranes_ = std::make_unique<MembraneTransport>(*domain_, *exchange_, *work_, spec_.sides, drifts());
   PetscCall(work_->reserve(
-      work_fields(spec_, grid_->dimension(),
-                  {grid_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
-  if (contrast({}).exists()) viscosity_ = LocalViscosity(*grid_);
-  if (expects_pressure()) now_.pressure_before = FieldBlock(*grid_, 1);
+      work_fields(spec_, domain_->dimension(),
+                  {domain_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
+  if (contrast({}).exists()) viscosity_ = LocalViscosity(*domain_);
+  if (expects_pressure()) now_.pressure_before = FieldBlock(*domain_, 1);
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
-    next_tensor_ = tensor_at_rest(*grid_);
+    next_tensor_ = tensor_at_rest(*domain_);
   if (spec_.interface == InterfaceScheme::plic)
-    interface_ = std::make_unique<InterfaceTransport>(*grid_, *work_);
+    interface_ = std::make_unique<InterfaceTransport>(*domain_, *work_);
   else
-    next_fraction_ = FieldBlock::at_rest(*grid_, 1);
+    next_fraction_ = FieldBlock::at_rest(*domain_, 1);
   for (Phase &phase : now_.phases) {
     phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
@@ -117,7 +117,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(feeders_->start(now_.phases));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
-  stale_.build(*grid_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
+  stale_.build(*domain_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);
   PetscFunctionReturn(0);
 }
 
@@ -133,7 +133,7 @@ PetscErrorCode Solver::place_markers() {
 PetscErrorCode Solver::set_markers(const std::vector<SurfaceMarker> &markers) {
   PetscFunctionBeginUser;
   now_.markers = markers;
-  if (MembraneTransport::marks(now_.phases)) PetscCall(SurfaceMarkers(*grid_).send_home(&now_.markers));
+  if (MembraneTransport::marks(now_.phases)) PetscCall(SurfaceMarkers(*domain_).send_home(&now_.markers));
   PetscFunctionReturn(0);
 }
 
@@ -142,19 +142,19 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(move_rigid(now_.time, now_.dt));
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
-  PetscCall(exchange_->update(now_.velocity, Grid::stencil_width));
+  PetscCall(exchange_->update(now_.velocity, Box::stencil_width));
   if (feeders_) PetscCall(feeders_->recall_velocity(now_.velocity, &spec_.sides));
-  fill_wall_ghosts_velocity(*grid_, spec_.sides, now_.time, now_.velocity, Grid::stencil_width);
+  fill_wall_ghosts_velocity(*domain_, spec_.sides, now_.time, now_.velocity, Box::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
   PetscCall(start_rigid_loads());
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
-    PetscCall(find_solid(*grid_, phase));
+    PetscCall(find_solid(*domain_, phase));
     if (phase.material.is_membrane())
       PetscCall(membranes_->extend(&phase));
     else if (phase.material.elastic())
-      PetscCall(update_tensor_ghosts(phase.tensor.field, Grid::stencil_width, &phase.rows));
+      PetscCall(update_tensor_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
@@ -164,7 +164,7 @@ EvolveRule Solver::evolve_rule(const Material &material) const {
   if (!material.elastic()) return {};
   const bool reset = spec_.exterior == SolidExterior::identity;
   const bool linear =
-      material.attached && damps_short_waves(grid_->spacing(), grid_->dimension(), spec_.fluid, material);
+      material.attached && damps_short_waves(domain_->spacing(), domain_->dimension(), spec_.fluid, material);
   EvolveRule rule = reset ? reset_below_one_per_cent : linear ? evolve_where_full : evolve_above_half;
   // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
   const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
@@ -176,15 +176,15 @@ EvolveRule Solver::evolve_rule(const Material &material) const {
 
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(*grid_, now_.velocity, now_.phases, extremes));
+  PetscCall(measure_extremes(*domain_, now_.velocity, now_.phases, extremes));
   for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->faces().speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
   for (const double speed : inflow_speed(spec_.sides)) scale = std::max(scale, speed);
   now_.speed_scale = scale;
   now_.crossing_rate = 0;
-  for (int d = 0; d < grid_->dimension(); ++d)
-    now_.crossing_rate = std::max(now_.crossing_rate, extremes->speed[d] / grid_->spacing()[d]);
+  for (int d = 0; d < domain_->dimension(); ++d)
+    now_.crossing_rate = std::max(now_.crossing_rate, extremes->speed[d] / domain_->spacing()[d]);
   PetscFunctionReturn(0);
 }
 
@@ -214,7 +214,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
   PetscCall(move_rigid(now_.time + dt, dt));
   PetscCall(predict(dt));  // (7)
   if (feeders_) {
-    PetscCall(exchange_->update(velocity_star_, Grid::stencil_width));
+    PetscCall(exchange_->update(velocity_star_, Box::stencil_width));
     PetscCall(feeders_->feed_velocity(now_.time + dt, velocity_star_, &spec_.sides));
   }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
@@ -224,7 +224,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
     PetscCall(with_pressure());
     now_.velocity.swap(velocity_star_);
   }
-  PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Grid::stencil_width));
+  PetscCall(update_velocity_ghosts(now_.velocity, now_.time + dt, Box::stencil_width));
   if (!spec_.staggered()) PetscCall(transport(now_.phases, dt));  // (4)(5)
   PetscCall(follow_bodies(dt));
   if (!now_.phases.empty() && volume_crosses(spec_.sides)) PetscCall(check_sides(false));
@@ -242,7 +242,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
   if (now_.phases.empty()) PetscFunctionReturn(0);
   if (spec_.linear_force()) {
     const double scale = -1 / (dt * spec_.fluid.density);
-    PetscCall(compute_elastic_force(*grid_, scale, now_.phases, slope_));
+    PetscCall(compute_elastic_force(*domain_, scale, now_.phases, slope_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
     if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, false, slope_));
   }
@@ -252,7 +252,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
 
 // At rest: what the force makes in a step, and never less than a Courant number of 1e-6.
 double Solver::speed_scale(double dt) const {
-  const Real3 f = driven_fluid().body_force.force, &h = grid_->spacing();
+  const Real3 f = driven_fluid().body_force.force, &h = domain_->spacing();
   return std::max({now_.speed_scale, dt * std::hypot(f[0], f[1], f[2]), 1e-6 * std::min(h[0], h[1]) / dt});
 }
 
@@ -260,15 +260,15 @@ PetscErrorCode Solver::project(double dt) {
   PetscFunctionBeginUser;
   const double density = spec_.fluid.density;
   const Rotation rotate = rotation();
-  const Real3 &h = grid_->spacing();
-  const double shortest = grid_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
+  const Real3 &h = domain_->spacing();
+  const double shortest = domain_->dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
   WorkSpace::Lease of_velocity, increment;
   PetscCall(work_->take("divergence", 1, &of_velocity));
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
   FieldBlock &divergence = of_velocity.fields();
-  PetscCall(compute_divergence(*grid_, density, velocity_star_, divergence));
+  PetscCall(compute_divergence(*domain_, density, velocity_star_, divergence));
   PetscCall(exchange_->update(divergence, 1));
-  fill_ghosts_of_increment(*grid_, divergence[0], 1);
+  fill_ghosts_of_increment(*domain_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
   if (obstacles_ && !rigid_->travel() && spec_.staggered())
@@ -278,14 +278,15 @@ PetscErrorCode Solver::project(double dt) {
     rigid_impulse_->add_increment(increment.fields(), obstacles_ != nullptr);
   if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
     PetscCall(
-        correct_velocity(*grid_, density, dt, rotate.uniform, *formula, divergence, velocity_star_, now_.pressure));
+        correct_velocity(*domain_, density, dt, rotate.uniform, *formula, divergence, velocity_star_, now_.pressure));
   else
-    PetscCall(correct_velocity(*grid_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
+    PetscCall(correct_velocity(*domain_, density, dt, rotate.uniform, increment.fields(), divergence, velocity_star_,
                                now_.pressure));
   if (rigid_impulse_ && pressure_solver_->formula()) rigid_impulse_->set_pressure(now_.pressure);
   respect_rigid(now_.time + dt, dt, increment.fields(), velocity_star_);
   if (loads_) PetscCall(settle_loads(dt, divergence, increment.fields()));
-  if (rotate.local > 0) PetscCall(rotate_pressure(*grid_, viscosity_.fields, rotate.local, divergence, now_.pressure));
+  if (rotate.local > 0)
+    PetscCall(rotate_pressure(*domain_, viscosity_.fields, rotate.local, divergence, now_.pressure));
   now_.velocity.swap(velocity_star_);
   PetscFunctionReturn(0);
 }
@@ -293,21 +294,21 @@ PetscErrorCode Solver::project(double dt) {
 PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(velocity, width));
-  fill_wall_ghosts_velocity(*grid_, spec_.sides, time, velocity, width);
+  fill_wall_ghosts_velocity(*domain_, spec_.sides, time, velocity, width);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update(field, width));
-  fill_wall_ghosts_even(*grid_, at_centre, field[0], width);
+  fill_wall_ghosts_even(*domain_, at_centre, field[0], width);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update({{&tensor, width, rows, true, true}}));
-  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, width, rows);
+  fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }
 

@@ -1,11 +1,13 @@
 // One time step of the method, as verbs in its order. No printing, no rank tests, no options.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "bodies/measures.hpp"
 #include "bodies/rigid.hpp"
 #include "bodies/surface_measures.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
+#include "grid/domain.hpp"
 #include "physics/exterior.hpp"
 #include "physics/fluid.hpp"
 #include "physics/interface.hpp"
@@ -41,9 +43,9 @@ public:
   /// Fields of the work space that the method needs for it.
   static int work_fields(const Method &method, int dimension, const Parts &parts);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
-  PetscErrorCode create(const Grid &grid, const SolverSpec &spec);
+  PetscErrorCode create(const Domain &domain, const SolverSpec &spec);
 
-  const Grid &grid() const { return *grid_; }
+  const Domain &domain() const { return *domain_; }
   const SolverSpec &spec() const { return spec_; }
   GhostExchange &exchange() { return *exchange_; }
   State &state() { return now_; }
@@ -183,7 +185,7 @@ private:
   PetscErrorCode find_rows(Phase &phase);
   FieldBlock idle_tensor(int components);  ///< work space between the steps
 
-  const Grid *grid_ = nullptr;
+  const Domain *domain_ = nullptr;
   SolverSpec spec_;
   std::unique_ptr<GhostExchange> exchange_;
   std::unique_ptr<PressureSolver> pressure_solver_;

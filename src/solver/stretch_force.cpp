@@ -11,8 +11,8 @@ PetscErrorCode Solver::add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate
   BodyOwners owners;
   std::vector<Int3> references;
   StretchForces forces;
-  PetscCall(bodies_.connect(*grid_, now_.phases, {}, &owners, &references));
-  PetscCall(forces.find(*grid_, now_.phases, owners, references));
+  PetscCall(bodies_.connect(*domain_, now_.phases, {}, &owners, &references));
+  PetscCall(forces.find(*domain_, now_.phases, owners, references));
   PetscCall(forces.add(*exchange_, now_.phases, 1 / spec_.fluid.density, scratch, rate));
   PetscFunctionReturn(0);
 }
@@ -26,8 +26,8 @@ PetscErrorCode Solver::stretch_power(double *power) {
   BodyOwners owners;
   std::vector<Int3> references;
   StretchForces forces;
-  PetscCall(bodies_.connect(*grid_, *phases, {}, &owners, &references));
-  PetscCall(forces.find(*grid_, *phases, owners, references));
+  PetscCall(bodies_.connect(*domain_, *phases, {}, &owners, &references));
+  PetscCall(forces.find(*domain_, *phases, owners, references));
   PetscCall(forces.power(*phases, now_.velocity, power));
   PetscFunctionReturn(0);
 }

@@ -24,7 +24,7 @@ struct MovedRows {
 // All phases together, so that their ghosts come together.
 PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionBeginUser;
-  const int ghosts = grid_->spec().ghosts;
+  const int ghosts = domain_->spec().ghosts;
   const bool swaps = !spec_.staggered() || spec_.interface != InterfaceScheme::plic;
   std::vector<MovedRows> rows(phases.size());
   if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
@@ -41,7 +41,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     if (spec_.interface == InterfaceScheme::plic) {
       PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
     } else {
-      PetscCall(advect_fraction(*grid_, dt, now_.velocity, phase, rows[p].swapped_in, next_fraction_));  // (4)
+      PetscCall(advect_fraction(*domain_, dt, now_.velocity, phase, rows[p].swapped_in, next_fraction_));  // (4)
       phase.fraction.swap(next_fraction_);
     }
     rows[p].join(phase.rows);  // it has moved less than a cell
@@ -56,19 +56,19 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0], near});
     }
   PetscCall(exchange_->update(fractions));
-  PetscCall(OccupiedRows::follow(*grid_, moved));  // sees what has come into ghosts, even of idle rows
+  PetscCall(OccupiedRows::follow(*domain_, moved));  // sees what has come into ghosts, even of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     if (phase.material.is_rigid()) continue;  // it stays where it is
     rows[p].join(phase.rows);
-    fill_wall_ghosts_even(*grid_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
+    fill_wall_ghosts_even(*domain_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
     if (!phase.material.carries_tensor()) continue;
     const ActiveSegments before = std::move(phase.tensor.strained);
-    PetscCall(find_solid(*grid_, phase));
+    PetscCall(find_solid(*domain_, phase));
     if (phase.material.is_membrane()) continue;  // with the others of its kind
-    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*grid_, phase));
+    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*domain_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
-    tensors.push_back({&phase.tensor.field, Grid::stencil_width, &rows[p].joined, true, true});
+    tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined, true, true});
   }
   if (membranes_) {
     MembraneTransport::Memory memory{&now_.markers};
@@ -76,7 +76,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     now_.forgotten += memory.unresolved;
   }
   PetscCall(exchange_->update(tensors));
-  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*grid_, spec_.sides, *B.block, B.width, B.rows);
+  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*domain_, spec_.sides, *B.block, B.width, B.rows);
   PetscFunctionReturn(0);
 }
 
@@ -93,17 +93,17 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     WorkSpace::Lease stage;
     PetscCall(work_->take("first stage of B", phase.tensor.field.count(), &stage));
     FieldBlock &next = stage.fields();
-    PetscCall(transport_tensor(*grid_, {dt, false, first}, now_.velocity, phase, phase.tensor.field, next));
+    PetscCall(transport_tensor(*domain_, {dt, false, first}, now_.velocity, phase, phase.tensor.field, next));
     PetscCall(extend_exterior(phase, next, rows));
-    PetscCall(update_tensor_ghosts(next, Grid::stencil_width, rows));
-    PetscCall(transport_tensor(*grid_, {dt, true, &before}, now_.velocity, phase, next, phase.tensor.field));
+    PetscCall(update_tensor_ghosts(next, Box::stencil_width, rows));
+    PetscCall(transport_tensor(*domain_, {dt, true, &before}, now_.velocity, phase, next, phase.tensor.field));
     // Over two steps at once, in every second: their rates are slow against a step. They forget: no way back.
     if (!identity && !phase.tensor.rule.linear && now_.step % 2 == 1 && dt > 0) {
       PetscCall(update_tensor_ghosts(phase.tensor.field, SurfaceCorrection::ghosts, rows));
-      PetscCall(surface_.apply(*grid_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
+      PetscCall(surface_.apply(*domain_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
     }
   } else {
-    PetscCall(transport_tensor(*grid_, {dt, false, &stale_}, now_.velocity, phase, phase.tensor.field, next_tensor_));
+    PetscCall(transport_tensor(*domain_, {dt, false, &stale_}, now_.velocity, phase, phase.tensor.field, next_tensor_));
     phase.tensor.field.swap(next_tensor_);
     stale_ = before;
   }
@@ -116,9 +116,9 @@ PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, c
   PetscFunctionBeginUser;
   if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
   PetscCall(exchange_->update({{&tensor, ExteriorLayers::layers, rows, true, true}}));
-  PetscCall(layers_.extend(*grid_, spec_.sides, *exchange_, tensor));
-  fill_wall_ghosts_tensor(*grid_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
-  PetscCall(limit_shear(*grid_, phase, tensor));
+  PetscCall(layers_.extend(*domain_, spec_.sides, *exchange_, tensor));
+  fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
+  PetscCall(limit_shear(*domain_, phase, tensor));
   PetscFunctionReturn(0);
 }
 

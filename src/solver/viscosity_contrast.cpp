@@ -9,13 +9,13 @@ ViscosityContrast Solver::contrast(const std::vector<double> &trace) const {
   ViscosityContrast contrast(spec_.fluid);
   for (std::size_t p = 0; p < now_.phases.size(); ++p) {
     const Material &material = now_.phases[p].material;
-    contrast.add(material, trace.empty() ? 0 : largest_stiffness(material, trace[p], grid_->dimension()));
+    contrast.add(material, trace.empty() ? 0 : largest_stiffness(material, trace[p], domain_->dimension()));
   }
   return contrast;
 }
 
 TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
-  TimeStepLimits limits = time_step_limits(*grid_, driven_fluid(), contrast(extremes.trace), spec_.sides, extremes,
+  TimeStepLimits limits = time_step_limits(*domain_, driven_fluid(), contrast(extremes.trace), spec_.sides, extremes,
                                            {spec_.staggered(), spec_.viscous == ViscousScheme::rkl});
   if (rigid_) limits.forcing = std::min(limits.forcing, rigid_->faces().shortest_period());
   return limits;
@@ -27,15 +27,15 @@ PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
   if (!viscosity_) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
-  PetscCall(compute_viscosity(*grid_, spec_.fluid, spec_.sides, *phases, &viscosity_));
+  PetscCall(compute_viscosity(*domain_, spec_.fluid, spec_.sides, *phases, &viscosity_));
   *viscosity = &viscosity_.fields;
   PetscFunctionReturn(0);
 }
 
 bool Solver::drifts() const {
-  for (int d = 0; d < grid_->dimension(); ++d)
+  for (int d = 0; d < domain_->dimension(); ++d)
     for (const Side &side : spec_.sides[d])
-      if (grid_->is_wall(d) && side.kind != SideKind::symmetry) return false;
+      if (domain_->is_wall(d) && side.kind != SideKind::symmetry) return false;
   return true;
 }
 
@@ -54,8 +54,8 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   std::vector<Int3> references;
   std::vector<int> labels;
   for (const SurfaceSample &sample : samples) labels.push_back(sample.label);
-  PetscCall(bodies_.connect(*grid_, *phases, labels, &owners, &references));
-  PetscCall(measure_surfaces(*grid_, *phases, samples, owners, references, bodies));
+  PetscCall(bodies_.connect(*domain_, *phases, labels, &owners, &references));
+  PetscCall(measure_surfaces(*domain_, *phases, samples, owners, references, bodies));
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +89,7 @@ Solver::Rotation Solver::rotation() const {
   if (!spec_.staggered()) return {};
   if (!viscosity_) return {0.5 * spec_.fluid.kinematic_viscosity(), 0};
   const ViscosityContrast range = contrast({});
-  const double whole = grid_->dimension() == 3 ? 4. / 3 : 1;
+  const double whole = domain_->dimension() == 3 ? 4. / 3 : 1;
   if (expects_pressure()) return {whole * range.least / spec_.fluid.density, 0};
   if (range.within(5)) return {0, whole / 2};
   return {whole / 2 * range.least / spec_.fluid.density, 0};

@@ -17,10 +17,10 @@ struct History {
   double drift = 0;  // largest relative change of the volume
 };
 
-double mean(const Grid &grid, ConstView view) {
+double mean(const Domain &grid, ConstView view) {
   double sum = 0;
   for_points(grid, view, at_face[0], [&](const double &q, double, double, double) { sum += q; });
-  return sum / (grid.cells()[0] * grid.cells()[1]);
+  return sum / (grid.domain_cells()[0] * grid.domain_cells()[1]);
 }
 
 History strong_disc(int cells, PressureKind pressure) {

@@ -16,7 +16,7 @@ constexpr Matrix identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 // A box full of solid in a velocity that nobody changes; ghosts included.
 struct Kinematics {
-  Grid grid;
+  Domain grid;
   FieldBlock velocity, next;
   Phase phase;
 
@@ -49,9 +49,9 @@ struct Kinematics {
     const double dt = end / steps;
     for (int n = 0; n < steps; ++n) {
       ASSERT_EQ(transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next), 0);
-      ASSERT_EQ(exchange.update(next, Grid::stencil_width), 0);
+      ASSERT_EQ(exchange.update(next, Box::stencil_width), 0);
       ASSERT_EQ(transport_tensor(grid, {dt, true}, velocity, phase, next, phase.tensor.field), 0);
-      ASSERT_EQ(exchange.update(phase.tensor.field, Grid::stencil_width), 0);
+      ASSERT_EQ(exchange.update(phase.tensor.field, Box::stencil_width), 0);
     }
   }
 

@@ -114,7 +114,7 @@ struct ShearErrors {
 // What linear shear of rate 1 leaves unbalanced is let go until nothing moves any more: errors of u over its change
 // across both layers.
 ShearErrors shear_errors_across(double lambda, int cells) {
-  Grid grid;
+  Domain grid;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, box_across(cells)), 0);
   GhostExchange exchange(grid);
   std::unique_ptr<PressureSolver> solver;

@@ -193,7 +193,7 @@ TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   slab.interval = {0.2, 0.5};
   BodyScene scene(run_communicator(), box({12, 10, 7}, {1.2, 1.0, 0.7}));
   Places places;
-  ASSERT_EQ(place_bodies(slab, scene.grid.spec(), &places), "");
+  ASSERT_EQ(place_bodies(slab, scene.grid.domain_shape(), &places), "");
   scene.add(slab, places);
   for (int n = 0; n < 5; ++n) ASSERT_EQ(scene.tracker.follow(scene.grid, scene.phases), 0);
   const BodyMeasure body = scene.measure()[0];

@@ -73,7 +73,7 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
   std::uint64_t expected = 0, hash = 0;
   ASSERT_EQ(build(run_communicator(), GetParam(), &writer), 0);
   ASSERT_EQ(advance(&writer, 7, &hash), 0);
-  std::vector<double> volumes(writer.solver.grid().rank() == writer.solver.grid().ranks() - 1 ? 1 : 0, 1.5);
+  std::vector<double> volumes(writer.solver.domain().rank() == writer.solver.domain().ranks() - 1 ? 1 : 0, 1.5);
   ASSERT_EQ(writer.solver.bodies().follow(writer.grid, writer.solver.state().phases), 0);  // it goes to its owner,
   writer.solver.bodies().set_first_volumes(volumes);                                       // the last rank
   ASSERT_EQ(save_state(&writer.solver, position, "-option value\n", path), 0);

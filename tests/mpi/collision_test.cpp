@@ -48,9 +48,9 @@ std::vector<double> volumes(Solver &solver) {
   std::vector<double> all;
   const std::vector<Phase> *phases = nullptr;
   EXPECT_EQ(solver.phases_now(&phases), 0);
-  EXPECT_EQ(solver.bodies().measure(solver.grid(), *phases, solver.state().velocity, strain_energy, &owned), 0);
+  EXPECT_EQ(solver.bodies().measure(solver.domain(), *phases, solver.state().velocity, strain_energy, &owned), 0);
   const int count = solver.bodies().bodies();
-  EXPECT_EQ(all_bodies(solver.grid().comm(), count, count, owned, &bodies), 0);
+  EXPECT_EQ(all_bodies(solver.domain().comm(), count, count, owned, &bodies), 0);
   for (const BodyMeasure &body : bodies) all.push_back(body.volume);
   return all;
 }
@@ -60,7 +60,7 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
   Outcome outcome;
   const ParseResult parsed = parse_line(options);
   EXPECT_EQ(parsed.error, "");
-  Grid grid;
+  Domain grid;
   Solver solver;
   std::string reason;
   EXPECT_EQ(grid.create(comm, parsed.config.grid), 0);
@@ -152,7 +152,7 @@ TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
   double energy[2];
   for (const bool merge : {false, true}) {
     const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
-    Grid grid;
+    Domain grid;
     Solver solver;
     std::string reason;
     ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);
@@ -194,7 +194,7 @@ TEST(Collision, BodiesThatOverlapAtTheStartAreBothWhole) {
   for (const bool merge : {false, true}) {
     const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
     ASSERT_EQ(parsed.error, "");
-    Grid grid;
+    Domain grid;
     Solver solver;
     std::string reason;
     ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);

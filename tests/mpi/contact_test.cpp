@@ -45,7 +45,7 @@ std::vector<T> of_all(MPI_Comm comm, const std::vector<T> &mine) {
 }
 
 struct Marks {
-  Grid grid;
+  Domain grid;
   std::vector<Phase> phases;
   std::string crowded;
 
@@ -61,7 +61,7 @@ struct Marks {
     spec.name = "bead";
     EXPECT_EQ(fill_phase(grid, spec, {}, 1, &phase), 0);
     phase.separate = true;
-    const Int3 &begin = grid.layout().begin, &n = grid.cells();
+    const Int3 &begin = grid.layout().begin, &n = grid.domain_cells();
     for (const Segment &row : grid.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -166,7 +166,7 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
     const Phase &from = marks.phases[0], &to = marks.phases[1], &old = before.phases[0];
     EXPECT_EQ(to.species, "bead");
     EXPECT_EQ(to.colour, 1);
-    const Grid &grid = marks.grid;
+    const Domain &grid = marks.grid;
     for (const Segment &row : grid.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const double label = old.label[0](i, row.j, row.k), phi = old.fraction[0](i, row.j, row.k);

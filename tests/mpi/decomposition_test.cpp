@@ -18,7 +18,7 @@ void check(const GridSpec &spec) {
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " x " << spec.cells[1] << " x " << spec.cells[2] << " as "
                                     << spec.processors[0] << " x " << spec.processors[1] << " x "
                                     << spec.processors[2]);
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   const Layout &own = grid.layout();
 
@@ -33,7 +33,7 @@ void check(const GridSpec &spec) {
   EXPECT_EQ(mine.size, own.size);
   EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
 
-  const Grid planned = Grid::planned(spec, grid.ranks());
+  const Domain planned = Domain::planned(spec, grid.ranks());
   EXPECT_EQ(planned.layout_of(grid.rank()).begin, own.begin);
   EXPECT_EQ(planned.layout_of(grid.rank()).size, own.size);
 
@@ -42,7 +42,7 @@ void check(const GridSpec &spec) {
   const int size = static_cast<int>(own.size);
   MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, run_communicator());
 
-  const Int3 &n = grid.cells();
+  const Int3 &n = grid.domain_cells();
   std::vector<int> times(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   int wrong_owner = 0;
   for (int rank = 0; rank < grid.ranks(); ++rank) {
@@ -84,7 +84,7 @@ TEST(Decomposition, CoversEveryCellOnceAndAgreesWithTheDmda) {
           spec.cells = cells;
           spec.boundary = {Boundary::periodic, y, Boundary::wall};
           spec.processors = {px, py, 0};
-          if (!Grid::why_not(spec, ranks).empty()) continue;
+          if (!Domain::why_not(spec, ranks).empty()) continue;
           check(spec);
           ++tried;
           split_x += px > 1;
@@ -101,8 +101,8 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       GridSpec spec;
       spec.cells = cells;
       spec.boundary = {x, Boundary::wall, Boundary::periodic};
-      if (!Grid::why_not(spec, world_size()).empty()) continue;
-      Grid grid;
+      if (!Domain::why_not(spec, world_size()).empty()) continue;
+      Domain grid;
       ASSERT_EQ(grid.create(run_communicator(), spec), 0);
       FieldBlock before(grid, 1), after(grid, 1);
       const Int3 &begin = grid.layout().begin;

@@ -19,13 +19,13 @@ Function wild(double a) {
   return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z + a * x * y); };
 }
 
-struct Box {
-  Grid grid;
+struct CellBlock {
+  Domain grid;
   BoxSides walls{};
   FieldBlock velocity;
   std::vector<Phase> phases;
 
-  Box(MPI_Comm comm, bool flat, const std::array<bool, 3> &has_walls) {
+  CellBlock(MPI_Comm comm, bool flat, const std::array<bool, 3> &has_walls) {
     GridSpec spec;
     spec.cells = {7, 13, flat ? 1 : 9};
     spec.length = {1, 2, 1.5};
@@ -97,7 +97,7 @@ struct Measures {
   EnergyRates rates;
 };
 
-Measures measure(Box &box, double viscosity) {
+Measures measure(CellBlock &box, double viscosity) {
   Measures m;
   box.fill_ghosts();
   EXPECT_EQ(measure_flow(box.grid, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
@@ -112,7 +112,7 @@ TEST(EnergyRates, WallsAndDissipationAreThePowerOfTheViscousForce) {
   for (const bool flat : {false, true})
     for (const std::array<bool, 3> &has_walls :
          {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}}) {
-      Box box(run_communicator(), flat, has_walls);
+      CellBlock box(run_communicator(), flat, has_walls);
       box.move_walls({0.7, -0.4, flat ? 0 : 0.3});
       const Measures m = measure(box, 0.2);
       EXPECT_GT(std::fabs(m.rates.wall_power), 0.1);
@@ -124,7 +124,7 @@ TEST(EnergyRates, WallsAndDissipationAreThePowerOfTheViscousForce) {
 // With solids, one of them Mooney-Rivlin, on walls that move along x.
 TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
   for (const bool flat : {false, true}) {
-    Box box(run_communicator(), flat, {false, true, true});
+    CellBlock box(run_communicator(), flat, {false, true, true});
     box.move_walls({0.7, 0, 0});
     box.add_phase(Material{0.6}, 4);
     box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
@@ -140,7 +140,7 @@ TEST(EnergyRates, StressPowerIsThePowerOfTheElasticForce) {
 // Solids in the corners of moving walls.
 TEST(EnergyRates, WallsPayForSolidsInTheirCorners) {
   for (const bool flat : {false, true}) {
-    Box box(run_communicator(), flat, {true, true, true});
+    CellBlock box(run_communicator(), flat, {true, true, true});
     box.move_walls({0.7, -0.4, flat ? 0 : 0.3});
     box.add_phase(Material{0.6}, 4);
     const Measures m = measure(box, 0.2);
@@ -153,7 +153,7 @@ TEST(EnergyRates, SameBitsAsOnOneRank) {
   for (const bool flat : {false, true}) {
     Measures m[2];
     for (int alone = 0; alone < 2; ++alone) {
-      Box box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false});
+      CellBlock box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false});
       box.move_walls({0.7, -0.4, 0});
       box.add_phase(test::mooney_rivlin(0.3, 0.4, 0.2), 9);
       m[alone] = measure(box, 0.2);
@@ -202,7 +202,8 @@ TEST(EnergyBudget, FindsTheRowSinceWhichARunMakesEnergy) {
   EnergyBudget resumed;
   resumed.set_numbers(budget.numbers());
   resumed.set_made_numbers(budget.made_numbers());
-  // Between two rows the dissipation goes up, where it is not known within 0.3; from the second on 0.5 are made per time.
+  // Between two rows the dissipation goes up, where it is not known within 0.3; from the second on 0.5 are made per
+  // time.
   for (int n = 1; n <= 10; ++n) resumed.advance(100 + n, driven(1.5));
   EXPECT_NEAR(resumed.lost(), 10 - 0.2 - 4.5, 1e-12);
   EXPECT_NEAR(resumed.made_share(), 9 * 0.5 / (1 + 9), 1e-12);

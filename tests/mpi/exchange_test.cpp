@@ -3,6 +3,7 @@
 #include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ double truth(int f, int i, int j, int k) { return 1 + i + 64 * j + 4096.0 * k + 
 double sentinel(std::ptrdiff_t offset) { return -1.0 - static_cast<double>(offset); }
 
 // Calls `visit` for each decomposition, boundary and size that fits on these ranks.
-void for_each_grid(const std::function<void(const Grid &)> &visit) {
+void for_each_grid(const std::function<void(const Domain &)> &visit) {
   int ranks = 0, visited = 0, split_x = 0;
   MPI_Comm_size(run_communicator(), &ranks);
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 12, 3}, Int3{12, 3, 1}})
@@ -33,8 +34,8 @@ void for_each_grid(const std::function<void(const Grid &)> &visit) {
           spec.cells = cells;
           for (int d = 0; d < 3; ++d) spec.boundary[d] = sides >> d & 1 ? Boundary::wall : Boundary::periodic;
           spec.processors = {px, py, 0};
-          if (!Grid::why_not(spec, ranks).empty()) continue;
-          Grid grid;
+          if (!Domain::why_not(spec, ranks).empty()) continue;
+          Domain grid;
           ASSERT_EQ(grid.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message()
                        << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << grid.processors(0) << " x "
@@ -55,13 +56,13 @@ void for_each_point(const Layout &own, int fields, const Visit &visit) {
         for (int i = -own.ghosts[0]; i < own.cells[0] + own.ghosts[0]; ++i) visit(f, Int3{i, j, k});
 }
 
-bool is_owned(const Grid &grid, const Int3 &local) {
+bool is_owned(const Domain &grid, const Int3 &local) {
   for (int d = 0; d < 3; ++d)
-    if (local[d] < 0 || local[d] >= grid.points_end(d, true) || grid.owned()[d] == 0) return false;
+    if (local[d] < 0 || local[d] >= grid.points_end(d, true) || grid.cells()[d] == 0) return false;
   return true;
 }
 
-void prepare(const Grid &grid, FieldBlock &block) {
+void prepare(const Domain &grid, FieldBlock &block) {
   const Layout &own = grid.layout();
   for (std::ptrdiff_t n = 0; n < own.size * block.count(); ++n) block.data()[n] = sentinel(n);
   for_each_point(own, block.count(), [&](int f, const Int3 &p) {
@@ -71,17 +72,17 @@ void prepare(const Grid &grid, FieldBlock &block) {
 }
 
 // Whether row (j, k) is a ghost row that an exchange brings, and x whole: it comes with what lies behind its ends.
-bool comes_whole(const Grid &grid, int width, int j, int k) {
+bool comes_whole(const Domain &grid, int width, int j, int k) {
   const int row[3] = {0, j, k};
   for (int d = 1; d < 3; ++d) {
-    const Grid::Range near = grid.points_near(d, true, width);
+    const Box::Range near = grid.points_near(d, true, width);
     if (row[d] < near.begin || row[d] >= near.end) return false;
   }
   return grid.processors(0) == 1 && !is_owned(grid, {0, j, k});
 }
 
 // Wrong values anywhere in the memory of the block. A rank without cells gets no ghosts.
-int count_errors(const Grid &grid, const FieldBlock &block, int width) {
+int count_errors(const Domain &grid, const FieldBlock &block, int width) {
   const Layout &own = grid.layout();
   std::vector<double> expected(own.size * block.count());
   for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = sentinel(n);
@@ -92,10 +93,10 @@ int count_errors(const Grid &grid, const FieldBlock &block, int width) {
              comes_whole(grid, width, j, k) && n < own.offset(-own.ghosts[0], j + 1, k); ++n)
           expected[n + f * own.size] = block.data()[n + f * own.size];
   for_each_point(own, block.count(), [&](int f, const Int3 &p) {
-    if (grid.owned_count() == 0) return;
+    if (grid.cell_count() == 0) return;
     Int3 global{};
     for (int d = 0; d < 3; ++d) {
-      const int n = grid.cells()[d], g = own.begin[d] + p[d];
+      const int n = grid.domain_cells()[d], g = own.begin[d] + p[d];
       if (p[d] < -width || p[d] >= own.cells[d] + width) return;
       if (grid.is_wall(d) && (g < 0 || g > n)) return;
       global[d] = grid.is_wall(d) ? g : (g % n + n) % n;
@@ -109,7 +110,7 @@ int count_errors(const Grid &grid, const FieldBlock &block, int width) {
 
 // Ghosts get the right value; owned points and rows, ghost rows behind walls and outer ones keep theirs.
 TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     GhostExchange exchange(grid);
     for (const int fields : {1, 3, 7})
       for (const int width : {1, 2, 3, 5}) {
@@ -129,7 +130,7 @@ TEST(GhostExchange, FillsThoseOfLargeBoxes) {
         GridSpec spec;
         spec.cells = cells;
         spec.boundary = {x, y, Boundary::periodic};
-        Grid grid;
+        Domain grid;
         ASSERT_EQ(grid.create(run_communicator(), spec), 0);
         GhostExchange exchange(grid);
         FieldBlock block(grid, 3);
@@ -141,9 +142,9 @@ TEST(GhostExchange, FillsThoseOfLargeBoxes) {
 
 // Levels of multigrid: ranks begin anywhere, some have fewer cells than ghosts, or none.
 TEST(GhostExchange, FillsThoseOfCoarseGrids) {
-  for_each_grid([](const Grid &grid) {
-    Int3 cells = grid.cells();
-    Grid level = grid.coarse(cells, false);
+  for_each_grid([](const Domain &grid) {
+    Int3 cells = grid.domain_cells();
+    Domain level = grid.coarse(cells, false);
     for (int halvings = 1; halvings <= 3; ++halvings) {
       for (int &n : cells) n = (n + 1) / 2;
       level = level.coarse(cells, false);
@@ -159,7 +160,7 @@ TEST(GhostExchange, FillsThoseOfCoarseGrids) {
 }
 
 TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     GhostExchange exchange(grid);
     FieldBlock a(grid, 3), b(grid, 3), c(grid, 1), d(grid, 3);
     for (FieldBlock *block : {&a, &b, &c, &d}) prepare(grid, *block);
@@ -180,7 +181,7 @@ TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
 TEST(GhostExchange, LeavesRestAlone) {
   GridSpec spec;
   spec.cells = {40, 40, 1};
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   GhostExchange exchange(grid);
   FieldBlock phi(grid, 1), block(grid, 2);
@@ -211,7 +212,7 @@ TEST(GhostExchange, LeavesRestAlone) {
 
 // The exchange belongs to the grid, not to a block: state now and next take turns.
 TEST(GhostExchange, CanBeRepeatedAfterSwap) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     GhostExchange exchange(grid);
     FieldBlock now(grid, 3), next(grid, 3);
     for (int round = 0; round < 3; ++round) {
@@ -225,10 +226,10 @@ TEST(GhostExchange, CanBeRepeatedAfterSwap) {
 
 // Exchange and walls together: each rank's ghosts are, bit for bit, those of the undivided grid.
 TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     GridSpec spec = grid.spec();
     spec.processors = {0, 0, 0};
-    Grid whole;
+    Domain whole;
     ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
     BoxSides walls{};
     for (int d = 0; d < 3; ++d)
@@ -236,7 +237,7 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
     const int dimension = grid.dimension();
     const int components = static_cast<int>(tensor_components(dimension).size());
     for (const int width : {1, 3}) {
-      const auto fill = [&](const Grid &g, FieldBlock &velocity, FieldBlock &tensor) {
+      const auto fill = [&](const Domain &g, FieldBlock &velocity, FieldBlock &tensor) {
         const Layout &own = g.layout();
         for (FieldBlock *block : {&velocity, &tensor}) {
           for (int f = 0; f < block->count(); ++f) block->fill(f, poison);
@@ -264,7 +265,7 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
         Int3 g{};
         for (int d = 0; d < 3; ++d) {
           g[d] = own.begin[d] + p[d];
-          if (!grid.is_wall(d)) g[d] = (g[d] + grid.cells()[d]) % grid.cells()[d];
+          if (!grid.is_wall(d)) g[d] = (g[d] + grid.domain_cells()[d]) % grid.domain_cells()[d];
         }
         const auto compare = [&](const FieldBlock &part, const FieldBlock &all) {
           const double x = part[f](p[0], p[1], p[2]), y = all[f](g[0], g[1], g[2]);

@@ -55,7 +55,7 @@ struct Flow {
     return measures;
   }
 
-  Grid grid;
+  Domain grid;
   BoxSides walls{};
   FieldBlock velocity;
   std::vector<Phase> phases;
@@ -128,7 +128,7 @@ TEST(FlowMeasures, DissipationIsThePowerOfTheDiscreteViscousForce) {
       return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z); };
     };
     const FlowMeasures m = flow.measure({wild(1), wild(2), wild(3)}, {1, 1, 0, 0});
-    const Grid &grid = flow.grid;
+    const Domain &grid = flow.grid;
     double power = 0;
     for (int c = 0; c < 3; ++c) {
       const ConstView q = flow.velocity[c];

@@ -39,7 +39,7 @@ struct Scene {
     ASSERT_EQ(exchange->update(value, grid.spec().ghosts), 0);
     ASSERT_EQ(OccupiedRows::follow(grid, {{&rows, std::as_const(value)[0], near}}), 0);
   }
-  Grid grid;
+  Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   FieldBlock value;
   OccupiedRows rows;
@@ -62,7 +62,7 @@ Ghosts bring(Scene &s, int width) {
             Int3 g{own.begin[0] + i, own.begin[1] + j, own.begin[2] + k};
             bool behind = false;
             for (int d = 0; d < 3; ++d) {
-              const int n = s.grid.cells()[d];
+              const int n = s.grid.domain_cells()[d];
               if (s.grid.is_wall(d))
                 behind = behind || g[d] < 0 || g[d] >= n;
               else

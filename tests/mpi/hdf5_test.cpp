@@ -48,13 +48,13 @@ TEST_P(Fields, RoundTrip) {
     ASSERT_EQ(in.read_field(scene.grid, "q", place, block[1]), 0);
     ASSERT_EQ(in.read_attribute("q", "location", &location), 0);
     EXPECT_EQ(location, location_name(place));
-    const Grid &grid = scene.grid;
-    for (int k = 0; k < grid.owned()[2]; ++k)
+    const Domain &grid = scene.grid;
+    for (int k = 0; k < grid.cells()[2]; ++k)
       for (int j = 0; j < grid.points_end(1, high_wall && place[1]); ++j)
         for (int i = 0; i < grid.points_end(0, high_wall && place[0]); ++i)
           ASSERT_EQ(block[1](i, j, k), block[0](i, j, k)) << i << " " << j << " " << k;
     if (!high_wall && place[0] && grid.touches_high(0)) {
-      EXPECT_EQ(block[1](grid.owned()[0], 0, 0), 0.0) << "not in the file";
+      EXPECT_EQ(block[1](grid.cells()[0], 0, 0), 0.0) << "not in the file";
     }
   }
 }
@@ -157,7 +157,7 @@ TEST(Hdf5, WrongInputIsNamed) {
   }
   Hdf5File in;
   ASSERT_EQ(in.open(run_communicator(), path), 0);
-  const auto reading = [&](const Grid &grid, const char *name, const Staggering &s, FieldBlock &to) {
+  const auto reading = [&](const Domain &grid, const char *name, const Staggering &s, FieldBlock &to) {
     return error_of([&] { return in.read_field(grid, name, s, to[0]); });
   };
   EXPECT_EQ(reading(other.grid, "q", at_centre, block),

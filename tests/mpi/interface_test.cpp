@@ -64,8 +64,8 @@ Position two_balls(const GridSpec &spec) {
 void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt) {
   static const char *const orders[2][6] = {{"xy", "yx", "xy", "yx", "xy", "yx"},
                                            {"xyz", "zyx", "yzx", "xzy", "zxy", "yxz"}};
-  const Grid &grid = scene.grid;
-  const Int3 n = grid.owned();
+  const Domain &grid = scene.grid;
+  const Int3 n = grid.cells();
   const int dimension = grid.dimension(), margin = dimension == 3 ? 1 : 0;
   FieldBlock work(grid, 2);
   scene.each_owned([&](int i, int j, int k) { work[1](i, j, k) = scene.fraction[0](i, j, k) > 0.5; });
@@ -130,7 +130,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
           InterfaceScene whole, part;
           ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
           spec.processors = {px, py, 0};
-          if (!Grid::why_not(spec, ranks).empty()) continue;
+          if (!Domain::why_not(spec, ranks).empty()) continue;
           ASSERT_EQ(part.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << px
                                             << " x " << py << ", walls " << walls);

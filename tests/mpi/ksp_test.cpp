@@ -67,10 +67,10 @@ GridSpec box(const Int3 &cells, int walls, const Real3 &sides = {1, 1, 1}) {
 }
 
 // Of -lap, but for 0.
-double smallest_eigenvalue(const Grid &grid) {
+double smallest_eigenvalue(const Domain &grid) {
   double smallest = HUGE_VAL;
   for (int d = 0; d < grid.dimension(); ++d) {
-    const double angle = (grid.is_wall(d) ? 1 : 2) * M_PI / grid.cells()[d];
+    const double angle = (grid.is_wall(d) ? 1 : 2) * M_PI / grid.domain_cells()[d];
     smallest = std::min(smallest, std::pow(2 * std::sin(angle / 2) / grid.spacing()[d], 2));
   }
   return smallest;
@@ -85,9 +85,9 @@ double largest(double value) {
 double difference(const PoissonScene &s, ConstView a, ConstView b) {
   const int gz = std::min(1, s.grid.layout().ghosts[2]);
   double worst = 0;
-  for (int k = -gz; k < s.grid.owned()[2] + gz; ++k)
-    for (int j = -1; j < s.grid.owned()[1] + 1; ++j)
-      for (int i = -1; i < s.grid.owned()[0] + 1; ++i) {
+  for (int k = -gz; k < s.grid.cells()[2] + gz; ++k)
+    for (int j = -1; j < s.grid.cells()[1] + 1; ++j)
+      for (int i = -1; i < s.grid.cells()[0] + 1; ++i) {
         const double error = std::abs(a(i, j, k) - b(i, j, k));
         worst = error <= worst ? worst : std::isfinite(error) ? error : HUGE_VAL;
       }
@@ -110,7 +110,8 @@ TEST(Ksp, EqualsSmacOnAllBoundariesAndDecompositions) {
   if (!SmacSolver::available()) GTEST_SKIP() << "built without FFTW";
   for (const Int3 &cells : {Int3{16, 24, 12}, Int3{13, 10, 11}, Int3{16, 24, 1}, Int3{13, 10, 1}})
     for (const Real3 &sides : {Real3{1, 1.3, 1.2}, Real3{1, 3, 0.5}})
-      for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8); walls += sides[1] < 2 && cells[0] == 16 && cells[2] == 1 ? 1 : 2)
+      for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8);
+           walls += sides[1] < 2 && cells[0] == 16 && cells[2] == 1 ? 1 : 2)
         for (const GridSpec &spec : any_decomposition(box(cells, walls, sides))) {
           KspScene s(spec);
           s.set(noise);
@@ -126,7 +127,7 @@ TEST(Ksp, EqualsSmacOnAllBoundariesAndDecompositions) {
           const double bound = 1.01e-10 * s.rms_divergence() / (s.dt * smallest_eigenvalue(s.grid));
           const ConstView a = s.increment[0], b = exact[0];
           EXPECT_LE(s.rms([&](int i, int j, int k) { return a(i, j, k) - b(i, j, k); }), bound) << name(spec);
-          EXPECT_LE(difference(s, a, b), bound * std::sqrt(s.grid.cell_count())) << name(spec);
+          EXPECT_LE(difference(s, a, b), bound * std::sqrt(s.grid.domain_cell_count())) << name(spec);
         }
 }
 
@@ -214,10 +215,10 @@ TEST(Ksp, IgnoresTheMean) {
   for (const int walls : {0, 7}) {
     KspScene s(box({16, 12, 20}, walls));
     s.set([](int i, int j, int k) { return 5 + noise(i, j, k); }, false);
-    const double mean = global_sum(s.grid, s.divergence[0]) / s.grid.cell_count();
+    const double mean = global_sum(s.grid, s.divergence[0]) / s.grid.domain_cell_count();
     EXPECT_EQ(s.solve(), 0);
     EXPECT_LE(s.rms([&](int i, int j, int k) { return s.residual(i, j, k) - mean; }), 1e-9);
-    EXPECT_LE(std::abs(global_sum(s.grid, s.increment[0])) / s.grid.cell_count(), 1e-16);
+    EXPECT_LE(std::abs(global_sum(s.grid, s.increment[0])) / s.grid.domain_cell_count(), 1e-16);
     for (const double constant : {0.0, 5.0, 0.1}) {
       s.set([&](int, int, int) { return constant; }, false);
       EXPECT_EQ(s.solve(), 0) << constant;

@@ -38,7 +38,7 @@ int differences(const Cycle &s, const Cycle &one) {
   for (int k = low[2]; k < high[2]; ++k)
     for (int j = low[1]; j < high[1]; ++j)
       for (int i = low[0]; i < high[0]; ++i) {
-        const Int3 local{i, j, k}, &cells = s.grid.cells();
+        const Int3 local{i, j, k}, &cells = s.grid.domain_cells();
         Int3 image{};
         for (int d = 0; d < 3; ++d) image[d] = (own.begin[d] + local[d] + cells[d]) % cells[d];
         const double a = s.solution[0](i, j, k), b = one.solution[0](image[0], image[1], image[2]);
@@ -91,7 +91,7 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         bool joined = false;
         const auto levels = Multigrid::plan(many.grid);
         for (std::size_t l = 1; l < levels.size(); ++l)
-          joined |= levels[l]->grid().cells() == levels[l - 1]->grid().cells() && levels[l]->grid().ranks() > 1;
+          joined |= levels[l]->domain().cells() == levels[l - 1]->domain().cells() && levels[l]->domain().ranks() > 1;
         EXPECT_EQ(joined, ranks > 1);
       }
     }

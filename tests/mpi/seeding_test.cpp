@@ -15,7 +15,7 @@ using namespace eulastic;
 namespace {
 
 // Of what moves on this rank, without labels and what is known of bodies.
-std::uint64_t flow_hash(const Grid &grid, const State &state) {
+std::uint64_t flow_hash(const Domain &grid, const State &state) {
   std::uint64_t sum = 0, salt = 0;
   for (int d = 0; d < state.velocity.count(); ++d) sum += hash_points(grid, state.velocity[d], at_face[d], ++salt);
   sum += hash_points(grid, state.pressure[0], at_centre, ++salt);
@@ -29,7 +29,7 @@ std::uint64_t flow_hash(const Grid &grid, const State &state) {
 
 PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t hash[2], std::uint64_t *flow = nullptr) {
   PetscFunctionBeginUser;
-  Grid grid;
+  Domain grid;
   Solver solver;
   std::string reason;
   PetscCall(grid.create(comm, config.grid));
@@ -86,14 +86,14 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
       "-time_end 1 -grid_cells 80,80,80 -grid_length 200,200,200 -species ball -ball_shape sphere -ball_radius 1 "
       "-ball_shear_modulus 1 -ball_placement lattice -ball_count 30,30,30 -ball_jitter 1");
   ASSERT_EQ(result.error, "");
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(run_communicator(), result.config.grid), 0);
   const Places all = test::with_all_places(result.config).places[0], &mine = result.config.places[0];
   EXPECT_EQ(int(mine.known.size()), BodyRange::of(27000, test::world_rank(), grid.ranks()).size());
   Places near;
   ASSERT_EQ(bring_near(grid.comm(), grid, result.config.species[0], mine, &near), 0);
   double most = 1;
-  for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.owned()[d] + 2 * (0.4 + 1) + 2) / 80.0);
+  for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.cells()[d] + 2 * (0.4 + 1) + 2) / 80.0);
   EXPECT_LE(double(near.known.size()), most * 27000);
   // Nobody is left out: every body with its centre in a cell of this rank is there.
   unsigned long sums[2] = {0, near.known.size()};
@@ -101,7 +101,7 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
     bool here = true;
     for (int d = 0; d < 3; ++d) {
       const int cell = static_cast<int>(place.centre[d] / 2.5) - grid.layout().begin[d];
-      here = here && cell >= 0 && cell < grid.owned()[d];
+      here = here && cell >= 0 && cell < grid.cells()[d];
     }
     sums[0] += here;
     const auto found = std::lower_bound(near.known.begin(), near.known.end(), place.index,

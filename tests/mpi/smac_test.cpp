@@ -27,7 +27,7 @@ double noise(int i, int j, int k) {
 
 // One solution with all that belongs to it.
 struct Solution {
-  Grid grid;
+  Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   std::unique_ptr<PressureSolver> solver;
   FieldBlock divergence, pressure, increment;
@@ -66,12 +66,12 @@ double largest(double value) {
   return value;
 }
 
-double mean(const Grid &grid, ConstView field) {
+double mean(const Domain &grid, ConstView field) {
   ExactSums sum(1);
   for (const Segment &s : grid.rows()) sum.add_row(0, field.row(s.j, s.k), s.size(), grid.layout().begin[0]);
   double value = 0;
   EXPECT_EQ(sum.reduce(grid.comm(), &value), 0);
-  return value / grid.cell_count();
+  return value / grid.domain_cell_count();
 }
 
 // r = lap(increment) - (divergence - <divergence>) / dt, infinite if anything is NaN; f = divergence / dt.
@@ -108,7 +108,7 @@ int differences(const Solution &s, const Solution &one) {
     const Int3 local{i, j, k};
     Int3 image{};
     for (int d = 0; d < 3; ++d) {
-      const int n = s.grid.cells()[d], g = s.grid.layout().begin[d] + local[d];
+      const int n = s.grid.domain_cells()[d], g = s.grid.layout().begin[d] + local[d];
       image[d] = !s.grid.is_wall(d) ? (g + n) % n : g < 0 ? -1 - g : g >= n ? 2 * n - 1 - g : g;
     }
     const double a = s.increment[0](i, j, k), b = one.increment[0](image[0], image[1], image[2]);
@@ -161,7 +161,7 @@ protected:
 };
 
 TEST(SmacAvailability, CreateFailsExactlyWithoutFftw) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(run_communicator(), all_boundaries({12, 12, 12})[0]), 0);
   GhostExchange exchange(grid);
   std::unique_ptr<PressureSolver> solver;

@@ -62,7 +62,7 @@ void check_index(const SharedDirectory &directory, int snapshots) {
 }
 
 // Every link leads to the dataset of its name, of a shape that cells have, and the list names each snapshot.
-void check_vtkhdf(const SharedDirectory &directory, const Grid &grid, int snapshots) {
+void check_vtkhdf(const SharedDirectory &directory, const Domain &grid, int snapshots) {
   const std::string series = text_of(directory / "snapshots.vtkhdf.series");
   for (int n = 0; n < snapshots; ++n) {
     const std::string name = "snapshot_00000" + std::to_string(n);
@@ -75,7 +75,7 @@ void check_vtkhdf(const SharedDirectory &directory, const Grid &grid, int snapsh
     ASSERT_EQ(file.read_attribute("VTKHDF", "WholeExtent", &extent), 0);
     ASSERT_EQ(file.read_attribute("VTKHDF", "Spacing", &spacing), 0);
     EXPECT_EQ(type, "ImageData");
-    const Int3 &cells = grid.cells();
+    const Int3 &cells = grid.domain_cells();
     EXPECT_EQ(extent, (std::vector<double>{0, double(cells[0]), 0, double(cells[1]), 0, double(cells[2])}));
     EXPECT_EQ(spacing, std::vector<double>(grid.spacing().begin(), grid.spacing().end()));
     for (const char *field : {"velocity", "pressure", "body", "left_cauchy_green_xy"}) {

@@ -30,14 +30,14 @@ GridSpec box(const Int3 &cells, int walls = 0, const Int3 &processors = {0, 0, 0
 }
 
 // All decompositions of `cells` over the world that fit.
-void for_each_split(const Int3 &cells, int walls, const std::function<void(const Grid &)> &visit) {
+void for_each_split(const Int3 &cells, int walls, const std::function<void(const Domain &)> &visit) {
   int ranks = 0;
   MPI_Comm_size(run_communicator(), &ranks);
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks; ++py) {
       const GridSpec spec = box(cells, walls, {px, py, 0});
-      if (!Grid::why_not(spec, ranks).empty()) continue;
-      Grid grid;
+      if (!Domain::why_not(spec, ranks).empty()) continue;
+      Domain grid;
       ASSERT_EQ(grid.create(run_communicator(), spec), 0);
       SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on "
                                         << grid.processors(0) << " x " << grid.processors(1) << " x "
@@ -47,7 +47,7 @@ void for_each_split(const Int3 &cells, int walls, const std::function<void(const
 }
 
 // Owned points of a field of this staggering, the high wall included; the rest is NaN.
-FieldBlock fields_on(const Grid &grid, const std::array<bool, 3> &staggering, int count) {
+FieldBlock fields_on(const Domain &grid, const std::array<bool, 3> &staggering, int count) {
   FieldBlock block(grid, count);
   const Int3 &begin = grid.layout().begin;
   for (int f = 0; f < count; ++f) {
@@ -60,7 +60,7 @@ FieldBlock fields_on(const Grid &grid, const std::array<bool, 3> &staggering, in
   return block;
 }
 
-std::array<double, 3> sums_on(const Grid &grid, std::uint64_t seed) {
+std::array<double, 3> sums_on(const Domain &grid, std::uint64_t seed) {
   const FieldBlock block = fields_on(grid, {}, 3);
   std::vector<Segment> rows = grid.rows();
   std::shuffle(rows.begin(), rows.end(), std::mt19937_64(seed + grid.rank()));
@@ -75,11 +75,11 @@ std::array<double, 3> sums_on(const Grid &grid, std::uint64_t seed) {
 
 TEST(GlobalSums, SameBitsOnAnyRanksInAnyOrder) {
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{300, 12, 1}, Int3{1030, 12, 3}}) {
-    Grid whole;
+    Domain whole;
     ASSERT_EQ(whole.create(PETSC_COMM_SELF, box(cells)), 0);
     const std::array<double, 3> expected = sums_on(whole, 0);
     EXPECT_NE(expected[0], expected[1]);
-    for_each_split(cells, 0, [&](const Grid &grid) {
+    for_each_split(cells, 0, [&](const Domain &grid) {
       // x is split between blocks where there are enough of them, else its sums are another rounding.
       if (grid.processors(0) > 1 && cells[0] < 256 * grid.processors(0)) return;
       for (const std::uint64_t seed : {1, 7}) {
@@ -118,7 +118,7 @@ TEST(GlobalSums, ReduceStartsAnew) {
   }
 }
 
-std::uint64_t global_hash(const Grid &grid, const FieldBlock &block, const std::array<bool, 3> &staggering,
+std::uint64_t global_hash(const Domain &grid, const FieldBlock &block, const std::array<bool, 3> &staggering,
                           std::uint64_t salt = 3) {
   std::uint64_t hash = hash_points(grid, block[0], staggering, salt);
   MPI_Allreduce(MPI_IN_PLACE, &hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm());
@@ -130,10 +130,10 @@ TEST(StateHash, SameOnAnyRanksForEveryStaggeringAndBoundary) {
     for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8); ++walls)
       for (int s = 0; s < 8; ++s) {
         const std::array<bool, 3> staggering{bool(s & 1), bool(s & 2), bool(s & 4)};
-        Grid whole;
+        Domain whole;
         ASSERT_EQ(whole.create(PETSC_COMM_SELF, box(cells, walls)), 0);
         const std::uint64_t expected = global_hash(whole, fields_on(whole, staggering, 1), staggering);
-        for_each_split(cells, walls, [&](const Grid &grid) {
+        for_each_split(cells, walls, [&](const Domain &grid) {
           EXPECT_EQ(global_hash(grid, fields_on(grid, staggering, 1), staggering), expected);
         });
       }
@@ -141,7 +141,7 @@ TEST(StateHash, SameOnAnyRanksForEveryStaggeringAndBoundary) {
 
 // Visits the points this rank has of a field of this staggering, as local indices.
 template <class Visit>
-int for_each_point(const Grid &grid, const std::array<bool, 3> &staggering, const Visit &visit) {
+int for_each_point(const Domain &grid, const std::array<bool, 3> &staggering, const Visit &visit) {
   int points = 0;
   for (int k = 0; k < grid.points_end(2, staggering[2]); ++k)
     for (int j = 0; j < grid.points_end(1, staggering[1]); ++j)
@@ -153,7 +153,7 @@ constexpr std::array<bool, 3> on_z_edges{true, true, false};
 
 // The global hash is a sum over ranks, so that a change on one rank is a change of the whole.
 TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
-  for_each_split({5, 9, 7}, 7, [&](const Grid &grid) {
+  for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
     FieldBlock block = fields_on(grid, on_z_edges, 1);
     const View q = block[0];
     const std::uint64_t before = hash_points(grid, q, on_z_edges, 3);
@@ -183,7 +183,7 @@ TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
 
 // Two points that exchange their values, wherever they live.
 TEST(StateHash, SeesASwap) {
-  for_each_split({5, 9, 7}, 7, [&](const Grid &grid) {
+  for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
     FieldBlock block = fields_on(grid, on_z_edges, 1);
     const Int3 &begin = grid.layout().begin;
     const std::uint64_t before = global_hash(grid, block, on_z_edges);

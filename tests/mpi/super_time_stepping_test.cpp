@@ -53,7 +53,7 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   spec.cells = {16, boundary == Boundary::wall ? 63 : 60, planes};
   spec.length = {1.6, 6, planes * 0.1};
   spec.boundary = {Boundary::periodic, boundary, Boundary::periodic};
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   GhostExchange exchange(grid);
   const double viscosity = 0.7, dt = 0.02, first = 1.3, slope = -40, start = 0.25;

@@ -22,15 +22,15 @@ Function wild(double a) {
 }
 
 // Random flow between sides of several kinds, and a phase of another viscosity everywhere.
-struct Box {
-  Grid grid;
+struct CellBlock {
+  Domain grid;
   BoxSides sides{};
   Fluid fluid;
   std::vector<Phase> phases{1};
   FieldBlock velocity;
   LocalViscosity viscosity;
 
-  Box(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
+  CellBlock(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
     GridSpec spec;
     spec.cells = {7, 13, flat ? 1 : 9};
     spec.length = {1, 2, 1.5};
@@ -94,7 +94,7 @@ TEST(ViscosityContrast, PowerOfTheForceIsThatOfTheWallsLessTheDissipation) {
     for (const double contrast : {0.01, 5.0, 100.0})
       for (const std::array<bool, 3> &bounded :
            {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}, {false, false, false}}) {
-        Box box(run_communicator(), flat, bounded, contrast);
+        CellBlock box(run_communicator(), flat, bounded, contrast);
         const double dissipation = box.flow().viscous_dissipation;
         const double walls = box.rates().wall_power;
         EXPECT_GT(dissipation, 0.1);
@@ -107,7 +107,7 @@ TEST(ViscosityContrast, MeasuresHaveTheBitsOfOneRank) {
   for (const bool flat : {false, true}) {
     double values[2][3];
     for (int alone = 0; alone < 2; ++alone) {
-      const Box box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false}, 5);
+      const CellBlock box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false}, 5);
       double largest = 0;
       for (const WallStress &wall : box.stresses())
         for (const std::vector<double> &values_of_wall : wall.components)

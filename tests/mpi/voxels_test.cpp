@@ -36,7 +36,7 @@ void write_stl(const std::string &path) {  // a tetrahedron askew
   file << "endsolid\n";
 }
 
-Phase fill(const Grid &grid, const std::string &path) {
+Phase fill(const Domain &grid, const std::string &path) {
   SpeciesSpec spec;
   spec.name = "part";
   spec.shape = Shape::voxels;
@@ -65,7 +65,7 @@ TEST(Voxels, SameBitsOnAnyRanks) {
       GridSpec spec;
       spec.cells = {20, 16, 12};
       if (along >= 0) spec.processors = {1, 1, 1}, spec.processors[along] = ranks;
-      Grid whole, parts;
+      Domain whole, parts;
       ASSERT_EQ(parts.create(run_communicator(), spec), 0);
       spec.processors = {0, 0, 0};
       ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
@@ -94,7 +94,7 @@ TEST(Voxels, ErrorsOfOneRankAreEverybodys) {
     file.write(reinterpret_cast<const char *>(&two), sizeof two);
   }
   MPI_Barrier(run_communicator());
-  Grid grid;
+  Domain grid;
   GridSpec spec;
   spec.cells = {20, 16, 12};
   ASSERT_EQ(grid.create(run_communicator(), spec), 0);

@@ -1,6 +1,7 @@
 #include "box.hpp"
 
 #include "bodies/fill_phase.hpp"
+#include "grid/domain.hpp"
 
 #include <memory>
 #include <tuple>
@@ -8,12 +9,12 @@
 namespace eulastic::performance {
 namespace {
 
-std::unique_ptr<Box> last;
+std::unique_ptr<FilledBox> last;
 std::tuple<Int3, Filling, MethodKind, PressureKind> last_of;
 
 PetscErrorCode add_red_cells(test::Scene &scene) {
   PetscFunctionBeginUser;
-  const GridSpec &grid = scene.grid.spec();
+  const DomainShape &grid = scene.grid.domain_shape();
   SpeciesSpec species;
   species.name = "rbc";
   species.shape = Shape::biconcave;
@@ -33,7 +34,7 @@ PetscErrorCode add_red_cells(test::Scene &scene) {
 
 }  // namespace
 
-PetscErrorCode Box::create(const Int3 &cells, Filling filling, const Method &method) {
+PetscErrorCode FilledBox::create(const Int3 &cells, Filling filling, const Method &method) {
   PetscFunctionBeginUser;
   constexpr double h = 21.12 / 128;
   GridSpec grid;
@@ -58,11 +59,11 @@ PetscErrorCode Box::create(const Int3 &cells, Filling filling, const Method &met
   PetscFunctionReturn(0);
 }
 
-Box *box(const Int3 &cells, Filling filling, const Method &method) {
+FilledBox *box(const Int3 &cells, Filling filling, const Method &method) {
   const std::tuple wanted{cells, filling, method.kind, method.pressure};
   if (!last || last_of != wanted) {
     last.reset();
-    auto made = std::make_unique<Box>();
+    auto made = std::make_unique<FilledBox>();
     if (made->create(cells, filling, method) != 0) return nullptr;
     last = std::move(made);
     last_of = wanted;

@@ -9,7 +9,7 @@ namespace eulastic::performance {
 /// Nothing; red blood cells, one per 32 x 64 x 64 cells as in the paper; a solid everywhere.
 enum class Filling { none, cells, all };
 
-struct Box {
+struct FilledBox {
   test::Scene scene;
   double dt = 0;
 
@@ -18,7 +18,7 @@ struct Box {
 };
 
 /// The box asked for last stays, so that repetitions share it. Null where it cannot be made. Collective.
-Box *box(const Int3 &cells, Filling filling, const Method &method);
+FilledBox *box(const Int3 &cells, Filling filling, const Method &method);
 /// Before PetscFinalize().
 void forget_box();
 

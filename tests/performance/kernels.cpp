@@ -15,7 +15,7 @@ using namespace eulastic;
 namespace {
 
 struct Block {
-  Grid grid;
+  Domain grid;
   FieldBlock fields;
   std::vector<Segment> rows;
   std::vector<double> rate, carried[3];
@@ -121,7 +121,7 @@ EULASTIC_CLONES void stretch_shear(Block &b) {
 
 void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cell) {
   Block block;
-  const double cells = block.grid.owned_count() * performance::sum_over_ranks(1);  // a block on every rank
+  const double cells = block.grid.cell_count() * performance::sum_over_ranks(1);  // a block on every rank
   performance::measure(state, {cells, 0, flops_per_cell}, [&] {
     std::fill(block.rate.begin(), block.rate.end(), 0.0);
     work(block);

@@ -14,7 +14,7 @@ Method classic(PressureKind pressure = PressureKind::acm) {
 }
 
 void step(benchmark::State &state, Filling filling, const Method &method) {
-  performance::Box *box = performance::box(performance::cells_of(state), filling, method);
+  performance::FilledBox *box = performance::box(performance::cells_of(state), filling, method);
   if (!box) return state.SkipWithError("no scene");
   const double count = box->scene.grid.cell_count();
   performance::measure(state, {count}, [&] { return box->scene.solver.step(box->dt); });

@@ -14,13 +14,13 @@ using performance::Filling;
 namespace {
 
 struct Scratch {
-  performance::Box &box;
-  const Grid &grid;
+  performance::FilledBox &box;
+  const Domain &grid;
   State &now;
   GhostExchange &exchange;
   FieldBlock velocity, tensor, scalar, increment;
 
-  explicit Scratch(performance::Box &b)
+  explicit Scratch(performance::FilledBox &b)
       : box(b),
         grid(b.scene.grid),
         now(b.scene.solver.state()),
@@ -40,11 +40,11 @@ PetscErrorCode predict(Scratch &s, const std::vector<Phase> &phases) {
 template <class Make>
 void verb(benchmark::State &state, Filling filling, Make make) {
   const int n = int(state.range(0));
-  performance::Box *box = performance::box({n, n, n}, filling, method_preset(MethodKind::classic));
+  performance::FilledBox *box = performance::box({n, n, n}, filling, method_preset(MethodKind::classic));
   if (!box) return state.SkipWithError("no scene");
   Scratch scratch(*box);
   make(scratch, [&](double bytes, int rounds, auto task) {
-    performance::measure(state, {rounds * scratch.grid.cell_count(), bytes}, task);
+    performance::measure(state, {rounds * scratch.grid.domain_cell_count(), bytes}, task);
   });
 }
 
@@ -92,8 +92,8 @@ PetscErrorCode transport_in_cells(Scratch &s) {
 EULASTIC_VERB_IN(cells_left_cauchy_green, Filling::cells, 0, transport_in_cells(s));
 
 // A ghost is read and written; three layers, none behind walls (y).
-double exchanged(const Grid &grid, int fields) {
-  const Int3 n = grid.owned();
+double exchanged(const Domain &grid, int fields) {
+  const Int3 n = grid.cells();
   return 24. * fields * ((n[0] + 6.) * (n[2] + 6.) / (double(n[0]) * n[2]) - 1);
 }
 EULASTIC_VERB(exchange_velocity, exchanged(s.grid, 3), s.exchange.update(s.velocity, 3));

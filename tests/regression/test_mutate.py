@@ -24,7 +24,7 @@ struct Point {
   int rows = 2;
   void move(double dt);
 };
-PetscErrorCode step(const Grid &grid, double *q) {
+PetscErrorCode step(const Box &box, double *q) {
   PetscFunctionBeginUser;
   PetscLogFlops(2 * 3);
   const std::string name = "a - b" + text;

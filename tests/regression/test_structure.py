@@ -77,6 +77,17 @@ class Structure(unittest.TestCase):
                     wrong.append(f"{name(path)} includes {target}")
         self.assertEqual(wrong, [])
 
+    def test_a_box_knows_neither_petsc_nor_ranks(self):
+        reached, todo = set(), ["grid/box.hpp", "grid/threads.hpp", "grid/row_scratch.hpp", "field/field_block.hpp"]
+        while todo:
+            target = todo.pop()
+            if target not in reached and (ROOT / "src" / target).is_file():
+                todo += includes(ROOT / "src" / target)
+            reached.add(target)
+        self.assertIn("grid/segment.hpp", reached)
+        wrong = [target for target in reached if target.startswith(("petsc", "mpi")) or target == "grid/domain.hpp"]
+        self.assertEqual(wrong, [])
+
     def test_files_are_short(self):
         counts = {name(path): path.read_text().count("\n") for path in files("src", "tests", "scripts", "python", "tools")
                   if path.suffix != ".csv"}

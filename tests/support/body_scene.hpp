@@ -31,7 +31,7 @@ inline SpeciesSpec species(Shape shape, double radius, const Real3 &semi_axes = 
 
 // One phase of bodies and a velocity field on a grid of `comm`.
 struct BodyScene {
-  Grid grid;
+  Domain grid;
   std::vector<Phase> phases;
   FieldBlock velocity;
   BodyTracker tracker;
@@ -54,13 +54,13 @@ struct BodyScene {
   template <class Function>  // velocity component d at x, ghosts included
   void set_velocity(Function &&function) {
     for (int d = 0; d < grid.dimension(); ++d)
-      for (int k = -grid.layout().ghosts[2]; k < grid.owned()[2] + grid.layout().ghosts[2]; ++k)
-        for (int j = -3; j < grid.owned()[1] + 3; ++j)
-          for (int i = -3; i < grid.owned()[0] + 3; ++i) {
+      for (int k = -grid.layout().ghosts[2]; k < grid.cells()[2] + grid.layout().ghosts[2]; ++k)
+        for (int j = -3; j < grid.cells()[1] + 3; ++j)
+          for (int i = -3; i < grid.cells()[0] + 3; ++i) {
             const Int3 local{i, j, k};
             Real3 x{};
             for (int e = 0; e < 3; ++e) {
-              const int n = grid.cells()[e], global = (grid.layout().begin[e] + local[e] + n) % n;
+              const int n = grid.domain_cells()[e], global = (grid.layout().begin[e] + local[e] + n) % n;
               x[e] = (global + (e == d ? 0.0 : 0.5)) * grid.spacing()[e];
             }
             velocity[d](i, j, k) = function(d, x);

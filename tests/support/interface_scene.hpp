@@ -71,7 +71,7 @@ inline Position ellipsoid(const Real3 &centre, const Real3 &axes, int dimension)
 
 class InterfaceScene {
 public:
-  Grid grid;
+  Domain grid;
   FieldBlock velocity, fraction;
   long step = 0;
 
@@ -90,7 +90,7 @@ public:
   Real3 position(const Int3 &local, const std::array<bool, 3> &at) const {
     Real3 x{};
     for (int d = 0; d < 3; ++d) {
-      const int n = grid.cells()[d], g = grid.layout().begin[d] + local[d];
+      const int n = grid.domain_cells()[d], g = grid.layout().begin[d] + local[d];
       const int wrapped = grid.is_wall(d) ? g : ((g % n) + n) % n;
       x[d] = (wrapped + (at[d] ? 0.5 : 0.0)) * grid.spacing()[d];
     }
@@ -149,7 +149,7 @@ public:
 
   template <class F>
   void each_owned(F &&f) const {
-    const Int3 &n = grid.owned();
+    const Int3 &n = grid.cells();
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) f(i, j, k);

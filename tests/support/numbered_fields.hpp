@@ -28,7 +28,7 @@ struct NumberedFields {
           q(i, j, k) = value_at(begin[0] + i, begin[1] + j, begin[2] + k, component);
         }
   }
-  Grid grid;
+  Domain grid;
 };
 
 }  // namespace eulastic::test

@@ -22,9 +22,9 @@ inline double noise(int i, int j, int k) {
   return 2 * (x - std::floor(x)) - 1;
 }
 
-inline double global_sum(const Grid &grid, const CellFunction &local) {
+inline double global_sum(const Domain &grid, const CellFunction &local) {
   ExactSums sum(1);
-  std::vector<double> row(grid.owned()[0]);
+  std::vector<double> row(grid.cells()[0]);
   for (const Segment &s : grid.rows()) {
     for (int i = 0; i < s.i_end; ++i) row[i] = local(i, s.j, s.k);
     sum.add_row(0, row.data(), s.i_end, grid.layout().begin[0]);
@@ -36,7 +36,7 @@ inline double global_sum(const Grid &grid, const CellFunction &local) {
 
 struct PoissonScene {
   static constexpr double dt = 0.37;
-  Grid grid;
+  Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   FieldBlock divergence, pressure, increment;
 
@@ -54,7 +54,7 @@ struct PoissonScene {
       for (int i = 0; i < s.i_end; ++i)
         divergence[0](i, s.j, s.k) = f(own.begin[0] + i, own.begin[1] + s.j, own.begin[2] + s.k);
     const ConstView D = divergence[0];
-    const double mean = without_mean ? global_sum(grid, D) / grid.cell_count() : 0;
+    const double mean = without_mean ? global_sum(grid, D) / grid.domain_cell_count() : 0;
     for (const Segment &s : grid.rows())
       for (int i = 0; i < s.i_end; ++i) divergence[0](i, s.j, s.k) -= mean;
     EXPECT_EQ(exchange->update(divergence, 1), 0);
@@ -73,7 +73,7 @@ struct PoissonScene {
   }
   double rms(const CellFunction &local) const {
     return std::sqrt(global_sum(grid, [&](int i, int j, int k) { return std::pow(local(i, j, k), 2); }) /
-                     grid.cell_count());
+                     grid.domain_cell_count());
   }
   double rms_divergence() const { return rms(divergence[0]); }
   double rms_residual() const {

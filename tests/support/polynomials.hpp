@@ -47,13 +47,13 @@ struct Polynomial {
   double laplacian(int dimension) const { return h[0][0] + h[1][1] + (dimension == 3 ? h[2][2] : 0.0); }
 };
 
-inline Point point(const Grid &grid, const Staggering &at, int i, int j, int k) {
+inline Point point(const Domain &grid, const Staggering &at, int i, int j, int k) {
   return {position(grid, 0, at[0], i), position(grid, 1, at[1], j), position(grid, 2, at[2], k)};
 }
 
 /// Sets a field to value(Point), three ghosts included.
 template <class Value>
-void fill_everywhere(const Grid &grid, View view, const Staggering &at, Value &&value) {
+void fill_everywhere(const Domain &grid, View view, const Staggering &at, Value &&value) {
   const Layout &layout = grid.layout();
   for (int k = -layout.ghosts[2]; k < layout.cells[2] + layout.ghosts[2]; ++k)
     for (int j = -layout.ghosts[1]; j < layout.cells[1] + layout.ghosts[1]; ++j)
@@ -63,7 +63,7 @@ void fill_everywhere(const Grid &grid, View view, const Staggering &at, Value &&
 
 /// Largest |field - exact(Point)| over the points of this rank; NaN counts as infinite.
 template <class Exact>
-double largest_error(const Grid &grid, ConstView view, const Staggering &at, Exact &&exact) {
+double largest_error(const Domain &grid, ConstView view, const Staggering &at, Exact &&exact) {
   double largest = 0;
   for_points(grid, view, at, [&](const double &q, double x, double y, double z) {
     const double e = std::fabs(q - exact(Point{x, y, z}));
@@ -73,7 +73,7 @@ double largest_error(const Grid &grid, ConstView view, const Staggering &at, Exa
 }
 
 /// Random values at all points, then periodic ghosts (no walls).
-inline void randomise(const Grid &grid, FieldBlock &block, Random &random, double mean = 0) {
+inline void randomise(const Domain &grid, FieldBlock &block, Random &random, double mean = 0) {
   for (int f = 0; f < block.count(); ++f)
     set(grid, block[f], at_centre, [&](double, double, double) { return mean + random(); });
   GhostExchange exchange(grid);

@@ -19,7 +19,7 @@ inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species, boo
     spec.name = "rigid" + std::to_string(label);
     spec.centre_given = true;
     Places places;
-    EXPECT_EQ(place_bodies(spec, scene->grid.spec(), &places), "");
+    EXPECT_EQ(place_bodies(spec, scene->grid.domain_shape(), &places), "");
     Phase phase;
     EXPECT_EQ(fill_phase(scene->grid, spec, places, label, &phase), 0);
     if (file && label == 1) spec.shape = Shape::voxels;

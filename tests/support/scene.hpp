@@ -11,25 +11,25 @@ namespace eulastic::test {
 using Function = std::function<double(double x, double y, double z)>;
 
 /// Position of point i of a field along direction d.
-inline double position(const Grid &grid, int d, bool staggered, int i) {
+inline double position(const Domain &grid, int d, bool staggered, int i) {
   return (grid.layout().begin[d] + i + (staggered ? 0.0 : 0.5)) * grid.spacing()[d];
 }
 
 /// Calls f(value, x, y, z) at every owned point of a field, the high wall of staggered fields included.
 template <class View, class F>
-void for_points(const Grid &grid, View view, const Staggering &at, F &&f) {
+void for_points(const Domain &grid, View view, const Staggering &at, F &&f) {
   for (int k = 0; k < grid.points_end(2, at[2]); ++k)
     for (int j = 0; j < grid.points_end(1, at[1]); ++j)
       for (int i = 0; i < grid.points_end(0, at[0]); ++i)
         f(view(i, j, k), position(grid, 0, at[0], i), position(grid, 1, at[1], j), position(grid, 2, at[2], k));
 }
 
-inline void set(const Grid &grid, View view, const Staggering &at, const Function &value) {
+inline void set(const Domain &grid, View view, const Staggering &at, const Function &value) {
   for_points(grid, view, at, [&](double &q, double x, double y, double z) { q = value(x, y, z); });
 }
 
 /// Root mean square of field - exact over the owned points (one rank).
-inline double rms_error(const Grid &grid, ConstView view, const Staggering &at, const Function &exact) {
+inline double rms_error(const Domain &grid, ConstView view, const Staggering &at, const Function &exact) {
   double sum = 0;
   int n = 0;
   for_points(grid, view, at, [&](const double &q, double x, double y, double z) {
@@ -41,7 +41,7 @@ inline double rms_error(const Grid &grid, ConstView view, const Staggering &at, 
 }
 
 struct Scene {
-  Grid grid;
+  Domain grid;
   Solver solver;
 
   PetscErrorCode create(MPI_Comm comm, const GridSpec &grid_spec, const SolverSpec &spec) {

@@ -8,7 +8,7 @@ namespace eulastic::test {
 
 // A solid everywhere, phi and B polynomials of the given degree, velocity linear (L = gradients of v).
 struct Solid {
-  Grid grid;
+  Domain grid;
   Fluid fluid;
   std::vector<Phase> phases;
   FieldBlock velocity, pressure, velocity_star, next;
@@ -71,16 +71,16 @@ struct Solid {
 };
 
 /// A solenoidal velocity at all faces of a periodic grid: the curl of a random potential on the edges.
-inline void randomise_solenoidal(const Grid &grid, FieldBlock &velocity, Random &random) {
+inline void randomise_solenoidal(const Domain &grid, FieldBlock &velocity, Random &random) {
   const Real3 &h = grid.spacing();
   FieldBlock psi(grid, 3);
   randomise(grid, psi, random);
   for (int a = 0; a < grid.dimension(); ++a) {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     const auto next = [&](View q, int i, int j, int k, int d) { return q(i + (d == 0), j + (d == 1), k + (d == 2)); };
-    for (int k = 0; k < grid.owned()[2]; ++k)
-      for (int j = 0; j < grid.owned()[1]; ++j)
-        for (int i = 0; i < grid.owned()[0]; ++i) {
+    for (int k = 0; k < grid.cells()[2]; ++k)
+      for (int j = 0; j < grid.cells()[1]; ++j)
+        for (int i = 0; i < grid.cells()[0]; ++i) {
           double curl = 0;
           if (b < grid.dimension()) curl += (next(psi[c], i, j, k, b) - psi[c](i, j, k)) / h[b];
           if (c < grid.dimension()) curl -= (next(psi[b], i, j, k, c) - psi[b](i, j, k)) / h[c];

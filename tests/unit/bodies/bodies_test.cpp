@@ -35,7 +35,7 @@ SpeciesSpec species(Shape shape, double radius, const Real3 &centre) {
 }
 
 struct Scene {
-  Grid grid;
+  Domain grid;
   Phase phase;
   Scene(const GridSpec &box_spec, const SpeciesSpec &spec) {
     Places places;

@@ -36,7 +36,7 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
   Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
   ASSERT_EQ(places.known.size(), 6u);
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
   ASSERT_EQ(fill_phase(grid, spec, places, 10, &phase), 0);
@@ -63,7 +63,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
   const GridSpec grid_spec = box({32, 32, 32}, {1, 1, 1});
   Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
   ASSERT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
@@ -94,7 +94,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
 TEST(FillPhase, OverlappingBodiesTakeTheLargerFraction) {
   SpeciesSpec spec = species(Shape::sphere, 0.3, {});
   std::vector<BodyPlace> places{{{0.4, 0.5, 0.5}, {}}, {{0.62, 0.5, 0.5}, {}}};
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({20, 20, 20}, {1, 1, 1})), 0);
   Phase both, one[2];
   ASSERT_EQ(fill_phase(grid, spec, places, 1, &both), 0);

@@ -23,7 +23,7 @@ Found find(const std::string &line, int parts = 1) {
   const ParseResult result = parse_line(line);
   EXPECT_EQ(result.error, "") << line;
   const Config &config = result.config;
-  const Grid grid = Grid::planned(config.grid, parts);
+  const Domain grid = Domain::planned(config.grid, parts);
   Found found;
   std::set<int> overlaps;
   for (int p = 0; p < parts; ++p) {

@@ -37,7 +37,7 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
   const Real3 centre{0.03, 1.02, 0.47};
   const double radius = 0.31;
   const auto faces = faces_of(&scene, spec, rigid_body(Shape::sphere, radius, centre));
-  const Grid &grid = scene.grid;
+  const Domain &grid = scene.grid;
   const auto distance = [&](Real3 x) {
     double square = 0;
     for (int d = 0; d < 3; ++d) {
@@ -51,16 +51,16 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
   for (int d = 0; d < 3; ++d) regular += 2 / (grid.spacing()[d] * grid.spacing()[d]);
   int links = 0;
   for (int a = 0; a < 3; ++a)
-    for (int k = -2; k < grid.owned()[2] + 2; ++k)
-      for (int j = -2; j < grid.owned()[1] + 2; ++j) {
+    for (int k = -2; k < grid.cells()[2] + 2; ++k)
+      for (int j = -2; j < grid.cells()[1] + 2; ++j) {
         const RigidFaces::Row row = faces->row(a, j, k);
-        std::vector<char> inside(grid.owned()[0]);
+        std::vector<char> inside(grid.cells()[0]);
         for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i) inside[i] = 1;
+          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.cells()[0]); ++i) inside[i] = 1;
         const auto place = [&](int i) {
           return Real3{position(grid, 0, a == 0, i), position(grid, 1, a == 1, j), position(grid, 2, a == 2, k)};
         };
-        for (int i = 0; i < grid.owned()[0]; ++i) EXPECT_EQ(inside[i] != 0, distance(place(i)) < 0);
+        for (int i = 0; i < grid.cells()[0]; ++i) EXPECT_EQ(inside[i] != 0, distance(place(i)) < 0);
         for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut) {
           EXPECT_GT(distance(place(cut->i)), 0);
           double diagonal = 0;

@@ -1,5 +1,6 @@
 // Cells of a body from a file and convex bodies beside them.
 #include "bodies/solid_mask.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -113,7 +113,7 @@ TEST(StretchForce, PowerIsThatOfTheEnds) {
   for (const int dim : {2, 3}) {
     Pulled body(dim, 0.51);
     constexpr double rate = 0.4;
-    for (int k = 0; k < body.grid.owned()[2]; ++k)
+    for (int k = 0; k < body.grid.cells()[2]; ++k)
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i <= cells; ++i) body.velocity[0](i, j, k) = 3 + rate * i / cells;
     FieldBlock force_rate(body.grid, dim), scratch(body.grid, 1);

@@ -40,7 +40,7 @@ double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
   Places places;
   EXPECT_EQ(place_bodies(spec, grid_spec, &places), "");
   EXPECT_EQ(places.known.size(), 1u);
-  Grid grid;
+  Domain grid;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
   EXPECT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
@@ -103,7 +103,7 @@ TEST(Tube, IsZeroInsideAndOneOutside) {
   EXPECT_DOUBLE_EQ(lumen_radius(throat, -1.6), 1.4);
   Places places;
   ASSERT_EQ(place_bodies(throat, spec, &places), "");
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   Phase phase;
   ASSERT_EQ(fill_phase(grid, throat, places, 3, &phase), 0);

@@ -58,21 +58,21 @@ TEST(TurningBodies, PlaceIsAFunctionOfTime) {
     }
     return std::sqrt(square) - 1;
   };
-  const Grid &grid = scene.grid;
+  const Domain &grid = scene.grid;
   int links = 0;
   for (int a = 0; a < 3; ++a)
-    for (int k = 0; k < grid.owned()[2]; ++k)
-      for (int j = 0; j < grid.owned()[1]; ++j) {
+    for (int k = 0; k < grid.cells()[2]; ++k)
+      for (int j = 0; j < grid.cells()[1]; ++j) {
         const RigidFaces::Row row = bodies.faces().row(a, j, k);
         const auto place = [&](int i) {
           return Real3{position(grid, 0, a == 0, i), position(grid, 1, a == 1, j), position(grid, 2, a == 2, k)};
         };
         for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.owned()[0]); ++i)
+          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.cells()[0]); ++i)
             EXPECT_LT(level(place(i)), 0);
         for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut)
           for (int link = 0; link < 6; ++link) {
-            if (!(cut->walls >> link & 1U) || cut->i < 0 || cut->i >= grid.owned()[0]) continue;
+            if (!(cut->walls >> link & 1U) || cut->i < 0 || cut->i >= grid.cells()[0]) continue;
             const int d = link / 2;
             Real3 end = place(cut->i);
             end[d] += (link % 2 ? 1 : -1) / (cut->link[link] * grid.spacing()[d]);

@@ -2,6 +2,7 @@
 #include "bodies/closed_surface.hpp"
 #include "bodies/resample.hpp"
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace eulastic {
 namespace {
 
 struct Cells {
-  Grid grid;
+  Domain grid;
   FieldBlock phi;
   Cells(const Int3 &cells, const Real3 &length) {
     GridSpec spec;
@@ -26,7 +27,7 @@ struct Cells {
     double sum = 0;
     for (const Segment &row : grid.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) sum += at(i, row.j, row.k);
-    const GridSpec &s = grid.spec();
+    const DomainShape &s = grid.domain_shape();
     return sum * s.length[0] / s.cells[0] * s.length[1] / s.cells[1] * s.length[2] / s.cells[2];
   }
 };
@@ -94,7 +95,7 @@ TEST(Resample, KeepsTheVolumeOfFinerCoarserAndOddVoxels) {
     Cells cells({16, 12, 8}, {1.7, 0.9, 0.31});
     VoxelBox box;
     box.count = n;
-    for (int d = 0; d < 3; ++d) box.spacing[d] = cells.grid.spec().length[d] / n[d];
+    for (int d = 0; d < 3; ++d) box.spacing[d] = cells.grid.domain_shape().length[d] / n[d];
     EXPECT_EQ(resample(cells.grid, box, from(some_fraction), cells.phi[0]), "");
     const double wanted = total(box, some_fraction);
     EXPECT_NEAR(cells.volume(), wanted, 2e-14 + 1e-13 * wanted) << n[0];

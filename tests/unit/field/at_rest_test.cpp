@@ -33,7 +33,7 @@ constexpr double mega = 1 << 20;
 
 TEST(AtRest, OnesThenZerosGhostsIncluded) {
   for (const int n : {5, 70}) {  // less than a page, more than the file of ones
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(n)), 0);
     const std::ptrdiff_t size = grid.layout().size;
     for (const int ones : {0, 2, 3}) {
@@ -44,7 +44,7 @@ TEST(AtRest, OnesThenZerosGhostsIncluded) {
 }
 
 TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(64)), 0);
   FieldBlock a = FieldBlock::at_rest(grid, 1, 1);
   const FieldBlock b = FieldBlock::at_rest(grid, 1, 1);
@@ -55,7 +55,7 @@ TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
 }
 
 TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(128)), 0);
   const double before = own_memory();
   FieldBlock block = FieldBlock::at_rest(grid, 4, 2), copy;

@@ -1,5 +1,6 @@
 // Sides that volume crosses: mirrored and rotated scenes, exact flows, and what leaves with a vortex.
 #include "field/open_sides.hpp"
+#include "grid/domain.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -88,16 +89,16 @@ double difference(const Scene &a, const Scene &b, Map map) {
 
 double mirror_difference(const Scene &a, const Scene &b, int m) {
   return difference(a, b, [&](const FieldBlock &y, const Staggering &at, Int3 point, int c) {
-    point[m] = a.grid.cells()[m] - 1 + at[m] - point[m];
+    point[m] = a.grid.domain_cells()[m] - 1 + at[m] - point[m];
     return (c == m ? -1 : 1) * y[std::max(c, 0)](point[0], point[1], point[2]);
   });
 }
 
 // Volume that comes in through all sides per time, and what comes in through one.
 double flow_rate(const Scene &scene, int d, bool high) {
-  const Grid &grid = scene.grid;
+  const Domain &grid = scene.grid;
   const ConstView v = scene.solver.state().velocity[d];
-  Int3 begin{}, end = grid.owned();
+  Int3 begin{}, end = grid.cells();
   begin[d] = high ? end[d] : 0;
   end[d] = begin[d] + 1;
   double sum = 0;

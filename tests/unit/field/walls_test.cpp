@@ -23,11 +23,11 @@ GridSpec box(const Int3 &cells, int walls) {
   return spec;
 }
 
-void for_each_grid(const std::function<void(const Grid &)> &visit) {
+void for_each_grid(const std::function<void(const Domain &)> &visit) {
   for (const Int3 &cells : {Int3{5, 9, 7}, Int3{3, 3, 3}, Int3{6, 4, 1}, Int3{3, 3, 1}})
     for (int walls = 0; walls < (cells[2] == 1 ? 4 : 8); ++walls) {
       SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << ", walls " << walls);
-      Grid grid;
+      Domain grid;
       ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells, walls)), 0);
       visit(grid);
     }
@@ -35,12 +35,12 @@ void for_each_grid(const std::function<void(const Grid &)> &visit) {
 
 // All points up to `width` ghosts, and the layer more that a field on the high wall has behind it.
 template <class Visit>
-void for_each_point(const Grid &grid, const Staggering &staggering, int width, const Visit &visit) {
+void for_each_point(const Domain &grid, const Staggering &staggering, int width, const Visit &visit) {
   Int3 low{}, high{}, more{};
   for (int d = 0; d < 3; ++d) {
     const int w = d < grid.dimension() ? width : 0;
     low[d] = -w;
-    high[d] = grid.cells()[d] + w;
+    high[d] = grid.domain_cells()[d] + w;
     more[d] = staggering[d] && grid.is_wall(d);
   }
   for (int k = low[2]; k < high[2] + more[2]; ++k)
@@ -49,7 +49,7 @@ void for_each_point(const Grid &grid, const Staggering &staggering, int width, c
         if ((i == high[0]) + (j == high[1]) + (k == high[2]) <= 1) visit(Int3{i, j, k});  // no stencil has two
 }
 
-bool is_owned(const Grid &grid, const Int3 &p, const Staggering &staggering) {
+bool is_owned(const Domain &grid, const Int3 &p, const Staggering &staggering) {
   for (int d = 0; d < 3; ++d)
     if (p[d] < 0 || p[d] >= grid.points_end(d, staggering[d])) return false;
   return true;
@@ -59,7 +59,7 @@ bool is_owned(const Grid &grid, const Int3 &p, const Staggering &staggering) {
 double inner(int f, const Int3 &p) { return std::sin(1 + f + 1.3 * p[0] + 2.7 * p[1] + 4.1 * p[2]); }
 
 // Poison everywhere, then the points the field has, then the exchange.
-void prepare(const Grid &grid, FieldBlock &block, const std::function<Staggering(int)> &staggering, int width) {
+void prepare(const Domain &grid, FieldBlock &block, const std::function<Staggering(int)> &staggering, int width) {
   for (int f = 0; f < block.count(); ++f) {
     block.fill(f, poison);
     for_each_point(grid, staggering(f), 3, [&](const Int3 &p) {
@@ -72,10 +72,10 @@ void prepare(const Grid &grid, FieldBlock &block, const std::function<Staggering
 
 // What a ghost must be: unfold the point direction by direction, the last reflection first. `sign` is -1 for velocity
 // and +1 for everything even.
-double unfolded(const Grid &grid, Int3 p, const Staggering &staggering, double sign, const std::vector<int> &order,
+double unfolded(const Domain &grid, Int3 p, const Staggering &staggering, double sign, const std::vector<int> &order,
                 const std::function<double(int, int)> &twice_wall, const Point &inside) {
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
-    const int n = grid.cells()[*d], last = n - (staggering[*d] ? 0 : 1);
+    const int n = grid.domain_cells()[*d], last = n - (staggering[*d] ? 0 : 1);
     if (!grid.is_wall(*d) || (p[*d] >= 0 && p[*d] <= last)) continue;
     const int side = p[*d] > last;
     p[*d] = side ? 2 * n - p[*d] - (staggering[*d] ? 0 : 1) : -p[*d] - (staggering[*d] ? 0 : 1);
@@ -83,7 +83,7 @@ double unfolded(const Grid &grid, Int3 p, const Staggering &staggering, double s
     return twice_wall(*d, side) + sign * unfolded(grid, p, staggering, sign, before, twice_wall, inside);
   }
   for (int d = 0; d < 3; ++d)
-    if (!grid.is_wall(d)) p[d] = (p[d] + grid.cells()[d]) % grid.cells()[d];
+    if (!grid.is_wall(d)) p[d] = (p[d] + grid.domain_cells()[d]) % grid.domain_cells()[d];
   return inside(p);
 }
 
@@ -92,7 +92,7 @@ TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) walls[d][side].motion = {{.1 + d, .2 - side, .3 * d}, 1.5 + d, .4 * side};
   const double time = .7;
-  for_each_grid([&](const Grid &grid) {
+  for_each_grid([&](const Domain &grid) {
     for (const int width : {1, 2, 3}) {
       FieldBlock velocity(grid, grid.dimension());
       prepare(
@@ -107,7 +107,7 @@ TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
           return c == d ? 0 : 2 * (motion.velocity[c] * std::cos(motion.frequency * time + motion.phase));
         };
         const auto inside = [&](const Int3 &p) {
-          const bool on_face = grid.is_wall(c) && (p[c] == 0 || p[c] == grid.cells()[c]);
+          const bool on_face = grid.is_wall(c) && (p[c] == 0 || p[c] == grid.domain_cells()[c]);
           faces += on_face;
           return on_face ? 0.0 : inner(c, p);
         };
@@ -122,7 +122,7 @@ TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
 }
 
 TEST(WallGhosts, EveryStaggeringIsEvenAndKeepsItsPoints) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     for (int s = 0; s < (grid.dimension() == 2 ? 4 : 8); ++s)
       for (const int width : {1, 2, 3}) {
         const Staggering staggering{bool(s & 1), bool(s & 2), bool(s & 4)};
@@ -142,7 +142,7 @@ TEST(WallGhosts, EveryStaggeringIsEvenAndKeepsItsPoints) {
 }
 
 TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
-  for_each_grid([](const Grid &grid) {
+  for_each_grid([](const Domain &grid) {
     const auto &components = tensor_components(grid.dimension());
     FieldBlock tensor(grid, static_cast<int>(components.size()));
     prepare(
@@ -162,7 +162,7 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
 
 // Behind a plane of symmetry is the mirror image: tangential velocity even, normal velocity and shear odd, 0 on it.
 TEST(SymmetryGhosts, AreTheMirrorImage) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
   BoxSides sides{};
   sides[1][1].kind = SideKind::symmetry;
@@ -210,7 +210,7 @@ TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
 // Hand values: Couette flow between walls at -1 and 3 over four cells is linear through the ghosts; u_i is -0.5,
 // 0.5, 1.5, 2.5. The normal velocity y (4 - y) continues oddly, -5 at y = -1.
 TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
   BoxSides walls{};
   walls[1][0].motion.velocity = {-1, 9, 0};  // the normal component is ignored
@@ -241,7 +241,7 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
       return result;
     };
     turned_cells = turn(cells);
-    Grid grid, turned;
+    Domain grid, turned;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells, 7)), 0);
     ASSERT_EQ(turned.create(PETSC_COMM_SELF, box(turned_cells, 7)), 0);
     BoxSides walls{}, turned_walls{};
@@ -273,7 +273,7 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
 
 TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
   for (int d = 0; d < 3; ++d) {
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({24, 26, 28}, 1 << d)), 0);
     FieldBlock phi(grid, 1), tensor(grid, 6);
     Int3 body{12, 12, 12};
@@ -289,7 +289,7 @@ TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
       at[d] = index;
       return tensor[f](at[0], at[1], at[2]);
     };
-    const int high = grid.cells()[d] + 1;  // behind the wall wherever a component sits
+    const int high = grid.domain_cells()[d] + 1;  // behind the wall wherever a component sits
     Int3 away = body;
     away[(d + 1) % 3] = 22;
     for (int f = 0; f < 6; ++f) {

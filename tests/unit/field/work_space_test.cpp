@@ -8,7 +8,7 @@ using namespace eulastic;
 namespace {
 
 struct WorkSpaceTest : testing::Test {
-  Grid grid;
+  Domain grid;
   void SetUp() override {
     GridSpec spec;
     spec.cells = {8, 8, 1};

@@ -14,8 +14,8 @@ namespace {
 // 0 and writes field 1: -1 everywhere in field 0, -2 in field 1.
 class Pass {
 public:
-  Pass(const Grid &grid, int depth, int layers) : grid_(grid), sides_(grid), depth_(depth), layers_(layers) {
-    const Int3 &n = grid.owned();
+  Pass(const Domain &grid, int depth, int layers) : grid_(grid), sides_(grid), depth_(depth), layers_(layers) {
+    const Int3 &n = grid.cells();
     width_ = n[1] + 2 * margin;
     for (int f = 0; f < 2; ++f) stage_[f].assign(std::size_t(width_) * (n[2] + 2 * margin), -1 - f);
   }
@@ -24,7 +24,7 @@ public:
     const StagePass pass(grid_, sides_, depth_, 1, layers_);
     pass.for_tasks([&](const StagePass::Task &task) {
       const auto rows = [&](int s, Segment row, int j_end) {
-        EXPECT_EQ(row.size(), grid_.owned()[0]);  // x wraps around
+        EXPECT_EQ(row.size(), grid_.cells()[0]);  // x wraps around
         for (; row.j < j_end; ++row.j) do_row(s, row.j, row.k);
       };
       grid_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
@@ -47,7 +47,7 @@ private:
   static constexpr int margin = 5;
 
   int begin(int d, int s) const { return -sides_.low(d, depth_ - 1 - s + layers_); }
-  int end(int d, int s) const { return grid_.owned()[d] + sides_.high(d, depth_ - 1 - s + layers_); }
+  int end(int d, int s) const { return grid_.cells()[d] + sides_.high(d, depth_ - 1 - s + layers_); }
   std::size_t at(int j, int k) const { return j + margin + std::size_t(width_) * (k + margin); }
 
   void do_row(int s, int j, int k) {
@@ -57,8 +57,8 @@ private:
     for (const auto &[y, z] : {std::pair{0, 0}, {-1, 0}, {1, 0}, {0, flat ? 0 : -1}, {0, flat ? 0 : 1}}) {
       const int row = j + y, plane = k + z;
       const bool behind_wall =
-          row < -(sides_.wall[1][0] ? 0 : margin) || row >= grid_.owned()[1] + (sides_.wall[1][1] ? 0 : margin) ||
-          plane < -(sides_.wall[2][0] ? 0 : margin) || plane >= grid_.owned()[2] + (sides_.wall[2][1] ? 0 : margin);
+          row < -(sides_.wall[1][0] ? 0 : margin) || row >= grid_.cells()[1] + (sides_.wall[1][1] ? 0 : margin) ||
+          plane < -(sides_.wall[2][0] ? 0 : margin) || plane >= grid_.cells()[2] + (sides_.wall[2][1] ? 0 : margin);
       if (behind_wall) continue;
       EXPECT_EQ(read[at(row, plane)], s - 1) << "stage " << s << " reads " << row << " " << plane;
     }
@@ -67,7 +67,7 @@ private:
     ++rows_;
   }
 
-  const Grid &grid_;
+  const Domain &grid_;
   Sides sides_;
   int depth_, layers_, width_ = 0;
   std::vector<int> stage_[2];
@@ -99,7 +99,7 @@ TEST(StagePass, StagesReadWhatTheOneBeforeHasWritten) {
             GridSpec spec;
             spec.cells = cells;
             spec.boundary = {Boundary::periodic, y, z};
-            Grid grid;
+            Domain grid;
             ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
             set_threads(team);
             Pass pass(grid, depth, layers);

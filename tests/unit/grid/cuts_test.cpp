@@ -1,6 +1,6 @@
 // Cuts by cost: whole units, the fewest cells of a rank, and the least largest sum that there is.
 #include "grid/cuts.hpp"
-#include "grid/grid.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,14 +82,14 @@ TEST(Cuts, AreTheGridsWhereTheyAreGiven) {
   GridSpec spec;
   spec.cells = {8, 16, 12};
   spec.starts = {std::vector<int>{0, 8}, {0, 3, 16}, {0, 9, 12}};
-  EXPECT_EQ(Grid::decompose(spec, 4), (Int3{1, 2, 2}));
-  EXPECT_EQ(Grid::largest_box(spec, {1, 2, 2}), (Int3{8, 13, 9}));
-  const Grid grid = Grid::planned(spec, 4);
+  EXPECT_EQ(Domain::decompose(spec, 4), (Int3{1, 2, 2}));
+  EXPECT_EQ(Domain::largest_box(spec, {1, 2, 2}), (Int3{8, 13, 9}));
+  const Domain grid = Domain::planned(spec, 4);
   EXPECT_EQ(grid.layout_of(3).begin, (Int3{0, 3, 9}));
   EXPECT_EQ(grid.layout_of(3).cells, (Int3{8, 13, 3}));
-  EXPECT_NE(Grid::why_not(spec, 2), "");
+  EXPECT_NE(Domain::why_not(spec, 2), "");
   spec.starts[2] = {0, 10, 12};  // two cells
-  EXPECT_NE(Grid::why_not(spec, 4), "");
+  EXPECT_NE(Domain::why_not(spec, 4), "");
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ struct Scene {
   // What span() promises for one cell that is not zero.
   void expect(const Int3 &cell) const {
     const bool flat = grid.dimension() == 2;
-    for (int k = 0; k < grid.owned()[2]; ++k)
-      for (int j = 0; j < grid.owned()[1]; ++j) {
+    for (int k = 0; k < grid.cells()[2]; ++k)
+      for (int j = 0; j < grid.cells()[1]; ++j) {
         const OccupiedRows::Span span = rows.span(j, k);
         const bool near = std::abs(j - cell[1]) <= reach && (flat || std::abs(k - cell[2]) <= reach);
         ASSERT_EQ(!rows.idle(j, k), near) << j << " " << k;
@@ -33,7 +33,7 @@ struct Scene {
         ASSERT_LE(span.end - span.begin, 2 * (reach + 16) + 1) << "pieces of 16 cells, no more";
       }
   }
-  Grid grid;
+  Domain grid;
   FieldBlock value;
   OccupiedRows rows;
   int reach = 0;

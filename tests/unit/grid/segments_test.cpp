@@ -11,7 +11,7 @@ using namespace eulastic::test;
 
 namespace {
 
-bool active(const Grid &grid, ConstView value, int low, int high, int i, int j, int k) {
+bool active(const Domain &grid, ConstView value, int low, int high, int i, int j, int k) {
   const bool flat = grid.dimension() == 2;
   for (int dk = flat ? 0 : -low; dk <= (flat ? 0 : high); ++dk)
     for (int dj = -low; dj <= high; ++dj)
@@ -23,7 +23,7 @@ bool active(const Grid &grid, ConstView value, int low, int high, int i, int j, 
 // Values above the threshold with the given probability, ghosts too.
 void check(const GridSpec &spec, int low, int high, double share, Random &random) {
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " cells, reach " << low << " " << high << ", share " << share);
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   FieldBlock value(grid, 1);
   fill_everywhere(grid, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
@@ -97,7 +97,7 @@ TEST(ActiveSegments, BandAndItsFaces) {
     for (const int margin : {0, 2})
       for (const double share : {0.0, 0.002, 0.03, 1.0})
         for (const double rest : {0.0, 1.0, 0.4}) {
-          Grid grid;
+          Domain grid;
           GridSpec spec;
           spec.cells = cells;
           spec.boundary[1] = Boundary::wall;
@@ -148,7 +148,7 @@ TEST(ActiveSegments, BandAndItsFaces) {
 }
 
 TEST(ActiveSegments, AllIsEveryPoint) {
-  Grid grid;
+  Domain grid;
   GridSpec spec;
   spec.cells = {9, 4, 5};
   spec.boundary[0] = spec.boundary[2] = Boundary::wall;
@@ -159,7 +159,7 @@ TEST(ActiveSegments, AllIsEveryPoint) {
   EXPECT_EQ(segments.row(3, 5).begin()->size(), 10);
 }
 
-bool same_bits(const Grid &grid, ConstView a, ConstView b, const Staggering &at) {
+bool same_bits(const Domain &grid, ConstView a, ConstView b, const Staggering &at) {
   for (int k = 0; k < grid.points_end(2, at[2]); ++k)
     for (int j = 0; j < grid.points_end(1, at[1]); ++j)
       if (std::memcmp(a.row(j, k), b.row(j, k), sizeof(double) * grid.points_end(0, at[0])) != 0) return false;

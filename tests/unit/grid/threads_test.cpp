@@ -15,8 +15,8 @@ struct Threads : testing::Test {
   ~Threads() override { set_threads(1); }
 };
 
-Grid make_grid(const Int3 &cells) {
-  Grid grid;
+Domain make_grid(const Int3 &cells) {
+  Domain grid;
   GridSpec spec;
   spec.cells = cells;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
@@ -42,7 +42,7 @@ TEST_F(Threads, PartsHoldEveryRowOnce) {
   for (const Int3 &cells : {Int3{128, 33, 1}, Int3{32, 7, 19}, Int3{512, 8, 3}})
     for (const int count : {1, 2, 3, 7}) {
       set_threads(count);
-      const Grid grid = make_grid(cells);
+      const Domain grid = make_grid(cells);
       const int parts = row_parts(grid), flat = cells[2] == 1;
       EXPECT_EQ(parts, std::min(count, flat ? count : cells[2])) << cells[0];
       Rows owned, wide;
@@ -80,7 +80,7 @@ TEST_F(Threads, PiecesHoldEverythingOnce) {
 
 TEST_F(Threads, SumsOfPartsAreThoseOfTheWhole) {
   set_threads(5);
-  const Grid grid = make_grid({24, 11, 17});
+  const Domain grid = make_grid({24, 11, 17});
   const auto value = [](const Segment &row, int s) { return std::ldexp(1.0 + 0.1 * row.j, 9 * row.k - 60 * s) / 3; };
   double whole[2], parts[2];
   ExactSums sums(2);

@@ -77,7 +77,7 @@ TEST(FoundByFuzzing, ArraysLargerThanTheirFile) {
 }
 
 TEST(FoundByFuzzing, MoreColoursThanASpeciesMayHave) {
-  Grid grid;
+  Domain grid;
   GridSpec spec;
   spec.cells = {4, 4, 1};
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);

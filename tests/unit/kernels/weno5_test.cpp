@@ -94,11 +94,11 @@ double advection_error(int d, int cells, double velocity) {
   GridSpec spec;
   spec.cells = {4, 4, 4};
   spec.cells[d] = cells;
-  Grid grid;
+  Domain grid;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   FieldBlock q(grid, 1);
   fill_everywhere(grid, q[0], at_centre, [d](const Point &x) { return std::sin(2 * pi * x[d] + 1); });
-  const Int3 n = grid.owned();
+  const Int3 n = grid.cells();
   std::vector<double> along(n[0], velocity), across(n[0], 0.3 * velocity), rate(n[0]);
   const double *carried[3] = {across.data(), across.data(), across.data()};
   carried[d] = along.data();
@@ -193,7 +193,7 @@ TEST(Weno5, AdvectedStepStaysBounded) {
 TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
   Random random(5);
   for (const bool flat : {false, true}) {
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     const Polynomial q(random, 1);
     FieldBlock field(grid, 1), out(grid, 1);
@@ -202,7 +202,7 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
     const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
     std::vector<double> rows[3];
     for (auto &row : rows)
-      for (int i = 0; i < grid.owned()[0]; ++i) row.push_back(random());
+      for (int i = 0; i < grid.cells()[0]; ++i) row.push_back(random());
     const double *carried[3] = {rows[0].data(), rows[1].data(), rows[2].data()};
     for (const Segment &s : grid.rows()) {
       double *rate = out[0].row(s.j, s.k);
@@ -222,7 +222,7 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
 TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   Random random(6);
   GridSpec spec = uneven_box(false, {37, 3, 3});
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   FieldBlock q(grid, 1);
   randomise(grid, q, random);
@@ -241,7 +241,7 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
 TEST(Weno5, BatchesHaveTheBitsOfRows) {
   Random random(8);
   GridSpec spec = uneven_box(false, {37, 3, 3});
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   FieldBlock q(grid, 1);
   randomise(grid, q, random);

@@ -14,7 +14,8 @@ const Material rubber = test::mooney_rivlin(0.7, 0.4, 0.3);
 
 // d(B)/dt by stretching alone.
 template <int Dim, class Viscosity>
-void stretch(const Grid &grid, const Phase &phase, const Viscosity &viscosity, const FieldBlock &v, FieldBlock &rate) {
+void stretch(const Domain &grid, const Phase &phase, const Viscosity &viscosity, const FieldBlock &v,
+             FieldBlock &rate) {
   const FieldBlock &B = phase.tensor.field;
   const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
   for (const Segment &s : grid.rows())
@@ -37,9 +38,9 @@ void stretch(const Grid &grid, const Phase &phase, const Viscosity &viscosity, c
       }
 }
 
-double total_energy(const Grid &grid, const Phase &phase) {
+double total_energy(const Domain &grid, const Phase &phase) {
   double sum = 0;
-  std::vector<double> row(grid.owned()[0]);
+  std::vector<double> row(grid.cells()[0]);
   for (const Segment &s : grid.rows()) {
     strain_energy(grid, phase, s, row.data());
     for (const double e : row) sum += e;
@@ -55,7 +56,7 @@ struct Exchange {
 // `contrast`: viscosity of the solid over the fluid's.
 Exchange exchange_of(bool flat, const Material &material, bool uniform, double contrast) {
   Solid solid(flat, 0, 30);
-  const Grid &grid = solid.grid;
+  const Domain &grid = solid.grid;
   Phase &phase = solid.phases[0];
   phase.material = material;
   phase.tensor.rule.viscosity_excess = contrast - 1;

@@ -115,7 +115,7 @@ TEST(Stretching, RigidRotationLeavesTheUnitTensor) {
 }
 
 // d(tr B)/dt by stretching alone, at centres.
-void trace_rate(const Grid &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
+void trace_rate(const Domain &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
   const int dim = grid.dimension();
   const auto at = [dim](int a, int b) { return a == b ? a : dim == 2 ? 2 : 6 - a - b; };
   for (const Segment &s : grid.rows())
@@ -141,7 +141,7 @@ TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
   for (const bool flat : {false, true})
     for (const bool solenoidal : {false, true}) {
       Solid solid(flat, 0, 30);
-      const Grid &grid = solid.grid;
+      const Domain &grid = solid.grid;
       const int dim = grid.dimension();
       const double G = 0.7;
       Phase &phase = solid.phases[0];
@@ -155,9 +155,9 @@ TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
       ASSERT_EQ(compute_divergence(grid, 1, solid.velocity, D), 0);
       trace_rate(grid, phase.tensor.field, solid.velocity, rate);
       double power = 0, energy = 0, against_divergence = 0, largest_divergence = 0;
-      for (int k = 0; k < grid.owned()[2]; ++k)
-        for (int j = 0; j < grid.owned()[1]; ++j)
-          for (int i = 0; i < grid.owned()[0]; ++i) {
+      for (int k = 0; k < grid.cells()[2]; ++k)
+        for (int j = 0; j < grid.cells()[1]; ++j)
+          for (int i = 0; i < grid.cells()[0]; ++i) {
             for (int a = 0; a < dim; ++a) power += solid.velocity[a](i, j, k) * force[a](i, j, k);
             double trace = dim == 2 ? 1 : phase.tensor.field[2](i, j, k);
             trace += phase.tensor.field[0](i, j, k) + phase.tensor.field[1](i, j, k);

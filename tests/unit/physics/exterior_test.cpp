@@ -15,7 +15,7 @@ TEST(Exterior, LinearWhereViscosityDampsShortWaves) {
     GridSpec spec;
     spec.cells = {8, 16, flat ? 1 : 4};
     spec.length = {4, 4, flat ? .1 : .5};
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
     const double shortest = flat ? .25 : .125;  // z does not count in 2-D
     Fluid fluid;

@@ -12,7 +12,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 struct Flow {
-  Grid grid;
+  Domain grid;
   FieldBlock velocity;
   Flow(const GridSpec &spec, const InitialFlow &flow, const BoxSides &walls = {}) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
@@ -23,7 +23,7 @@ struct Flow {
 
   // Largest |div v| over the cells, index N by periodicity or 0 on a wall, relative to the largest |v| / length.
   double divergence() const {
-    const Int3 n = grid.cells();
+    const Int3 n = grid.domain_cells();
     double largest = 0, speed = 0;
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)

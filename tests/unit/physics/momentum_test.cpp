@@ -13,7 +13,7 @@ using namespace eulastic::test;
 namespace {
 
 // The mean of a component over its faces no further than half a cell from the point, in all directions.
-double mean_of_near_faces(const Grid &grid, ConstView q, int d, const Staggering &at, const Int3 &point) {
+double mean_of_near_faces(const Domain &grid, ConstView q, int d, const Staggering &at, const Int3 &point) {
   double sum = 0;
   int count = 0;
   for (int dk = -1; dk <= 1; ++dk)
@@ -35,7 +35,7 @@ double mean_of_near_faces(const Grid &grid, ConstView q, int d, const Staggering
 TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
   Random random(1);
   for (const bool flat : {false, true}) {
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     const int dim = grid.dimension();
     FieldBlock velocity(grid, dim);
@@ -43,7 +43,7 @@ TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
     for (int d = 0; d < dim; ++d)
       for (int set = 0; set < (1 << dim); ++set) {
         const Staggering at{(set & 1) != 0, (set & 2) != 0, (set & 4) != 0};
-        std::vector<double> out(grid.owned()[0], 99);
+        std::vector<double> out(grid.cells()[0], 99);
         for (const Segment &row : grid.rows()) {
           kernels::carry_velocity(Segment{2, row.i_end - 1, row.j, row.k}, velocity[d], d, at.data(), dim, out.data());
           for (int i = 2; i < row.i_end - 1; ++i)
@@ -57,7 +57,7 @@ TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
 }
 
 struct Flow {
-  Grid grid;
+  Domain grid;
   Fluid fluid;
   FieldBlock velocity, pressure, out;
   Polynomial v[3], p;
@@ -210,7 +210,7 @@ TEST(Correction, ExactOnQuadraticsAndInOneGhostOfThePressure) {
       EXPECT_LT(largest_error(flow.grid, flow.velocity[a], at_face[a],
                               [&](const Point &x) { return flow.v[a](x) - dt / 1.7 * dp.slope(a, x); }),
                 1e-13);
-    const Int3 n = flow.grid.owned();
+    const Int3 n = flow.grid.cells();
     const int gz = flat ? 0 : 1;
     double largest = 0;
     for (int k = -gz; k < n[2] + gz; ++k)

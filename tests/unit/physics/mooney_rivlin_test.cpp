@@ -122,7 +122,7 @@ TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
     Solid solid(false, 0, 1);
     solid.phases[0].material = rubber;
     fill_uniform(solid, B);
-    std::vector<double> row(solid.grid.owned()[0]);
+    std::vector<double> row(solid.grid.cells()[0]);
     strain_energy(solid.grid, solid.phases[0], solid.grid.rows()[7], row.data());
     const double first = l * l + 2 / l - 3, second = 2 * l + 1 / (l * l) - 3;
     EXPECT_NEAR(row[4], 0.7 * first + 0.4 * second + 0.3 * first * first, 1e-14);
@@ -168,7 +168,7 @@ TEST(MooneyRivlin, NoForceWithoutStrain) {
 
 // div sigma of a smooth B, sampled: the error falls with the square of the spacing.
 double force_error(bool flat, int cells) {
-  Grid grid;
+  Domain grid;
   GridSpec spec = uneven_box(flat, {cells, cells - 2, cells + 3});
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   const auto &components = tensor_components(grid.dimension());

@@ -14,7 +14,7 @@ namespace {
 
 // A body that fills the grid: B = diag + shear of which one edge in three is too much.
 struct Body {
-  Grid grid;
+  Domain grid;
   Phase phase;
   explicit Body(bool flat) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
@@ -43,7 +43,7 @@ TEST(PositiveDefinite, ShearIsLimitedOnlyWhereItIsTooMuch) {
         body.phase.tensor.field.data() + body.phase.tensor.field.count() * body.grid.layout().size);
     ASSERT_EQ(limit_shear(body.grid, body.phase, body.phase.tensor.field), 0);
     const auto &components = tensor_components(body.grid.dimension());
-    const Int3 n = body.grid.owned();
+    const Int3 n = body.grid.cells();
     int limited = 0;
     for (int f = 0; f < body.phase.tensor.field.count(); ++f) {
       const auto [a, b, at] = components[f];
@@ -71,8 +71,8 @@ TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
   const Layout &layout = body.grid.layout();
   for (std::ptrdiff_t p = 0; p < layout.size; ++p)
     for (int f = 0; f < 3; ++f) body.phase.tensor.field.data()[f * layout.size + p] = f < 2 ? 1 : 0;
-  for (int j = -1; j <= body.grid.owned()[1]; ++j)
-    for (int i = -3; i <= body.grid.owned()[0] + 1; ++i) velocity[0](i, j, 0) = -i * h;  // du/dx = -1
+  for (int j = -1; j <= body.grid.cells()[1]; ++j)
+    for (int i = -3; i <= body.grid.cells()[0] + 1; ++i) velocity[0](i, j, 0) = -i * h;  // du/dx = -1
   ASSERT_EQ(transport_tensor(body.grid, {0.25, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
   EXPECT_NEAR(next[0](2, 1, 0), 0.5, 1e-12);
   ASSERT_EQ(transport_tensor(body.grid, {2, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
@@ -82,8 +82,8 @@ TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
 TEST(PositiveDefinite, WhatIsNotFiniteStaysSo) {
   Body body(true);
   FieldBlock velocity(body.grid, 2), next(body.grid, 3);
-  for (int j = -3; j <= body.grid.owned()[1] + 1; ++j)
-    for (int i = -3; i <= body.grid.owned()[0] + 1; ++i) velocity[0](i, j, 0) = -(i + 8 * j) * 1e200;
+  for (int j = -3; j <= body.grid.cells()[1] + 1; ++j)
+    for (int i = -3; i <= body.grid.cells()[0] + 1; ++i) velocity[0](i, j, 0) = -(i + 8 * j) * 1e200;
   ASSERT_EQ(transport_tensor(body.grid, {1e200, false}, velocity, body.phase, body.phase.tensor.field, next), 0);
   EXPECT_EQ(next[0](2, 1, 0), -INFINITY);
   EXPECT_FALSE(std::isfinite(next[2](2, 1, 0)));

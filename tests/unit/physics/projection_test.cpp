@@ -22,7 +22,7 @@ struct Sides {
 
 // A random flow with its ghosts; rows of more than one block in y.
 struct RandomFlow {
-  Grid grid;
+  Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   BoxSides walls{};
   FieldBlock velocity, pressure;
@@ -49,7 +49,7 @@ struct RandomFlow {
   }
 };
 
-bool same_rows(const Grid &grid, const FieldBlock &a, const FieldBlock &b) {
+bool same_rows(const Domain &grid, const FieldBlock &a, const FieldBlock &b) {
   bool same = true;
   for (int f = 0; f < a.count(); ++f)
     for (const Segment &s : grid.rows())
@@ -61,7 +61,7 @@ class Projection : public ::testing::TestWithParam<Sides> {};
 
 TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   RandomFlow flow(GetParam()), other(GetParam());
-  const Grid &grid = flow.grid;
+  const Domain &grid = flow.grid;
   const double rotation = 0.3;
   const kernels::AcmIncrement formula{0.07, 0.3, 12, 1.9};
   FieldBlock D(grid, 1), increment(grid, 1);
@@ -73,7 +73,7 @@ TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   ASSERT_EQ(correct_velocity(grid, 1.7, 0.1, rotation, formula, D, other.velocity, other.pressure), 0);
   EXPECT_TRUE(same_rows(grid, flow.velocity, other.velocity));
   // One ghost of the pressure in every direction.
-  const Int3 n = grid.owned();
+  const Int3 n = grid.cells();
   const int gz = GetParam().flat ? 0 : 1;
   for (int k = -gz; k < n[2] + gz; ++k)
     for (int j = -1; j < n[1] + 1; ++j)

@@ -160,7 +160,7 @@ void check_gradient() {
 // 2-D: solid left of column 8, of which `share` is filled; du/dy = shear.
 struct Wall {
   static constexpr int column = 8;
-  Grid grid;
+  Domain grid;
   Phase phase;
   FieldBlock velocity, work;
 

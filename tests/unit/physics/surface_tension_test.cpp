@@ -29,8 +29,8 @@ TEST(PlaneArea, IsTheDerivativeOfTheVolume) {
     }
 }
 
-struct Box : InterfaceScene {
-  Box(const Int3 &cells, const Real3 &length, const Position &level) {
+struct LevelScene : InterfaceScene {
+  LevelScene(const Int3 &cells, const Real3 &length, const Position &level) {
     GridSpec spec;
     spec.cells = cells;
     spec.length = length;
@@ -48,7 +48,7 @@ struct Seen {
 
 // Cells of the interior of the box, so that no column reaches beyond it.
 template <int Dim>
-Seen curvatures(Box &box, double expected, double length) {
+Seen curvatures(LevelScene &box, double expected, double length) {
   Seen seen;
   const View phi = box.fraction[0];
   const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
@@ -56,7 +56,7 @@ Seen curvatures(Box &box, double expected, double length) {
   box.each_owned([&](int i, int j, int k) {
     for (int d = 0; d < Dim; ++d) {
       const int place = d == 0 ? i : d == 1 ? j : k;
-      if (place < 5 || place >= box.grid.owned()[d] - 5) return;
+      if (place < 5 || place >= box.grid.cells()[d] - 5) return;
     }
     const double *q = &phi(i, j, k);
     kernels::ColumnFrame frame{};
@@ -78,12 +78,12 @@ TEST(HeightCurvature, OfPlanesIsZero) {
     };
   };
   for (const auto &[a, b, c] : {Real3{1, 0.3, 0.2}, {0.1, -1, 0.8}, {0.5, 0.7, -0.9}, {1, 1, 1}}) {
-    Box box({20, 20, 20}, {1, 1, 1}, plane(a, b, c));
+    LevelScene box({20, 20, 20}, {1, 1, 1}, plane(a, b, c));
     const Seen seen = curvatures<3>(box, 0, 0.05);
     EXPECT_GT(seen.found, 50);
     EXPECT_LT(seen.missed, seen.found / 5);
     EXPECT_LT(seen.worst, 1e-6);
-    Box flat({20, 20, 1}, {1, 1, 1}, plane(a, b, 0));
+    LevelScene flat({20, 20, 1}, {1, 1, 1}, plane(a, b, 0));
     EXPECT_LT(curvatures<2>(flat, 0, 0.05).worst, 1e-6);
   }
 }
@@ -92,13 +92,13 @@ TEST(HeightCurvature, OfCirclesAndSpheresIsOfSecondOrder) {
   Seen flat[3], round[2];
   for (int n = 0; n < 3; ++n) {
     const int cells = 40 << n;
-    Box box({cells, cells + cells / 4, 1}, {1, 1, 1}, ball({0.503, 0.497, 0}, 0.25, 2));  // hx != hy
+    LevelScene box({cells, cells + cells / 4, 1}, {1, 1, 1}, ball({0.503, 0.497, 0}, 0.25, 2));  // hx != hy
     flat[n] = curvatures<2>(box, 4, 0.25);
     EXPECT_EQ(flat[n].missed, 0);
   }
   for (int n = 0; n < 2; ++n) {
     const int cells = 28 << n;
-    Box box({cells, cells, cells}, {1, 1, 1}, ball({0.503, 0.497, 0.5}, 0.25, 3));
+    LevelScene box({cells, cells, cells}, {1, 1, 1}, ball({0.503, 0.497, 0.5}, 0.25, 3));
     round[n] = curvatures<3>(box, 8, 0.25);
     EXPECT_LT(round[n].missed, (n == 0 ? 0.3 : 0.07) * round[n].found);  // where a cell is cut at its corner only
   }
@@ -117,7 +117,7 @@ TEST(HeightCurvature, MirroredIsTheSameToTheBit) {
     return std::hypot(x[0] - 0.47, 1.3 * (x[1] - 0.52), 0.8 * (x[2] - 0.5) + 0.3 * (x[0] - 0.5)) - 0.27;
   };
   constexpr int cells = 24;
-  Box box({cells, cells, cells}, {1, 1, 1}, level), mirrored({cells, cells, cells}, {1, 1, 1}, level);
+  LevelScene box({cells, cells, cells}, {1, 1, 1}, level), mirrored({cells, cells, cells}, {1, 1, 1}, level);
   const View phi = box.fraction[0], image = mirrored.fraction[0];
   const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
   const Real3 h = box.grid.spacing();
@@ -150,7 +150,7 @@ TEST(HeightCurvature, MirroredIsTheSameToTheBit) {
 TEST(SurfaceTension, HasTheEnergyOfItsAreaAndNoNetForce) {
   for (const bool flat : {true, false}) {
     const int cells = 32;
-    Box box({cells, cells, flat ? 1 : cells}, {1, 1, 1}, ball({0.51, 0.49, 0.5}, 0.3, flat ? 2 : 3));
+    LevelScene box({cells, cells, flat ? 1 : cells}, {1, 1, 1}, ball({0.51, 0.49, 0.5}, 0.3, flat ? 2 : 3));
     GhostExchange exchange(box.grid);
     WorkSpace work(box.grid);
     ASSERT_EQ(work.reserve(SurfaceTension::work_fields), 0);

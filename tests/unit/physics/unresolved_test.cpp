@@ -19,7 +19,7 @@ constexpr EvolveRule half{0.5, 0.5, 0};
 
 // A body in the lower part of x: B = diag(l, 1/l, 1), turned by 45 degrees in xy: det B = 1 at any stretch.
 struct Body {
-  Grid grid;
+  Domain grid;
   Phase phase;
   explicit Body(bool flat, double l = 50) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
@@ -35,7 +35,7 @@ struct Body {
                                                                           : 0;
       }
     fill_everywhere(grid, phase.fraction[0], at_centre,
-                    [&](const Point &x) { return x[0] < 0.5 * grid.spec().length[0] ? 1 : 0.4; });
+                    [&](const Point &x) { return x[0] < 0.5 * grid.domain_shape().length[0] ? 1 : 0.4; });
   }
   std::vector<double> values() const {
     return {phase.tensor.field.data(), phase.tensor.field.data() + phase.tensor.field.count() * grid.layout().size};
@@ -99,7 +99,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
     // Centres around those have lost part of their off-diagonals (yz = xz = 0): one factor for their diagonals, det B
     // = 1.
     const int dimension = body.grid.dimension();
-    const Int3 n = body.grid.owned();
+    const Int3 n = body.grid.cells();
     for (int c = 0; c < n[2]; ++c)
       for (int b = 0; b < n[1]; ++b)
         for (int a = 0; a < n[0]; ++a) {
@@ -126,7 +126,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
 
 TEST(Unresolved, OnlyWhereBEvolvesAndWhatIsNotFiniteStays) {
   Body body(true);
-  const Int3 n = body.grid.owned();
+  const Int3 n = body.grid.cells();
   body.phase.tensor.field[0](n[0] - 1, 1, 0) = 1e9;  // outside
   body.phase.tensor.field[0](1, 1, 0) = NAN;
   EXPECT_EQ(body.forget(), 0);

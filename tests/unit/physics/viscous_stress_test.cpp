@@ -10,7 +10,7 @@ using namespace eulastic::test;
 namespace {
 
 struct Flow {
-  Grid grid;
+  Domain grid;
   FieldBlock velocity, force;
   LocalViscosity viscosity;
 
@@ -163,7 +163,7 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
       phases[p].fraction = FieldBlock(flow.grid, 1);
       EXPECT_EQ(phases[p].rows.find(flow.grid, phases[p].fraction[0]), 0);
     }
-    const Int3 &n = flow.grid.owned();
+    const Int3 &n = flow.grid.cells();
     const auto odd = [](int i) { return i & 1; };
     for (int p = 0; p < 2; ++p)
       for (int k = flat ? 0 : -1; k < n[2] + !flat; ++k)
@@ -205,7 +205,7 @@ TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
     const auto more = [&](double phi) { return thin + phi * (thick - thin) - 1 / ((1 - phi) / thin + phi / thick); };
     const double beside = (more(0.25) + more(0.75)) / 2, here = more(0.5);  // edges across, and along, the surface
     const double excess = flat ? (here + beside) / 2 : (3 * here + 2 * here + 4 * beside) / 9;
-    const int along = viscosity_along_surface(dim), at = flow.grid.owned()[0] / 2;
+    const int along = viscosity_along_surface(dim), at = flow.grid.cells()[0] / 2;
     EXPECT_NEAR(flow.viscosity.fields[along](at, 2, 0), excess, 1e-14);
     EXPECT_NEAR(flow.viscosity.fields[along + 2](at, 2, 0), 1, 1e-14);
     for (const int j : {1, 3}) EXPECT_EQ(flow.viscosity.fields[along](at, j, 0), 0);

@@ -13,7 +13,7 @@ constexpr double h = 0.25, modulus = 2, largest = 4 * modulus;  // neo-Hookean: 
 constexpr int cells_x = 24, cells_y = 12;
 
 struct Film {
-  Grid grid;
+  Domain grid;
   Phase phase, floor;
   FieldBlock scratch, force;
   WallFilm film{grid};

@@ -140,20 +140,20 @@ TEST(AcmGuards, NothingToDo) {
   }
 }
 
-struct Box {
+struct CellBlock {
   bool flat;
   int walls;
   double pressure;  // size of p^N
 };
 
-class AcmStep : public ::testing::TestWithParam<Box> {};
+class AcmStep : public ::testing::TestWithParam<CellBlock> {};
 
 // From a random v*, the new velocity's divergence is what (12) promises, and the new pressure has no mean.
 TEST_P(AcmStep, ReachesThePredictedResidual) {
   GridSpec spec = uneven_box(GetParam().flat, {18, 9, 7});
   for (int d = 0; d < 3; ++d)
     if (GetParam().walls >> d & 1) spec.boundary[d] = Boundary::wall;
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   GhostExchange exchange(grid);
   const BoxSides walls{};
@@ -222,20 +222,21 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
 
   double mean = 0;
   for (const Segment &row : grid.rows())
-    for (int i = 0; i < row.i_end; ++i) mean += p[0](i, row.j, row.k) / grid.cell_count();
+    for (int i = 0; i < row.i_end; ++i) mean += p[0](i, row.j, row.k) / grid.domain_cell_count();
   EXPECT_NEAR(mean, 0, 1e-12 * (1 + GetParam().pressure));
 
   // The ghosts come out right without an exchange.
   FieldBlock fresh(grid, 1);
   std::copy(p.data(), p.data() + p.layout().size, fresh.data());
   centre_ghosts(fresh);
-  const Int3 n = grid.owned();
+  const Int3 n = grid.cells();
   for (int j = -1; j <= n[1]; ++j)
     for (int i = -1; i <= n[0]; ++i) EXPECT_EQ(p[0](i, j, 0), fresh[0](i, j, 0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, AcmStep,
-                         ::testing::Values(Box{false, 2, 50}, Box{false, 0, 1}, Box{false, 7, 50}, Box{false, 2, 0},
-                                           Box{true, 2, 50}, Box{true, 3, 50}, Box{true, 0, 0}));
+                         ::testing::Values(CellBlock{false, 2, 50}, CellBlock{false, 0, 1}, CellBlock{false, 7, 50},
+                                           CellBlock{false, 2, 0}, CellBlock{true, 2, 50}, CellBlock{true, 3, 50},
+                                           CellBlock{true, 0, 0}));
 
 }  // namespace

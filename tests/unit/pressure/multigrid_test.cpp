@@ -119,16 +119,16 @@ TEST(Multigrid, IsLinear) {
 // there is a neighbour to interpolate from, also beside a last cell of one or three.
 TEST(Multigrid, TransfersAreConservativeAndLinear) {
   for (int n = 3; n <= 40; ++n) {
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({n, n, 1}, {1, 1, 1}, true, true, false)), 0);
     std::vector<double> ones(n, 1.0);
-    auto fine = std::make_unique<MultigridLevel>(grid.coarse(grid.cells(), false),
+    auto fine = std::make_unique<MultigridLevel>(grid.coarse(grid.domain_cells(), false),
                                                  MultigridLevel::Widths{ones, ones, {1.0}}, grid.spacing());
     std::vector<double> width(ones);
     while (!fine->single_cell()) {
       auto coarse = fine->coarser();
       const LineTransfer line = fine->transfer(*coarse, 0);
-      const int cells = coarse->grid().cells()[0];
+      const int cells = coarse->domain().domain_cells()[0];
       std::vector<double> coarse_width(cells), coarse_centre(cells);
       for (std::size_t i = 0; i < width.size(); ++i) coarse_width[line.parent[i]] += width[i];
       double edge = 0;
@@ -220,9 +220,9 @@ TEST(Multigrid, LevelsOnManyRanks) {
                                      {{64, 64, 64}, 27},
                                      {{1024, 1024, 1}, 1024},
                                      {{64, 64, 64}, 4}}) {
-    const Grid grid = Grid::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
+    const Domain grid = Domain::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
     const auto levels = Multigrid::plan(grid);
-    const auto most = [](const Grid &shared) {
+    const auto most = [](const Domain &shared) {
       double of_a_rank = 0;
       for (int rank = 0; rank < shared.ranks(); ++rank) {
         const Int3 n = shared.layout_of(rank).cells;
@@ -232,19 +232,19 @@ TEST(Multigrid, LevelsOnManyRanks) {
     };
     EXPECT_TRUE(levels.back()->single_cell());
     for (std::size_t l = 1; l < levels.size(); ++l) {
-      const Grid &fine = levels[l - 1]->grid(), &next = levels[l]->grid();
+      const Domain &fine = levels[l - 1]->domain(), &next = levels[l]->domain();
       if (next.ranks() == 1) {
-        EXPECT_LE(fine.cell_count(), 4096);
+        EXPECT_LE(fine.domain_cell_count(), 4096);
         break;
       }
       EXPECT_EQ(next.ranks(), ranks);
-      EXPECT_LE(most(next), std::max(most(grid), 4096.0)) << next.cells()[0] << " x " << next.cells()[1];
-      joined += next.cells() == fine.cells();
+      EXPECT_LE(most(next), std::max(most(grid), 4096.0)) << next.domain_cells()[0] << " x " << next.domain_cells()[1];
+      joined += next.domain_cells() == fine.domain_cells();
       for (int d = 0; d < 3; ++d)
-        for (int p = 0; next.cells() != fine.cells() && p < grid.processors(d); ++p) {
+        for (int p = 0; next.domain_cells() != fine.domain_cells() && p < grid.processors(d); ++p) {
           const int before = fine.first_cell(d, p + 1) - fine.first_cell(d, p);
           const int after = next.first_cell(d, p + 1) - next.first_cell(d, p);
-          EXPECT_TRUE(before == 0 ? after == 0 : after >= 2 || before == fine.cells()[d]);
+          EXPECT_TRUE(before == 0 ? after == 0 : after >= 2 || before == fine.domain_cells()[d]);
         }
     }
   }

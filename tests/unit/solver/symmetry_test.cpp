@@ -122,7 +122,7 @@ int block_position(int dim, int c, int d) {
 double mirror_difference(const Scene &a, const Scene &b, int m) {
   const int dim = a.grid.dimension();
   return difference(a, b, [&](const FieldBlock &y, const Staggering &at, Int3 point, int c, int d) {
-    const int N = a.grid.cells()[m];
+    const int N = a.grid.domain_cells()[m];
     point[m] = at[m] ? (N - point[m]) % (a.grid.is_wall(m) ? N + 1 : N) : N - 1 - point[m];
     const double sign = (c == m) == (d == m) ? 1 : -1;
     return sign * y[block_position(dim, c, d)](point[0], point[1], point[2]);

@@ -1,5 +1,6 @@
 // Decompositions, their refusals, and the memory layout of one rank.
 #include "field/field_block.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,46 +18,46 @@ GridSpec box(const Int3 &cells, const Int3 &processors = {0, 0, 0}) {
 }
 
 TEST(GridDecomposition, TakesZThenYThenX) {
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 1), (Int3{1, 1, 1}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 4), (Int3{1, 1, 4}));  // 2 x 2 has as many ghosts, not contiguous
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 8), (Int3{1, 2, 4}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}), 64), (Int3{1, 8, 8}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 1}), 4), (Int3{1, 4, 1}));
-  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 2), (Int3{1, 2, 1}));  // 7 ghosts per x rather than 9
-  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 3), (Int3{1, 3, 1}));  // 7 cells do not make three times 3
-  EXPECT_EQ(Grid::decompose(box({5, 9, 7}), 4), (Int3{1, 2, 2}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}), 1), (Int3{1, 1, 1}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}), 4), (Int3{1, 1, 4}));  // 2 x 2 has as many ghosts, not contiguous
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}), 8), (Int3{1, 2, 4}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}), 64), (Int3{1, 8, 8}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 1}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Domain::decompose(box({5, 9, 7}), 2), (Int3{1, 2, 1}));  // 7 ghosts per x rather than 9
+  EXPECT_EQ(Domain::decompose(box({5, 9, 7}), 3), (Int3{1, 3, 1}));  // 7 cells do not make three times 3
+  EXPECT_EQ(Domain::decompose(box({5, 9, 7}), 4), (Int3{1, 2, 2}));
 }
 
 TEST(GridDecomposition, SplitsXOnlyWhenItMust) {
-  EXPECT_EQ(Grid::decompose(box({20, 5, 1}), 4), (Int3{4, 1, 1}));
-  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 4), (Int3{1, 4, 1}));
-  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 6), (Int3{2, 3, 1}));
-  EXPECT_EQ(Grid::decompose(box({20, 13, 1}), 5), (Int3{5, 1, 1}));
+  EXPECT_EQ(Domain::decompose(box({20, 5, 1}), 4), (Int3{4, 1, 1}));
+  EXPECT_EQ(Domain::decompose(box({20, 13, 1}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Domain::decompose(box({20, 13, 1}), 6), (Int3{2, 3, 1}));
+  EXPECT_EQ(Domain::decompose(box({20, 13, 1}), 5), (Int3{5, 1, 1}));
 }
 
 // Where a whole x has many more ghosts, in whole blocks of the exact sums alone.
 TEST(GridDecomposition, SplitsALongXInBlocks) {
   const GridSpec paper = box({24576, 5184, 5120});
-  const Int3 best = Grid::decompose(paper, 82944), rank = Grid::largest_box(paper, best);
+  const Int3 best = Domain::decompose(paper, 82944), rank = Domain::largest_box(paper, best);
   EXPECT_EQ(best[0] * best[1] * best[2], 82944);
   EXPECT_EQ(rank[0] % 256, 0);
   const auto ghosts = [](const Int3 &n) { return double(n[0]) * n[1] + double(n[1]) * n[2] + double(n[0]) * n[2]; };
   EXPECT_LT(ghosts(rank), 0.3 * ghosts({24576, 18, 20}));
-  EXPECT_EQ(Grid::decompose(box({1024, 64, 64}), 16), (Int3{4, 1, 4}));  // 17408 a layer, 32768 with a whole x
-  EXPECT_EQ(Grid::decompose(box({512, 512, 512}), 16)[0], 1);            // 131072 and 163840
-  EXPECT_EQ(Grid::decompose(box({510, 64, 64}), 256)[0], 1);  // less than two blocks
-  EXPECT_EQ(Grid::decompose(box({1024, 1024, 1}), 16), (Int3{4, 4, 1}));
-  EXPECT_EQ(Grid::decompose(box({1024, 1024, 1}, {1, 0, 0}), 16), (Int3{1, 16, 1}));
+  EXPECT_EQ(Domain::decompose(box({1024, 64, 64}), 16), (Int3{4, 1, 4}));  // 17408 a layer, 32768 with a whole x
+  EXPECT_EQ(Domain::decompose(box({512, 512, 512}), 16)[0], 1);            // 131072 and 163840
+  EXPECT_EQ(Domain::decompose(box({510, 64, 64}), 256)[0], 1);             // less than two blocks
+  EXPECT_EQ(Domain::decompose(box({1024, 1024, 1}), 16), (Int3{4, 4, 1}));
+  EXPECT_EQ(Domain::decompose(box({1024, 1024, 1}, {1, 0, 0}), 16), (Int3{1, 16, 1}));
 }
 
 TEST(GridDecomposition, ObeysOrders) {
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {2, 0, 0}), 4), (Int3{2, 1, 2}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {0, 4, 0}), 4), (Int3{1, 4, 1}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {0, 0, 2}), 4), (Int3{1, 2, 2}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {4, 1, 1}), 4), (Int3{4, 1, 1}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {2, 2, 0}), 3), (Int3{0, 0, 0}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 1}, {0, 0, 2}), 4), (Int3{0, 0, 0}));
-  EXPECT_EQ(Grid::decompose(box({64, 64, 64}, {-1, 0, 0}), 4), (Int3{0, 0, 0}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {2, 0, 0}), 4), (Int3{2, 1, 2}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {0, 4, 0}), 4), (Int3{1, 4, 1}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {0, 0, 2}), 4), (Int3{1, 2, 2}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {4, 1, 1}), 4), (Int3{4, 1, 1}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {2, 2, 0}), 3), (Int3{0, 0, 0}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 1}, {0, 0, 2}), 4), (Int3{0, 0, 0}));
+  EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {-1, 0, 0}), 4), (Int3{0, 0, 0}));
 }
 
 // Whatever is answered multiplies to the number of ranks and leaves every rank its 3 cells; whatever is refused has
@@ -65,7 +66,7 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 3, 3}, Int3{520, 4, 3}})
     for (int ranks = 1; ranks <= 40; ++ranks) {
       const GridSpec spec = box(cells);
-      const Int3 best = Grid::decompose(spec, ranks);
+      const Int3 best = Domain::decompose(spec, ranks);
       bool possible = false;
       for (int px = 1; px <= ranks; ++px)
         for (int py = 1; px * py <= ranks; ++py)
@@ -74,7 +75,7 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
             possible |= px <= cells[0] / 3 && py <= cells[1] / 3 && (cells[2] == 1 ? pz == 1 : pz <= cells[2] / 3);
           }
       EXPECT_EQ(best[0] > 0, possible) << cells[0] << " cells in x, " << ranks << " ranks";
-      EXPECT_EQ(Grid::why_not(spec, ranks).empty(), possible);
+      EXPECT_EQ(Domain::why_not(spec, ranks).empty(), possible);
       if (best[0] == 0) continue;
       EXPECT_EQ(best[0] * best[1] * best[2], ranks);
       for (int d = 0; d < 3; ++d) EXPECT_GE(cells[d] / best[d], d == 2 && cells[2] == 1 ? 1 : 3);
@@ -82,25 +83,25 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
 }
 
 TEST(GridDecomposition, SaysWhyNot) {
-  EXPECT_EQ(Grid::why_not(box({64, 64, 64}), 4), "");
+  EXPECT_EQ(Domain::why_not(box({64, 64, 64}), 4), "");
   const std::string few = "; accepted: at least 3 in x and y, 1 (2-D) or at least 3 in z";
-  EXPECT_EQ(Grid::why_not(box({8, 2, 8}), 1), "-grid_cells: 2 in y" + few);
-  EXPECT_EQ(Grid::why_not(box({8, 8, 2}), 1), "-grid_cells: 2 in z" + few);
-  EXPECT_EQ(Grid::why_not(box({0, 8, 1}), 1), "-grid_cells: 0 in x" + few);
+  EXPECT_EQ(Domain::why_not(box({8, 2, 8}), 1), "-grid_cells: 2 in y" + few);
+  EXPECT_EQ(Domain::why_not(box({8, 8, 2}), 1), "-grid_cells: 2 in z" + few);
+  EXPECT_EQ(Domain::why_not(box({0, 8, 1}), 1), "-grid_cells: 0 in x" + few);
   EXPECT_EQ(
-      Grid::why_not(box({5, 5, 5}), 2),
+      Domain::why_not(box({5, 5, 5}), 2),
       "-grid_cells: 2 ranks cannot share 5 x 5 x 5 cells; accepted: at least 3 cells per rank in every direction");
   EXPECT_EQ(
-      Grid::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
+      Domain::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
       "-da_processors_x, _y, _z: 3 ranks cannot share 64 x 64 x 64 cells as 2 x 2 x 0 ranks (0 = free); accepted: "
       "a product of 3, and at least 3 cells per rank in every direction");
 }
 
 // Every second rank stays, with the cells of two, the last with those of three.
 TEST(GridDecomposition, JoinsRanks) {
-  const Grid once = Grid::planned(box({8, 16, 8}, {1, 5, 2}), 10).joined({false, true, false});
-  const Grid twice = once.joined({false, true, true});
-  const auto firsts = [](const Grid &grid, int d) {
+  const Domain once = Domain::planned(box({8, 16, 8}, {1, 5, 2}), 10).joined({false, true, false});
+  const Domain twice = once.joined({false, true, true});
+  const auto firsts = [](const Domain &grid, int d) {
     std::vector<int> cells;
     for (int p = 0; p <= grid.processors(d); ++p) cells.push_back(grid.first_cell(d, p));
     return cells;
@@ -118,11 +119,11 @@ TEST(GridGeometry, SpacingVolumeAndWalls) {
   GridSpec spec = box({8, 4, 5});
   spec.length = {2, 3, 10};
   spec.boundary = {Boundary::periodic, Boundary::wall, Boundary::wall};
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   EXPECT_EQ(grid.spacing(), (Real3{.25, .75, 2}));
   EXPECT_EQ(grid.cell_volume(), .375);
-  EXPECT_EQ(grid.cell_count(), 160);
+  EXPECT_EQ(grid.domain_cell_count(), 160);
   EXPECT_EQ(grid.dimension(), 3);
   EXPECT_FALSE(grid.is_wall(0) || grid.touches_low(0) || grid.touches_high(0));
   EXPECT_TRUE(grid.is_wall(1) && grid.touches_low(1) && grid.touches_high(1));
@@ -140,7 +141,7 @@ TEST(GridGeometry, SpacingVolumeAndWalls) {
 }
 
 TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
   std::vector<int> seen(60);
   for (const Segment &row : grid.rows())
@@ -152,7 +153,7 @@ TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
 TEST(FieldBlockLayout, AlignedAndWithoutOverlap) {
   for (const Int3 &cells :
        {Int3{3, 3, 3}, Int3{5, 9, 7}, Int3{8, 4, 1}, Int3{58, 10, 4}, Int3{50, 58, 3}, Int3{250, 3, 1}}) {
-    Grid grid;
+    Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells)), 0);
     const Layout &own = grid.layout();
     const int fields = 3;
@@ -176,7 +177,7 @@ TEST(FieldBlockLayout, AlignedAndWithoutOverlap) {
 }
 
 TEST(FieldBlockLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
-  Grid grid;
+  Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
   FieldBlock a(grid, 2), b(grid, 1);
   const std::ptrdiff_t size = grid.layout().size;

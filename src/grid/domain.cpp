@@ -1,4 +1,4 @@
-#include "grid/grid.hpp"
+#include "grid/domain.hpp"
 
 #include "grid/cuts.hpp"
 
@@ -9,8 +9,6 @@ namespace eulastic {
 namespace {
 
 constexpr int sum_block = 256;  // x is split at multiples of it, so that row sums do not depend on the split
-
-std::ptrdiff_t round_up(std::ptrdiff_t n, std::ptrdiff_t m) { return (n + m - 1) / m * m; }
 
 // First cell of each of `parts` ranks: multiples of a power of two, so that coarse grids have whole cells on every
 // rank, as large as unevenness of an eighth allows; x in whole blocks where there are enough of them.
@@ -31,7 +29,7 @@ std::vector<int> starts_of(const GridSpec &spec, const Int3 &ranks, int d) {
 
 bool wide_enough(const std::vector<int> &starts, bool needs_ghosts) {
   for (std::size_t p = 0; p + 1 < starts.size(); ++p)
-    if (starts[p + 1] - starts[p] < (needs_ghosts ? Grid::stencil_width : 1)) return false;
+    if (starts[p + 1] - starts[p] < (needs_ghosts ? Domain::stencil_width : 1)) return false;
   return true;
 }
 
@@ -43,17 +41,9 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
   return true;
 }
 
-std::vector<Segment> rows_between(const Int3 &begin, const Int3 &end) {
-  std::vector<Segment> rows;
-  rows.reserve(std::size_t(end[1] - begin[1]) * std::size_t(end[2] - begin[2]));
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j) rows.push_back({begin[0], end[0], j, k});
-  return rows;
-}
-
 }  // namespace
 
-Int3 Grid::decompose(const GridSpec &spec, int ranks) {
+Int3 Domain::decompose(const GridSpec &spec, int ranks) {
   constexpr double worth = 1.3;   // of the cost, before x is split more than it must be
   constexpr double share = .125;  // of a cell's time in that of a layer's ghost cell, in all exchanges of a step
   Int3 best{0, 0, 0}, shorter{0, 0, 0};
@@ -90,7 +80,7 @@ Int3 Grid::decompose(const GridSpec &spec, int ranks) {
   return shorter[0] != 0 && best_cost > worth * shorter_cost ? shorter : best;
 }
 
-Int3 Grid::largest_box(const GridSpec &spec, const Int3 &ranks) {
+Int3 Domain::largest_box(const GridSpec &spec, const Int3 &ranks) {
   Int3 most{0, 0, 0};
   for (int d = 0; d < 3; ++d) {
     const std::vector<int> starts = starts_of(spec, ranks, d);
@@ -99,7 +89,7 @@ Int3 Grid::largest_box(const GridSpec &spec, const Int3 &ranks) {
   return most;
 }
 
-std::string Grid::why_not(const GridSpec &spec, int ranks) {
+std::string Domain::why_not(const GridSpec &spec, int ranks) {
   for (int d = 0; d < (spec.cells[2] == 1 ? 2 : 3); ++d)
     if (spec.cells[d] < stencil_width)
       return "-grid_cells: " + std::to_string(spec.cells[d]) + " in " + "xyz"[d] +
@@ -118,94 +108,36 @@ std::string Grid::why_not(const GridSpec &spec, int ranks) {
   return option + text + rule + "at least 3 cells per rank in every direction";
 }
 
-Layout Grid::make_layout(const Int3 &position) const {
-  Layout layout;
+Box Domain::box_at(const Int3 &place) const {
+  Int3 begin, cells;
   for (int d = 0; d < 3; ++d) {
-    layout.begin[d] = starts_[d][position[d]];
-    layout.cells[d] = starts_[d][position[d] + 1] - layout.begin[d];
-    layout.ghosts[d] = d < dimension() ? spec_.ghosts : 0;
+    begin[d] = starts_[d][place[d]];
+    cells[d] = starts_[d][place[d] + 1] - begin[d];
   }
-  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets. Planes and fields are
-  // whole rows, so that a row is one thing for an exchange.
-  layout.sy = round_up(layout.cells[0] + 2 * spec_.ghosts + is_wall(0), 8);
-  if (layout.sy % 64 == 0) layout.sy += 8;
-  layout.sz = layout.sy * (layout.cells[1] + 2 * layout.ghosts[1] + is_wall(1));
-  if (layout.sz % 512 == 0) layout.sz += layout.sy;
-  layout.origin = 8 + layout.sy * layout.ghosts[1] + layout.sz * layout.ghosts[2];
-  layout.size = layout.sy + layout.sz * (layout.cells[2] + 2 * layout.ghosts[2] + is_wall(2));
-  if (layout.size % 512 == 0) layout.size += layout.sy;
-  return layout;
+  return Box(spec_, begin, cells, spec_.ghosts);
 }
 
-Grid::Range Grid::points_near(int d, bool staggered, int layers) const {
-  const int ghosts = std::min(layers, layout_.ghosts[d]), begin = layout_.begin[d];
-  const Range near{-ghosts, layout_.cells[d] + ghosts};
-  if (!is_wall(d)) return near;
-  const int end = spec_.cells[d] + staggered - begin;
-  return {std::max(near.begin, -begin), touches_high(d) ? end : std::min(near.end, end)};
-}
-
-Int3 Grid::place_of(int rank) const {
+Int3 Domain::place_of(int rank) const {
   const int px = processors(0), py = processors(1);
   return {rank % px, rank / px % py, rank / px / py};
 }
 
-Layout Grid::layout_of(int rank) const { return make_layout(place_of(rank)); }
+Layout Domain::layout_of(int rank) const { return box_at(place_of(rank)).layout(); }
 
-int Grid::owner_along(int d, int i) const {
+int Domain::owner_along(int d, int i) const {
   const std::vector<int> &starts = starts_[d];
   const int cell = std::min(i, spec_.cells[d] - 1);
   return static_cast<int>(std::upper_bound(starts.begin(), starts.end(), cell) - starts.begin()) - 1;
 }
 
-InverseSquares Grid::inverse_squares() const {
-  const auto &[x, y, z] = spacing_;
-  return {1 / (x * x), 1 / (y * y), 1 / (z * z)};
+Domain Domain::planned(const GridSpec &spec, int ranks) {
+  Domain domain;
+  domain.divide(spec, ranks);
+  domain.set_box({});
+  return domain;
 }
 
-double Grid::cell_volume() const { return spacing_[0] * spacing_[1] * (dimension() == 3 ? spacing_[2] : 1.0); }
-
-bool Grid::any_open() const {
-  bool any = false;
-  for (int d = 0; d < dimension(); ++d) any = any || is_open(d, false) || is_open(d, true);
-  return any;
-}
-
-std::vector<Segment> Grid::faces_on(int d, bool high) const {
-  Int3 begin{}, end = owned();
-  begin[d] = high ? end[d] : 0;
-  end[d] = begin[d] + 1;
-  return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
-}
-
-std::vector<Segment> Grid::cells_at(int d, bool high, int layers) const {
-  Int3 begin{}, end = owned();
-  (high ? begin : end)[d] = high ? std::max(0, end[d] - layers) : std::min(layers, end[d]);
-  return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
-}
-
-std::vector<Grid::SideOfBox> Grid::sides() const {
-  std::vector<SideOfBox> all;
-  for (int d = 0; d < 3; ++d)
-    for (int high = 0; high < 2 && is_wall(d); ++high) all.push_back({d, high == 1});
-  return all;
-}
-
-int Grid::image(int d, int i) const {
-  const int n = cells()[d];
-  return is_wall(d) ? i : (i % n + n) % n;
-}
-
-std::vector<Segment> Grid::rows() const { return rows_between({}, owned()); }
-
-Grid Grid::planned(const GridSpec &spec, int ranks) {
-  Grid grid;
-  grid.divide(spec, ranks);
-  grid.layout_ = grid.make_layout({});
-  return grid;
-}
-
-void Grid::divide(const GridSpec &spec, int ranks) {
+void Domain::divide(const GridSpec &spec, int ranks) {
   spec_ = spec;
   ranks_ = ranks;
   if (spec_.cells[2] == 1) spec_.boundary[2] = Boundary::periodic;
@@ -213,12 +145,11 @@ void Grid::divide(const GridSpec &spec, int ranks) {
     if (spec_.boundary[d] != Boundary::wall) spec_.open[d] = {};
   const Int3 parts = decompose(spec, ranks);
   for (int d = 0; d < 3; ++d) {
-    spacing_[d] = spec.length[d] / spec.cells[d];
     starts_[d] = starts_of(spec, parts, d);
   }
 }
 
-PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
+PetscErrorCode Domain::create(MPI_Comm comm, const GridSpec &spec) {
   int ranks;
   PetscFunctionBeginUser;
   comm_ = comm;
@@ -228,24 +159,24 @@ PetscErrorCode Grid::create(MPI_Comm comm, const GridSpec &spec) {
   PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
   divide(spec, ranks);
   PetscCall(create_dm(DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));
-  Int3 position;
-  PetscCall(ask_dm(&position));
-  layout_ = make_layout(position);
+  Int3 place;
+  PetscCall(ask_dm(&place));
+  set_box(place);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Grid::create_dm(DMDAStencilType stencil, int width, DM *dm) const {
+PetscErrorCode Domain::create_dm(DMDAStencilType stencil, int width, DM *dm) const {
   PetscFunctionBeginUser;
   std::array<std::vector<PetscInt>, 3> counts;
   std::array<DMBoundaryType, 3> type{};
   for (int d = 0; d < 3; ++d) {
     for (int p = 0; p < processors(d); ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
-    if (d < dimension()) width = std::min<int>(width, *std::min_element(counts[d].begin(), counts[d].end()));
-    type[d] = is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
+    if (d < spec_.dimension()) width = std::min<int>(width, *std::min_element(counts[d].begin(), counts[d].end()));
+    type[d] = spec_.is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
   }
-  const Int3 &n = cells();
+  const Int3 &n = spec_.cells;
   PetscCall(DMDACreate(comm_, dm));
-  PetscCall(DMSetDimension(*dm, dimension()));
+  PetscCall(DMSetDimension(*dm, spec_.dimension()));
   PetscCall(DMDASetSizes(*dm, n[0], n[1], n[2]));
   PetscCall(DMDASetNumProcs(*dm, processors(0), processors(1), processors(2)));
   PetscCall(DMDASetOwnershipRanges(*dm, counts[0].data(), counts[1].data(), counts[2].data()));
@@ -259,7 +190,7 @@ PetscErrorCode Grid::create_dm(DMDAStencilType stencil, int width, DM *dm) const
 }
 
 // What each rank owns, and the place of this one.
-PetscErrorCode Grid::ask_dm(Int3 *place) {
+PetscErrorCode Domain::ask_dm(Int3 *place) {
   PetscFunctionBeginUser;
   const PetscInt *counts[3];
   PetscInt begin[3];
@@ -273,8 +204,8 @@ PetscErrorCode Grid::ask_dm(Int3 *place) {
   PetscFunctionReturn(0);
 }
 
-Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
-  Grid result;
+Domain Domain::coarse(const Int3 &cells, bool everywhere) const {
+  Domain result;
   result.comm_ = everywhere ? PETSC_COMM_SELF : comm_;
   result.rank_ = everywhere ? 0 : rank_;
   result.ranks_ = everywhere ? 1 : ranks_;
@@ -282,7 +213,6 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
   result.spec_.cells = cells;
   result.spec_.starts = {};
   for (int d = 0; d < 3; ++d) {
-    result.spacing_[d] = spec_.length[d] / cells[d];
     result.starts_[d] = {0};
     if (!everywhere) {
       const int stride = cells[d] < spec_.cells[d] ? 2 : 1;
@@ -291,12 +221,12 @@ Grid Grid::coarse(const Int3 &cells, bool everywhere) const {
     }
     result.starts_[d].push_back(cells[d]);
   }
-  result.layout_ = result.layout_of(result.rank_);
+  result.set_box(result.place_of(result.rank_));
   return result;
 }
 
-Grid Grid::joined(const std::array<bool, 3> &along) const {
-  Grid result = coarse(cells(), false);
+Domain Domain::joined(const std::array<bool, 3> &along) const {
+  Domain result = coarse(spec_.cells, false);
   for (int d = 0; d < 3; ++d) {
     if (!along[d]) continue;
     std::vector<int> &starts = result.starts_[d], holders;
@@ -307,7 +237,7 @@ Grid Grid::joined(const std::array<bool, 3> &along) const {
     for (int p = processors(d) - 1; p >= 0; --p)
       if (!stays[p]) starts[p] = starts[p + 1];
   }
-  result.layout_ = result.layout_of(rank_);
+  result.set_box(result.place_of(rank_));
   return result;
 }
 

@@ -1,0 +1,82 @@
+// The domain of a run on all its ranks: the DMDA, the box of cells of this rank, and who owns all others. Routines that
+// compute take the Box; those that communicate take the Domain.
+#pragma once
+
+#include "base/petsc.hpp"
+#include "grid/box.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+/// The grid that the options ask for.
+struct GridSpec : DomainShape {
+  Int3 processors{0, 0, 0};  ///< ranks per direction; 0: chosen by the program
+  /// First cell of each rank along every direction, and N at the end; empty: an even split
+  std::array<std::vector<int>, 3> starts;
+  int ghosts = 5;  ///< layers in memory: WENO5 reads three, the extrapolation of B outside bodies takes five
+};
+
+class Domain : public Box {
+public:
+  /// Splits the cells over `comm` and makes the DMDA. x is split only when y and z cannot take all ranks, where a whole
+  /// x means many more ghosts, or if `spec` says so. Call `why_not` first: it says in one line why a spec cannot be
+  /// split.
+  PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
+  /// What `create` would make on the first of `ranks` ranks, without a DMDA or a communicator: for estimates, at any
+  /// number of ranks and cells. `why_not` must be empty.
+  static Domain planned(const GridSpec &spec, int ranks);
+  /// Empty if `spec` fits on `ranks` ranks, else one sentence with the numbers.
+  static std::string why_not(const GridSpec &spec, int ranks);
+  /// Ranks per direction that `create` would use; {0,0,0} when impossible.
+  static Int3 decompose(const GridSpec &spec, int ranks);
+  /// The largest number of cells of a rank along each direction.
+  static Int3 largest_box(const GridSpec &spec, const Int3 &ranks);
+
+  /// The DMDA: one value per cell. Its stencil is a box as wide as there are ghosts, or as the narrowest rank has
+  /// cells. Null for a coarse() domain.
+  DM dm() const { return dm_.get(); }
+  /// Another DMDA of the same split: matrices of PETSc's solvers have a column for each point of the stencil.
+  PetscErrorCode create_dm(DMDAStencilType stencil, int width, DM *dm) const;
+
+  /// The same domain in fewer cells, for multigrid, without a DMDA. In a direction with fewer cells each rank begins at
+  /// half of its first cell, rounded up, so a rank may have no cells. With `everywhere` every rank has all cells.
+  Domain coarse(const Int3 &cells, bool everywhere) const;
+  /// The same cells on fewer ranks, without a DMDA: in each named direction every second rank that has cells takes
+  /// those of the next one as well.
+  Domain joined(const std::array<bool, 3> &along) const;
+
+  MPI_Comm comm() const { return comm_; }
+  const GridSpec &spec() const { return spec_; }
+  int rank() const { return rank_; }
+  int ranks() const { return ranks_; }
+  /// Ranks along direction d.
+  int processors(int d) const { return static_cast<int>(starts_[d].size()) - 1; }
+
+  /// The position of a rank among the ranks along every direction; ranks count through x first.
+  Int3 place_of(int rank) const;
+  int rank_at(const Int3 &place) const { return place[0] + processors(0) * (place[1] + processors(1) * place[2]); }
+  /// The position along d of the ranks that own the cells with index i; index N of a direction with boundaries belongs
+  /// to the owner of N - 1.
+  int owner_along(int d, int i) const;
+  /// The first cell of the ranks at a position along d, and N at position processors(d).
+  int first_cell(int d, int place) const { return starts_[d][place]; }
+  Layout layout_of(int rank) const;
+  /// The rank that owns global cell (i,j,k).
+  int owner(int i, int j, int k) const { return rank_at({owner_along(0, i), owner_along(1, j), owner_along(2, k)}); }
+
+private:
+  void divide(const GridSpec &spec, int ranks);
+  PetscErrorCode ask_dm(Int3 *place);
+  Box box_at(const Int3 &place) const;
+  void set_box(const Int3 &place) { static_cast<Box &>(*this) = box_at(place); }
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, ranks_ = 1;
+  DmHandle dm_;
+  GridSpec spec_;
+  std::array<std::vector<int>, 3> starts_;  ///< first cell of every rank along a direction, and N at the end
+};
+
+}  // namespace eulastic
