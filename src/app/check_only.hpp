@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/config.hpp"
-#include "grid/box.hpp"
+#include "grid/domain.hpp"
 
 #include <string>
 

@@ -47,9 +47,9 @@ double fields(const Config &config) {
     sum += method.acm_memory;
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
-  if (std::any_of(config.species.begin(), config.species.end(),
-                  [&](const SpeciesSpec &spec) { return spec.travels(dimension); }))
-    sum += dimension;                       // which faces are inside; twice that beside bodies of a file
+  const bool travels = std::any_of(config.species.begin(), config.species.end(),
+                                   [&](const SpeciesSpec &spec) { return spec.travels(dimension); });
+  if (travels) sum += dimension;            // which faces are inside; twice that beside bodies of a file
   if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
     sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
   for (const auto &pair : config.sides)
@@ -69,7 +69,7 @@ double fields(const Config &config) {
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (contrast.settles() && method.staggered() && method.viscous == ViscousScheme::rkl) sum += 1;  // pressure before
+  if (Solver::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
 }
 

@@ -30,8 +30,6 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
     energy_unknown_ = "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period";
   else if (Feeders::exist(config.sides) && !config.species.empty())
     energy_unknown_ = "bodies that come in through a side bring energy that is not counted";
-  else if (solver->rigid() && solver->rigid()->travels)
-    energy_unknown_ = "faces that a rigid body covers or leaves change their energy, which is not counted";
   mach_max_ = position.mach_max;
 }
 

@@ -93,6 +93,7 @@ private:
   PetscErrorCode look(Row *row);
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
+  PetscErrorCode see_power();
   PetscErrorCode write_row();
   PetscErrorCode write_row_now();
   EnergyBudget budget_now() const;

@@ -66,12 +66,18 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   energy.rates.force_power += power;
   PetscCall(solver_->stretch_power(&power));
   energy.rates.force_power += power;
-  for (const RigidLoad &load : measured.loads) energy.rates.wall_power += load.power;
+  for (std::size_t b = 0; b < measured.loads.size(); ++b) {
+    const RigidLoad &load = measured.loads[b];
+    energy.rates.wall_power += load.power;
+    energy.wall_range += fluid.viscosity * solver_->rigid()->masses[b].dissipation(solver_->rigid()->motion_of(int(b)),
+                                                                                   domain_->dimension());
+  }
   PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.density, state.velocity,
                                state.pressure, &row->sides));
   for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
-  energy.starts = config_.method.staggered() && config_.time.step == 0 && state.step <= starting_steps;
+  const bool may_start = config_.time.step == 0 || (solver_->rigid() && solver_->rigid()->moves);
+  energy.starts = config_.method.staggered() && may_start && state.step <= starting_steps;
   row->dt = state.dt;
   row->step = double(state.step);
   row->bodies = solver_->bodies().bodies();
@@ -182,8 +188,21 @@ PetscErrorCode Outputs::write_row_now() {
   PetscFunctionReturn(0);
 }
 
+// Loads of rigid bodies are those of the middle of a step: their power at a row is between those of both steps.
+PetscErrorCode Outputs::see_power() {
+  PetscFunctionBeginUser;
+  if (!solver_->rigid() || !solver_->rigid()->moves) PetscFunctionReturn(0);
+  const double share = row_.dt / (row_.dt + solver_->state().dt);
+  std::vector<RigidLoad> next;
+  PetscCall(solver_->rigid_loads(&next));
+  for (std::size_t b = 0; b < next.size(); ++b)
+    row_.energy.rates.wall_power += share * (next[b].power - row_.measured.loads[b].power);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode Outputs::write_row() {
   PetscFunctionBeginUser;
+  if (seen_) PetscCall(see_power());
   waits_ = seen_ = false;
   is_new_ = true;
   Measured &measured = row_.measured;

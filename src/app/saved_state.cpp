@@ -19,7 +19,8 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   for (int d = 0; d < state.velocity.count(); ++d)
     fields.push_back({std::string("velocity_") + "xyz"[d], at_face[d], state.velocity[d]});
   fields.push_back({"pressure", at_centre, state.pressure[0]});
-  if (state.pressure_before) fields.push_back({"pressure_before", at_centre, state.pressure_before[0]});
+  if (state.pressure_before)  // may be missing: earlier versions had none where bodies travel
+    fields.push_back({"pressure_before", at_centre, state.pressure_before[0], Stored::float64, true});
   for (int d = 0; d < state.advection.count(); ++d)
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   for (Phase &phase : state.phases) {
@@ -141,7 +142,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   if (reals.count("energy_made") > 0) o.energy.set_made_numbers(reals["energy_made"]);
   o.mach_max = reals["mach_max"][0];
   if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
-  if (s.pressure_before) s.pressure_interval = reals["pressure_interval"][0];
+  if (reals.count("pressure_interval") > 0) s.pressure_interval = reals["pressure_interval"][0];
   s.step = integers["step"][0];
   if (const auto loads = reals.find("rigid_loads"); loads != reals.end())
     solver->set_rigid_loads(loads_of(loads->second));
@@ -255,6 +256,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   CheckpointNumbers expected = numbers_of(*solver, *position);
   if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of an earlier version
     expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
+  if (!file->has("pressure_interval")) expected.reals.erase("pressure_interval");
   if (!file->has("energy_made")) expected.reals.erase("energy_made");  // of version 0.2.0 and before
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));

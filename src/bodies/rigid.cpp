@@ -13,6 +13,12 @@ constexpr double on_surface = 1e-9;  // likewise
 constexpr double shortest = 1e-3;    // of a link, in spacings
 constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
 
+// Faces on a surface are fluid, whatever round-off makes of them.
+double depth_inside(const Domain &domain) {
+  const Real3 &h = domain.spacing();
+  return on_surface * (domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
+}
+
 }  // namespace
 
 // Image of a body that lies `shift` boxes on.
@@ -48,7 +54,7 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
   }
   if (turns && !file)
     mass = moments(*surface, dimension);
-  else if (travels && !file)
+  else if (spec.motion.moves() && !file)
     mass.volume = volume_in_box(spec, domain_.domain_shape());
   species_.push_back({spec, file ? Places{{spec.centre, {}}} : places, first_label, surface, mass});
   for (const NumberedPlace &place : species_.back().places.known) {
@@ -104,11 +110,9 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
 
 void RigidBodies::mark(int a, int index) {
   const PlacedBody &body = *sources_[index].body;
-  // Faces on a surface are fluid, whatever round-off makes of them.
-  const Real3 &h = domain_.spacing();
-  const double least = on_surface * (domain_.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
+  const double depth = depth_inside(domain_);
   for_faces(a, index, [&](double &mark, int image, const Real3 &place) {
-    if (!(body.level(place) < -least)) return;
+    if (!(body.level(place) < -depth)) return;
     if (mark == 0)
       mark = 1 + image;
     else
@@ -120,6 +124,29 @@ void RigidBodies::clear(int a, int index) {
   for_faces(a, index, [&](double &mark, int, const Real3 &) {
     if (mark != 0 && (static_cast<int>(mark) - 1) / images == index) mark = 0;
   });
+}
+
+// A slab that travels has the volume that the bodies along which it goes leave to it.
+PetscErrorCode RigidBodies::measure_pistons() {
+  PetscFunctionBeginUser;
+  const double depth = depth_inside(domain_);
+  std::vector<double> counted(2 * faces_.count);  // faces across the axis: in the slab, and its own
+  for (int index = 0; index < faces_.count; ++index) {
+    const Species &species = species_[faces_.bodies[images * index].motion];
+    if (species.spec.shape != Shape::slab || !species.spec.travels(domain_.dimension())) continue;
+    const PlacedBody &body = *sources_[index].body;
+    for_faces(species.spec.axis, index, [&](const double &mark, int, const Real3 &place) {
+      if (!(body.level(place) < -depth)) return;
+      ++counted[2 * index];
+      counted[2 * index + 1] += mark != 0 && (static_cast<int>(mark) - 1) / images == index;
+    });
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted.data(), 2 * faces_.count, MPI_DOUBLE, MPI_SUM, domain_.comm()));
+  for (int index = 0; index < faces_.count; ++index)
+    if (counted[2 * index] > 0)
+      faces_.masses[index].volume =
+          species_[faces_.bodies[images * index].motion].mass.volume * (counted[2 * index + 1] / counted[2 * index]);
+  PetscFunctionReturn(0);
 }
 
 // A piston goes along the tube or the plates that it is between.

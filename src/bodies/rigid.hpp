@@ -28,7 +28,8 @@ public:
   /// Collective.
   PetscErrorCode place(double time, double surface_time);
   const RigidFaces &faces() const { return faces_; }
-  /// Of bodies that rest, RigidFaces::gaps from the owned solid fractions of all phases; after place(). Collective.
+  /// Of bodies that do not travel, RigidFaces::gaps from the owned solid fractions of all phases; after place().
+  /// Collective.
   PetscErrorCode measure_gaps(const std::vector<Phase> &phases);
   /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
   PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
@@ -59,6 +60,7 @@ private:
                           RigidMass *mass, std::string *wrong);
   BodyPlace place_of(const BodyPlace &start, const RigidMotion &motion, double time) const;
   void put(int index, const BodyPlace &place);
+  PetscErrorCode measure_pistons();
   template <class Visit>
   void for_faces(int a, int index, const Visit &visit);
   void mark(int a, int index);

@@ -11,7 +11,7 @@ namespace eulastic {
 // what counts as inside; a face inside lacks what the cell has of fluid. Where bodies overlap only one of them counts.
 PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
-  if (!exist() || travel()) PetscFunctionReturn(0);
+  if (!exist()) PetscFunctionReturn(0);
   constexpr int per_component = 4, per_body = 3 * per_component;
   const int dimension = domain_.dimension(), cells = domain_.cells()[0];
   ExactSums sums(per_body * faces_.count);
@@ -33,6 +33,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
       sums.add(per_body * index + per_component * a + 1 + d, part * arm * domain_.spacing()[d]);
     }
   };
+  const auto rests = [&](const Phase &phase) { return phase.material.is_rigid() && !travels(phase); };
   const auto index_of = [&](const Phase &phase, int label) {
     for (std::size_t index = 0; index < sources_.size(); ++index) {
       const Species &species = species_[faces_.bodies[images * index].motion];
@@ -44,11 +45,15 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
   for (const Segment &row : domain_.rows())
     for (int a = 0; a < dimension; ++a) {
-      for (const int high : {0, 1}) faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
+      for (const int high : {0, 1}) {
+        faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
+        for (int &image : beside[high])
+          if (image >= 0 && faces_.motions[faces_.bodies[image].motion].travels()) image = -1;
+      }
       for (int i = 0; i < cells; ++i) {
         double solid = 0;
         for (const Phase &phase : phases)
-          if (phase.material.is_rigid()) solid += phase.fraction[0](i, row.j, row.k);
+          if (rests(phase)) solid += phase.fraction[0](i, row.j, row.k);
         const double fluid = 1 - std::min(1.0, solid);
         if (solid == 0 && beside[0][i] < 0 && beside[1][i] < 0) continue;
         for (const int high : {0, 1}) {
@@ -58,7 +63,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
             continue;
           }
           for (const Phase &phase : phases) {
-            const double part = phase.material.is_rigid() ? phase.fraction[0](i, row.j, row.k) : 0;
+            const double part = rests(phase) ? phase.fraction[0](i, row.j, row.k) : 0;
             const int index = part > 0 && phase.label ? index_of(phase, int(phase.label[0](i, row.j, row.k))) : -1;
             if (index >= 0 && index < faces_.count)
               add(image_of(index, {0, 0, 0}), a, cell, high, 0.5 * part * std::min(1.0, 1 / solid), true);
@@ -75,6 +80,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
       faces_.gaps[index].volume[a] = found[0] * domain_.cell_volume();
       for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * domain_.cell_volume();
     }
+  PetscCall(measure_pistons());
   PetscFunctionReturn(0);
 }
 

@@ -10,8 +10,8 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   const std::array<double, works> rate{r.force_power + r.wall_power + r.side_power, state.dissipation,
                                        r.elastic_power + state.surface_power, r.extended_power};
   last_ = {state.kinetic, state.elastic + state.surface, r.extended_energy};
-  const double exchanged =
-      std::max(std::fabs(r.force_power), state.force_range) + std::fabs(r.wall_power) + std::fabs(r.side_power);
+  const double exchanged = std::max(std::fabs(r.force_power), state.force_range) +
+                           std::max(std::fabs(r.wall_power), state.wall_range) + std::fabs(r.side_power);
   const bool begins = time_ < 0;
   if (begins) {
     first_ = last_;

@@ -15,6 +15,7 @@ struct EnergyState {
   bool starts = false;                    ///< steps are still the small ones of a start
   double unknown = 0;      ///< energies below it say nothing: round-off, what body forces give the fluid in a step
   double force_range = 0;  ///< what the power of body forces may be at most with this kinetic energy
+  double wall_range = 0;   ///< the power of rigid bodies at their largest velocity, in orders of magnitude
   EnergyRates rates;
 };
 

@@ -52,6 +52,13 @@ Real3 RigidMotion::acceleration(const Real3 &r, double time) const {
   return a;
 }
 
+double RigidMass::dissipation(const RigidMotion &motion, int dimension) const {
+  const auto square = [](const Real3 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
+  if (volume == 0) return 0;
+  return 12 * square(motion.velocity) * std::pow(volume, 1 - 2. / dimension) +
+         6 * square(motion.angular_velocity) * volume;
+}
+
 // Integrals of the acceleration over the body.
 Real3 RigidMass::force(const RigidMotion &motion, double time, double density) const {
   const Real3 a = motion.acceleration({}, time), w = motion.turned_by(motion.of_rotation.at(time)),

@@ -53,11 +53,14 @@ struct RigidMotion {
   }
 };
 
-/// Of a body that travels, at the density 1, about its centre; in 2-D per depth.
+/// Of a body that moves, at the density 1, about its centre; in 2-D per depth. Moments only of what turns.
 struct RigidMass {
   double volume = 0;
   Real3 first{};                   ///< integral of r
   std::array<double, 6> second{};  ///< of r r^T: xx, yy, zz, yz, xz, xy
+  /// What viscosity 1 takes of it, in orders of magnitude, at the largest velocities of its motion: as a sphere of its
+  /// volume in Stokes flow, in 2-D a cylinder.
+  double dissipation(const RigidMotion &motion, int dimension) const;
   /// What its own acceleration takes, at a density.
   Real3 force(const RigidMotion &motion, double time, double density) const;
   Real3 torque(const RigidMotion &motion, double time, double density) const;
@@ -114,13 +117,14 @@ public:
   std::vector<RigidMotion> motions;
   std::vector<RigidBody> bodies;
   std::vector<RigidMass> masses;           ///< by the index of the body
-  std::vector<RigidGap> gaps;              ///< likewise; empty where bodies travel
+  std::vector<RigidGap> gaps;              ///< likewise; 0 of those that travel
   std::vector<RigidFootprint> footprints;  ///< where `more` is not 0
   std::vector<Real3> ahead;  ///< of every motion: from the time of the surfaces to that of the faces, in cells
   int count = 0;             ///< of bodies, images not counted
   bool moves = false, travels = false;
   Real3 speed{};  ///< largest of any surface, along every direction
 
+  const RigidMotion &motion_of(int index) const { return motions[bodies[bodies.size() / count * index].motion]; }
   /// Rows of component a; j and k within `layers` of ghosts.
   Row row(int a, int j, int k) const {
     const Component &c = components_[a];

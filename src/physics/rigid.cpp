@@ -8,33 +8,6 @@
 #include <algorithm>
 
 namespace eulastic {
-namespace {
-
-// dV/dt - V.grad u beside a body that travels, V its velocity at `place`: what a face sees of a flow that does not
-// change about the body. Upwind and half implicit: where the surface comes, u - u_s falls in a step as the distance to
-// it does.
-double rate_of_what_rests(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, Real3 place,
-                          double time, double dt, const double *u, const Strides &s) {
-  const RigidBody &body = faces.bodies[cut.body];
-  const RigidMotion &motion = faces.motions[body.motion];
-  const double middle = time + 0.5 * dt;
-  for (int d = 0; d < box.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
-  const Real3 r = RigidFaces::arm(body, place, box.spacing()), frame = motion.frame_velocity(r, middle);
-  double wall[6], sum = 0, stiffness = 0;
-  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
-  for (int d = 0; d < box.dimension(); ++d) {
-    const double V = frame[d];
-    const int link = 2 * d + (V < 0);
-    const double rate = std::fabs(V) * cut.link[link] * box.spacing()[d];
-    const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
-    sum += rate * (upwind - u[0]);
-    stiffness += rate;
-  }
-  return motion.acceleration(r, middle)[a] + sum / (1 + 0.5 * dt * stiffness);
-}
-
-}  // namespace
-
 void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                         double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
   VerbScope scope(Verb::rigid);
@@ -72,9 +45,7 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
       double wall[6], more = 0;
       surface_velocity(faces, *cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
       for (int d = 0; d < box.dimension(); ++d) {
-        const double *v = velocity[d].row(j, k) + cut->i, inverse = 1 / box.spacing()[d];
-        const std::ptrdiff_t next = velocity[d].stride(d), back = velocity[d].stride(a);
-        const double along = d == a ? u[0] : 0.25 * ((v[0] + v[next]) + (v[-back] + v[next - back]));
+        const double along = carrying_velocity(velocity, a, d, cut->i, j, k), inverse = 1 / box.spacing()[d];
         const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
         if (!(cut->walls >> behind & 1U)) continue;
         const bool between = cut->walls >> ahead & 1U;

@@ -73,14 +73,6 @@ struct RigidLoad {
   double power = 0;  ///< of the body on the fluid
 };
 
-/// Of all rigid bodies of a scene in which some travel (others: rigid_impulse.hpp). `rate`: dv/dt of the fluid's
-/// equation at all owned faces, those inside too, with all of `viscosity` in it, less the body force `force`; one ghost
-/// of velocity and pressure. Where bodies travel without advection, as about a body the fluid goes with it; `carried`:
-/// with what accelerates that fluid. Collective.
-PetscErrorCode measure_rigid_loads(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
-                                   bool carried, const FieldBlock &velocity, const FieldBlock &pressure,
-                                   const FieldBlock &rate, const Real3 &force, std::vector<RigidLoad> *loads);
-
 /// What viscosity dissipates at cut faces, where (28) takes the place of the Laplacian, beyond what the compact
 /// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body; less the friction of
 /// faces inside on sides of the box. Collective.

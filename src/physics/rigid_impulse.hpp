@@ -1,5 +1,5 @@
-// What a step exchanges with rigid bodies that stay where they are: their loads are the momentum that the fluid lacks
-// after it (docs/method.md, section 19).
+// What a step exchanges with rigid bodies: their loads are the momentum that the fluid lacks after it (docs/method.md,
+// section 19).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -15,22 +15,23 @@ class ExactSums;
 
 class RigidImpulse {
 public:
-  /// `faces` of bodies that do not travel; must outlive it.
+  /// `faces` must outlive it; where bodies travel every step begins with other ones.
   RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid);
 
-  /// Begins a step: the velocity is that of `time`, body forces are those of `force_time`.
-  void begin(double time, double force_time, const FieldBlock &velocity);
+  /// Begins a step of dt (0: there is none, loads are those of a state): the velocity is that of `time`, body forces
+  /// are those of `force_time`, the faces are those of the end of the step.
+  void begin(double time, double dt, double force_time, const FieldBlock &velocity);
   /// Where viscous stages add what they change.
   RigidMeans *means() { return &means_; }
   /// After the stages: what cut faces lack because only a share of their rate moves them.
-  void add_prediction(double dt, const FieldBlock &velocity, const FieldBlock &velocity_star);
+  void add_prediction(const FieldBlock &velocity, const FieldBlock &velocity_star);
   /// The pressure that acts in the step, less what increments add to it; owned cells are read.
   void set_pressure(const FieldBlock &pressure);
   /// An increment that corrects the velocity; one ghost layer. `partly`: cut faces as far as they are open.
   void add_increment(const FieldBlock &increment, bool partly);
-  /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. `velocity` is that of
-  /// `time`, when power is measured. Exact sums: the same bits on any ranks. Collective.
-  PetscErrorCode measure(double time, const FieldBlock &velocity, std::vector<RigidLoad> *loads) const;
+  /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. Exact sums: the same
+  /// bits on any ranks. Collective.
+  PetscErrorCode measure(std::vector<RigidLoad> *loads) const;
   std::size_t bytes() const;
 
 private:
@@ -40,18 +41,26 @@ private:
     int d, i, j, k, body;
     double weight;
   };
-  RigidMeans means_of(double time, const FieldBlock &velocity) const;
-  void add_cut(const RigidMeans &means, int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const;
+  void find_contacts();
+  const RigidMotion &motion_of(int image) const { return faces_.motions[faces_.bodies[image].motion]; }
+  double velocity_before(int a, int image, const Int3 &face) const;
+  double curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const FieldBlock &velocity) const;
+  template <class Visit>
+  void for_moving_faces(const Visit &visit) const;
+  void add_cut(int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const;
   void add(int body, int a, const Real3 &place, double push, ExactSums *sums) const;
-  PetscErrorCode sum(const RigidMeans &means, std::vector<double> *total) const;
+  PetscErrorCode sum(std::vector<double> *total) const;
+  double middle() const { return time_ + 0.5 * dt_; }
   std::size_t index(int a, const RigidFaces::Cut &cut) const { return &cut - faces_.cuts(a).data(); }
 
   const Domain &domain_;
   const RigidFaces &faces_;
   Fluid fluid_;
+  double time_ = 0, dt_ = 0;
   Real3 force_{};  // per mass
   RigidMeans means_;
   std::array<std::vector<double>, 3> lacks_;  // by the place among cuts: dv/dt that cut faces did not get
+  std::vector<double> covered_;  // of every face inside what travels: what it had less velocity than the body, over dt
   std::vector<Contact> contacts_;
   std::vector<double> pressure_;  // of every contact
 };

@@ -18,6 +18,13 @@ inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut
   for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
 }
 
+// Component d of the velocity at a face of component a.
+inline double carrying_velocity(const FieldBlock &velocity, int a, int d, int i, int j, int k) {
+  const double *v = velocity[d].row(j, k) + i;
+  const std::ptrdiff_t next = velocity[d].stride(d), back = velocity[d].stride(a);
+  return d == a ? v[0] : 0.25 * ((v[0] + v[next]) + (v[-back] + v[next - back]));
+}
+
 inline double regular_laplacian(const Box &box, const double *u, const Strides &s) {
   const InverseSquares h = box.inverse_squares();
   return box.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
@@ -77,6 +84,29 @@ inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const Rigi
   double wall[6];
   surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
   return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
+}
+
+// dV/dt - V.grad u beside a body that travels, V its velocity at `place`: what a face sees of a flow that does not
+// change about the body. Upwind and half implicit: where the surface comes, u - u_s falls in a step as the distance to
+// it does.
+inline double rate_of_what_rests(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
+                                 Real3 place, double time, double dt, const double *u, const Strides &s) {
+  const RigidBody &body = faces.bodies[cut.body];
+  const RigidMotion &motion = faces.motions[body.motion];
+  const double middle = time + 0.5 * dt;
+  for (int d = 0; d < box.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
+  const Real3 r = RigidFaces::arm(body, place, box.spacing()), frame = motion.frame_velocity(r, middle);
+  double wall[6], sum = 0, stiffness = 0;
+  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  for (int d = 0; d < box.dimension(); ++d) {
+    const double V = frame[d];
+    const int link = 2 * d + (V < 0);
+    const double rate = std::fabs(V) * cut.link[link] * box.spacing()[d];
+    const double upwind = cut.walls >> link & 1U ? wall[link] : u[V < 0 ? s[d] : -s[d]];
+    sum += rate * (upwind - u[0]);
+    stiffness += rate;
+  }
+  return motion.acceleration(r, middle)[a] + sum / (1 + 0.5 * dt * stiffness);
 }
 
 }  // namespace eulastic

@@ -21,9 +21,9 @@ PetscErrorCode Solver::predict(double dt) {
     step.force_time += 0.5 * dt;
     if (now_.dt > 0) step.weights = {1 + 0.5 * dt / now_.dt, -0.5 * dt / now_.dt};  // Adams-Bashforth 2
   }
-  if (rigid_impulse_) rigid_impulse_->begin(now_.time, step.force_time, now_.velocity);
+  if (rigid_impulse_) rigid_impulse_->begin(now_.time, dt, step.force_time, now_.velocity);
   PetscCall(spec_.explicit_predictor() ? predict_explicitly(fluid, step) : predict_in_stages(fluid, step));
-  if (rigid_impulse_) rigid_impulse_->add_prediction(dt, now_.velocity, velocity_star_);
+  if (rigid_impulse_) rigid_impulse_->add_prediction(now_.velocity, velocity_star_);
   if (rigid_) impose_rigid_motion(*domain_, rigid_->faces(), now_.time + dt, velocity_star_);
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,5 @@
 // Solver: rigid bodies: where they are, their part in the projection, and what the fluid exerts on them.
 #include "base/events.hpp"
-#include "physics/momentum.hpp"
-#include "physics/species_force.hpp"
-#include "physics/viscous_stress.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "solver/solver.hpp"
 
@@ -58,10 +55,10 @@ void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, 
 // From the state alone, until a step says more.
 PetscErrorCode Solver::start_rigid_loads() {
   PetscFunctionBeginUser;
-  if (!rigid_ || rigid_->travel()) PetscFunctionReturn(0);
+  if (!rigid_) PetscFunctionReturn(0);
   PetscCall(rigid_->measure_gaps(now_.phases));
   rigid_impulse_ = std::make_unique<RigidImpulse>(*domain_, rigid_->faces(), spec_.fluid);
-  rigid_impulse_->begin(now_.time, now_.time, now_.velocity);
+  rigid_impulse_->begin(now_.time, 0, now_.time, now_.velocity);
   rigid_impulse_->set_pressure(now_.pressure);
   PetscFunctionReturn(0);
 }
@@ -75,68 +72,19 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscFunctionBeginUser;
   loads->clear();
   if (!rigid_) PetscFunctionReturn(0);
-  if (rigid_->travel()) {
-    PetscCall(travelling_loads(loads));
-    PetscFunctionReturn(0);
-  }
-  if (rigid_loads_step_ != now_.step) PetscCall(rigid_impulse_->measure(now_.time, now_.velocity, &rigid_loads_));
+  if (rigid_loads_step_ != now_.step) PetscCall(rigid_impulse_->measure(&rigid_loads_));
   rigid_loads_step_ = now_.step;
   *loads = rigid_loads_;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::travelling_loads(std::vector<RigidLoad> *loads) {
-  PetscFunctionBeginUser;
-  const std::vector<Phase> *phases = nullptr;
-  PetscCall(phases_now(&phases));
-  Fluid fluid = spec_.fluid;
-  fluid.inertia = false;  // nothing passes a surface, but where it moves much the faces around it
-  const Real3 force = fluid.body_force.at(now_.time);
-  const FieldBlock *viscosity = nullptr;
-  PetscCall(viscosity_now(&viscosity));
-  if (viscosity) fluid.viscosity = 0;
-  const MomentumStep step{now_.time, now_.dt, speed_scale(now_.dt > 0 ? now_.dt : 1), {}};
-  FieldBlock none, no_pressure(*domain_, 1);
-  PetscCall(rigid_->place(now_.time, now_.time));
-  WorkSpace::Lease rate;
-  PetscCall(work_->take("loads on rigid bodies", domain_->dimension(), &rate));
-  PetscCall(momentum_rate(*domain_, fluid, step, now_.velocity, no_pressure, *phases, none, rate.fields()));
-  add_species_forces(*domain_, *phases, now_.time, 1, rate.fields());
-  if (viscosity) PetscCall(add_viscous_force(*domain_, viscosity_, 1, now_.velocity, rate.fields()));
-  PetscCall(measure_rigid_loads(*domain_, rigid_->faces(), spec_.fluid, now_.time, false, now_.velocity, no_pressure,
-                                rate.fields(), force, loads));
-  // Pressure is that of another time, when the bodies were elsewhere.
-  const double time = now_.time - (spec_.staggered() ? 0.5 * now_.dt : 0);
-  Fluid alone = spec_.fluid;
-  alone.viscosity = 0;
-  alone.inertia = false;
-  alone.body_force = {};
-  std::vector<RigidLoad> of_pressure;
-  PetscCall(rigid_->place(time, time));
-  PetscCall(momentum_rate(*domain_, alone, step, now_.velocity, now_.pressure, {}, none, rate.fields()));
-  PetscCall(measure_rigid_loads(*domain_, rigid_->faces(), alone, time, true, now_.velocity, now_.pressure,
-                                rate.fields(), {}, &of_pressure));
-  for (std::size_t b = 0; b < loads->size(); ++b) {
-    RigidLoad &load = (*loads)[b];
-    for (int d = 0; d < 3; ++d) {
-      load.force[d] += of_pressure[b].force[d];
-      load.torque[d] += of_pressure[b].torque[d];
-    }
-    load.power += of_pressure[b].power;
-  }
-  PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::add_rigid_dissipation(double *dissipation) {
   PetscFunctionBeginUser;
   if (!rigid_) PetscFunctionReturn(0);
-  if (rigid_->travel()) PetscCall(rigid_->place(now_.time, now_.time));
   double beside_surfaces = 0;
   PetscCall(
       measure_rigid_dissipation(*domain_, rigid_->faces(), spec_.fluid, now_.time, now_.velocity, &beside_surfaces));
   *dissipation += beside_surfaces;
-  PetscCall(move_rigid(now_.time, now_.dt));  // as if nobody had looked
   PetscFunctionReturn(0);
 }
 

@@ -23,7 +23,7 @@ int Solver::work_fields(const Method &method, int dimension, const Parts &parts)
                        (parts.rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
   const int forces = parts.surface_tension ? SurfaceTension::work_fields : 0;
   const int membranes = parts.membranes ? MembraneTransport::work_fields : 0;
-  const int momentum = (method.explicit_predictor() ? (parts.rigid ? dimension : 0) : 2 * dimension) + forces;
+  const int momentum = (method.explicit_predictor() ? 0 : 2 * dimension) + forces;
   const int tensor = parts.bodies && method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
   const int interface = parts.bodies && method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0;
   return std::max({pressure, momentum, membranes, tensor, interface});
@@ -170,7 +170,9 @@ EvolveRule Solver::evolve_rule(const Material &material) const {
   const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
   if (!spec_.staggered() && !edges) rule.reach = 1;
   if (!reset && spec_.interface == InterfaceScheme::weno5) rule.stressed = -1e300;  // smeared everywhere, and below 0
-  if (!reset && material.viscosity > 0) rule.viscosity_excess = material.viscosity / spec_.fluid.viscosity - 1;
+  // In cut cells B of a free body follows the velocity of the mixture, and is not that of the solid alone.
+  const bool alone = linear || material.viscosity < spec_.fluid.viscosity;
+  if (!reset && material.viscosity > 0 && alone) rule.viscosity_excess = material.viscosity / spec_.fluid.viscosity - 1;
   return rule;
 }
 
@@ -271,8 +273,7 @@ PetscErrorCode Solver::project(double dt) {
   fill_ghosts_of_increment(*domain_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
-  if (obstacles_ && !rigid_->travel() && spec_.staggered())
-    PetscCall(obstacles_->spread(expects_pressure() ? 1 : 0.5, divergence));
+  if (obstacles_ && spec_.staggered()) PetscCall(obstacles_->spread(expects_pressure() ? 1 : 0.5, divergence));
   if (rigid_impulse_) rigid_impulse_->set_pressure(now_.pressure);
   if (rigid_impulse_ && !pressure_solver_->formula())
     rigid_impulse_->add_increment(increment.fields(), obstacles_ != nullptr);

@@ -42,6 +42,9 @@ public:
   };
   /// Fields of the work space that the method needs for it.
   static int work_fields(const Method &method, int dimension, const Parts &parts);
+  /// Whether a step begins with the pressure expected in its middle, rather than with that of the last one. `travel`:
+  /// rigid bodies do.
+  static bool expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel);
   /// Allocates velocity and pressure on `grid` (all zero) and the work space of the method.
   PetscErrorCode create(const Domain &domain, const SolverSpec &spec);
 
@@ -145,7 +148,6 @@ private:
     double uniform = 0, local = 0;
   };
   Rotation rotation() const;
-  /// Whether a step begins with the pressure expected in its middle, rather than with that of the last one.
   bool expects_pressure() const;
   void expect_pressure(double dt);
   EvolveRule evolve_rule(const Material &material) const;
@@ -161,7 +163,6 @@ private:
   /// middle.
   PetscErrorCode move_rigid(double time, double dt);
   PetscErrorCode start_rigid_loads();
-  PetscErrorCode travelling_loads(std::vector<RigidLoad> *loads);
   /// phi and labels of phases of rigid bodies that travel.
   PetscErrorCode fill_rigid(double time, std::vector<Phase> *phases);
   /// After correct_velocity(): cut faces have their part of the increment, those inside rigid bodies their velocity.
@@ -208,7 +209,7 @@ private:
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies
-  std::unique_ptr<RigidImpulse> rigid_impulse_;      ///< null where nothing is rigid, or something travels
+  std::unique_ptr<RigidImpulse> rigid_impulse_;      ///< null where nothing is rigid
   std::vector<RigidLoad> rigid_loads_;               ///< of a step, if rigid_impulse_
   std::int64_t rigid_loads_step_ = -1;
   ObstacleSolver *obstacles_ = nullptr;  ///< pressure_solver_, if it sees them

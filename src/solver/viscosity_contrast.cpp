@@ -59,12 +59,15 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   PetscFunctionReturn(0);
 }
 
-bool Solver::expects_pressure() const {
-  return spec_.staggered() && spec_.viscous == ViscousScheme::rkl && contrast({}).settles();
+bool Solver::expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
+  return method.staggered() && method.viscous == ViscousScheme::rkl &&
+         (contrast.exists() ? contrast.settles() : travel);
 }
 
-// What of the pressure is wrong makes a flow only where viscosity varies, and there it takes steps to settle: that of
-// the last step would leave the velocity behind by a few (docs/method.md, section 16).
+bool Solver::expects_pressure() const { return expects_pressure(spec_, contrast({}), rigid_ && rigid_->travel()); }
+
+// What of the pressure is wrong makes a flow only where viscosity varies or beside bodies, and there it takes steps to
+// settle: that of the last step would leave the velocity behind by a few (docs/method.md, section 16).
 void Solver::expect_pressure(double dt) {
   const double interval = now_.dt > 0 ? 0.5 * (now_.dt + dt) : 0;
   const double ratio = now_.pressure_interval > 0 ? interval / now_.pressure_interval : 0;
@@ -87,7 +90,7 @@ void Solver::expect_pressure(double dt) {
 // contrast.
 Solver::Rotation Solver::rotation() const {
   if (!spec_.staggered()) return {};
-  if (!viscosity_) return {0.5 * spec_.fluid.kinematic_viscosity(), 0};
+  if (!viscosity_) return {(expects_pressure() ? 1 : 0.5) * spec_.fluid.kinematic_viscosity(), 0};
   const ViscosityContrast range = contrast({});
   const double whole = domain_->dimension() == 3 ? 4. / 3 : 1;
   if (expects_pressure()) return {whole * range.least / spec_.fluid.density, 0};

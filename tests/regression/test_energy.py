@@ -63,6 +63,15 @@ class Budget(SceneCase):
 
 
 class MadeEnergy(Restart):
+    def test_beside_a_rigid_body_that_travels_it_stops_too(self):
+        species = CAPSULE.index("-species") + 1
+        ball = ("-ball_law rigid -ball_shape sphere -ball_radius .8 -ball_centre 2.5,3,0 -ball_velocity .1,0,0 -ball_velocity_frequency 5 "
+                "-capsule_centre 2.5,3,2.5 -time_end 2 -series_interval .02 -output_dir beside").split()
+        result = self.call(*CAPSULE[:species], "capsule,ball", *CAPSULE[species + 1:], *ball)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("the run has made energy of its own, 0.3", result.stderr)
+        self.assertEqual(verdicts(self.summary("beside"))["energy"], "do not trust")
+
     def test_a_driven_run_that_makes_energy_stops(self):
         result = self.call(*CAPSULE, "-time_end", "2", "-series_interval", ".02", "-output_dir", "run")
         self.assertEqual(result.returncode, 3, result.stderr)
