@@ -115,17 +115,18 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
+// A capacity that is 0, or drained by nothing, holds no pressure of its own: the limits of small ones.
 std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
   const auto &[first, capacity, second] = spec.windkessel;
-  *load = {spec.resistance, 0, 0, 0};
-  if (spec.windkessel == Real3{})
-    return spec.windkessel_start == 0
-               ? ""
-               : name + "_windkessel_start: there is no Windkessel; accepted: 0, or with " + name + "_windkessel";
-  if (spec.resistance > 0) return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
-  if (!(capacity > 0 && second > 0))
-    return name + "_windkessel: capacity and second resistance must be > 0; accepted: R,C,R, or 0,0,0";
-  *load = {first, capacity, second, spec.windkessel_start};
+  const bool holds = capacity > 0 && second > 0;
+  if (!holds && spec.windkessel_start != 0)
+    return name + "_windkessel_start: there is no capacity that a resistance drains; accepted: 0, or with both in " +
+           name + "_windkessel";
+  if (spec.resistance > 0 && spec.windkessel != Real3{})
+    return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
+  *load = {spec.resistance + first, 0, 0, 0};
+  if (holds) *load = {first, capacity, second, spec.windkessel_start};
+  if (capacity == 0) load->resistance += second;
   return {};
 }
 

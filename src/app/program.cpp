@@ -4,6 +4,7 @@
 #include "app/overlap_warning.hpp"
 #include "app/run.hpp"
 #include "app/scene_warnings.hpp"
+#include "app/wall_distance_warning.hpp"
 #include "base/events.hpp"
 #include "base/message_keeper.hpp"
 #include "base/one_line.hpp"
@@ -24,13 +25,15 @@ void print_error(const std::string &message) {
 // Prints the answer of -help, -check_only or -print_options, or fills `refusal`.
 PetscErrorCode print_answer(const ParseResult &parsed, int ranks, std::string *refusal) {
   PetscFunctionBeginUser;
-  std::string text = parsed.message, overlap;
+  std::string text = parsed.message, overlap, near_wall;
   if (text.empty() && parsed.config.print_options) text = options_text(parsed);
   if (text.empty()) {
     text = check_report(parsed.config, ranks);
     PetscCall(find_overlap(run_communicator(), parsed.config, &overlap, refusal));
     if (!refusal->empty()) PetscFunctionReturn(0);
-    if (!overlap.empty()) text += "warning: " + overlap + "\n";
+    PetscCall(find_membranes_near_walls(run_communicator(), parsed.config, &near_wall));
+    for (const std::string &warning : {overlap, near_wall})
+      if (!warning.empty()) text += "warning: " + warning + "\n";
     for (const std::string &warning : parsed.warnings) text += "warning: " + one_line(warning) + "\n";
     for (const std::string &warning : scene_warnings(parsed.config)) text += "warning: " + warning + "\n";
   }

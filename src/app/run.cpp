@@ -13,6 +13,7 @@
 #include "app/signals.hpp"
 #include "app/time_step_control.hpp"
 #include "app/verdict.hpp"
+#include "app/wall_distance_warning.hpp"
 #include "base/events.hpp"
 #include "base/one_line.hpp"
 #include "base/progress.hpp"
@@ -74,8 +75,10 @@ std::string thread_warning(int threads) {
 PetscErrorCode print_warnings(const Config &config, const std::string &overlap, const Run &run) {
   PetscFunctionBeginUser;
   const MPI_Comm comm = run.solver.domain().comm();
-  std::string unresolved;
+  std::string unresolved, near_wall;
   print_warning(comm, overlap);
+  PetscCall(find_membranes_near_walls(comm, config, &near_wall));
+  print_warning(comm, near_wall);
   PetscCall(run.outputs.unresolved_bodies(&unresolved));
   print_warning(comm, unresolved);
   for (const std::string &warning : scene_warnings(config)) print_warning(comm, warning);

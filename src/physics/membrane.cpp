@@ -14,7 +14,8 @@ namespace {
 using kernels::Tensor;
 using kernels::Vector;
 
-constexpr double doubtful = 2;  // ratio of the traces of B_s of markers and grid
+constexpr double doubtful = 2;         // ratio of the traces of B_s of markers and grid
+constexpr double area_doubtful = 0.5;  // energy of the area that markers may have more than the grid, in G_s
 
 template <int Dim>
 struct Local {
@@ -206,31 +207,37 @@ double MembraneTransport::least_area_squared(const Phase &phase) {
 
 // The strain of the grid comes nearer to that of the markers with every cell that the surface passes, as what fades
 // does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
-// tell of something else altogether lie where a quadratic is not determined.
+// tell of something else altogether lie where a quadratic is not determined, or have been carried by a flow that the
+// grid does not resolve, as at an edge that is pressed to a wall.
 void MembraneTransport::recall(double dt, const FieldBlock &velocity,
                                const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase) {
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
       const SurfaceCells::Cell &cell = surface_.all()[strain.cell];
-      double told = 0, known = 0, passed = 0;
-      for (int a = 0; a < dim; ++a) {
-        told += strain.B[a];
-        known += phase->tensor.field[a].origin[cell.at];
-      }
-      if (!(told < doubtful * known && known < doubtful * told)) continue;
+      FieldBlock &tensor = phase->tensor.field;
+      Tensor<dim> found;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b) found[a][b] = strain.B[kernels::position<dim>(a, b)];
+      const kernels::SurfaceStrain told = kernels::surface_strain<dim>(found);
+      const kernels::SurfaceStrain known = kernels::surface_strain<dim>(tensor_at<dim>(tensor, cell.at));
+      const kernels::Membrane &law = phase->material.membrane;
+      const double more = kernels::area_energy(law, told) - kernels::area_energy(law, known);
+      if (!(told.trace < doubtful * known.trace && known.trace < doubtful * told.trace)) continue;
+      if (!(more < area_doubtful * law.shear_modulus)) continue;
+      double passed = 0;
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
                   domain_->spacing()[d];
       const double share = std::min(passed, 1.0);
-      for (int f = 0; f < phase->tensor.field.count(); ++f) {
-        double &B = phase->tensor.field[f].origin[cell.at];
+      for (int f = 0; f < tensor.count(); ++f) {
+        double &B = tensor[f].origin[cell.at];
         B = kernels::fma(share, strain.B[f] - B, B);
       }
-      Tensor<dim> value = tensor_at<dim>(phase->tensor.field, cell.at);
+      Tensor<dim> value = tensor_at<dim>(tensor, cell.at);
       if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
       ++unresolved_;
-      set_tensor<dim>(phase->tensor.field, cell.at, value);
+      set_tensor<dim>(tensor, cell.at, value);
     }
   };
   if (domain_->dimension() == 2)

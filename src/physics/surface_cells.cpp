@@ -16,7 +16,10 @@ namespace {
 constexpr double variance = 1.15;  // of filter and cell, in h^2; filtered once more: 1 more
 constexpr double solid = 1e-5;     // a body's own cells have more, as labels do
 constexpr double reach = 0.9;      // of the nearest cells, in cells across the surface
-constexpr double far = 4;          // levels are cut here, where the filter ends
+// Of delta times its width in a nearest cell: half of what it is at `reach`. Between two sides of a body that are less
+// than two cells apart their slopes cancel, and the normal is that of neither.
+constexpr double least_slope = 0.14;
+constexpr double far = 4;  // levels are cut here, where the filter ends
 
 // The level of the surface itself: a filter moves a surface whose curvatures add up to kappa by half its variance times
 // kappa, twice the filter accordingly further. far - that, so that 0 is far outside.
@@ -94,13 +97,12 @@ void SurfaceCells::describe(const FieldBlock &fields, Cell *described) const {
 // Levels are nearly linear: a quadratic through three along each direction.
 double SurfaceCells::distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const {
   const ConstView levels = fields[level];
-  double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0, width = 0;
+  double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0;
   for (int d = 0; d < box_->dimension(); ++d) {
-    const double o = offset[d], step = cell.normal[d] * box_->spacing()[d];
+    const double o = offset[d];
     weight[d][0] = 0.5 * o * (o - 1);
     weight[d][1] = 1 - o * o;
     weight[d][2] = 0.5 * o * (o + 1);
-    width += variance * step * step;
   }
   const int deep = box_->dimension() == 3 ? 1 : 0;
   for (int k = -deep; k <= deep; ++k)
@@ -108,7 +110,17 @@ double SurfaceCells::distance_at(const FieldBlock &fields, const Cell &cell, con
       for (int i = -1; i <= 1; ++i)
         x += weight[0][i + 1] * weight[1][j + 1] * weight[2][k + 1] *
              (far - levels.origin[cell.at + i + j * levels.sy + k * levels.sz]);
-  return x * __builtin_sqrt(width);
+  return x * width(cell.normal);
+}
+
+// Of delta.
+double SurfaceCells::width(const Real3 &normal) const {
+  double square = 0;
+  for (int d = 0; d < box_->dimension(); ++d) {
+    const double step = normal[d] * box_->spacing()[d];
+    square += variance * step * step;
+  }
+  return __builtin_sqrt(square);
 }
 
 // Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
@@ -222,8 +234,8 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
     });
   };
   describe_from(0);
-  cells_.erase(std::remove_if(cells_.begin(), cells_.end(), [](const Cell &cell) { return !(cell.delta > 0); }),
-               cells_.end());
+  const auto is_between_sides = [this](const Cell &cell) { return !(cell.delta * width(cell.normal) > least_slope); };
+  cells_.erase(std::remove_if(cells_.begin(), cells_.end(), is_between_sides), cells_.end());
   find_layers(phase);
   describe_from(nearest());
   scope.flops(double(phase.rows.cells()) * (box_->dimension() == 2 ? 90 : 270));

@@ -58,6 +58,7 @@ private:
   void find_nearest(const Phase &phase, ConstView levels);
   void find_layers(const Phase &phase);
   void describe(const FieldBlock &fields, Cell *cell) const;
+  double width(const Real3 &normal) const;
   PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
 
   const Box *box_;

@@ -182,6 +182,24 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stderr.startswith(f"eulastic: warning: {warning}"), bool(warning), done.stderr)
 
+    def test_membranes_nearer_to_a_wall_than_a_cell_are_a_warning(self):
+        """Solid sides of the box and rigid bodies that rest; a cell is .25."""
+        scene = ("-grid_cells 24,16,16 -grid_length 6,4,4 -fluid_viscosity 1 -time_end 1 -time_steps_max 1 -output_overwrite "
+                 "-species a -a_shape sphere -a_radius .8 -a_law membrane -a_surface_shear_modulus 1 ").split()
+        symmetry = "-boundary_ymin symmetry -boundary_ymax wall -a_centre"
+        for walls, near, far in ((symmetry, "3,3,2", "3,.9,2"), ("-boundary_y wall -a_centre", "3,1,2", "3,1.06,2"),
+                                 ("-species a,v -v_law rigid -v_shape tube -v_radius 1.9 -v_axis x -a_centre", "3,2.9,2", "3,2.8,2"),
+                                 ("-species a,v -v_law rigid -v_shape slab -v_axis y -v_interval 0,1 -a_centre", "3,2,2", "3,2.1,2"),
+                                 ("-species a,v -v_law rigid -v_shape sphere -v_radius .5 -v_centre 1,2,2 -a_centre", "2.5,2,2", "2.6,2,2"),
+                                 ("-species a,v -v_shape slab -v_axis y -v_interval 0,1 -v_shear_modulus 1 -a_centre", "", "3,2,2")):
+            words = [word for word in scene if walls[:8] != "-species" or word not in ("-species", "a")]
+            for centre, ranks in ((near, 1), (near, 2), (far, 1)):
+                for only in (["-check_only"], []) if centre else ():
+                    done = self.run_program(*words, *walls.split(), centre, *only, ranks=ranks if ranks > 1 else 0)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual("the membrane of body 1 (a) starts less than a cell, 0.25, from a wall" in done.stdout + done.stderr,
+                                     centre == near, (walls, centre, only))
+
     def test_viscosities_far_from_the_fluids_are_a_warning(self):
         scene = ("-grid_cells 16,16,1 -grid_length 1,1,1 -boundary_y periodic -fluid_viscosity .5 -time_end 1 "
                  "-time_steps_max 1 -output_overwrite -species a -a_shape ellipsoid -a_semi_axes .3,.3,1 -a_shear_modulus 1 -a_viscosity").split()

@@ -22,6 +22,15 @@ LYING = ("-grid_cells 48,32,1 -grid_length 24,16,.5 -boundary_y wall -fluid_visc
          "-rbc_law red_cell -rbc_diameter 8 -rbc_axis y -rbc_centre 12,1.32,.25 -rbc_body_force 0,-4e-3,0 -time_end 600 "
          "-series_interval 10 -snapshot_interval 0").split()
 
+# One that is pressed and pulled along a wall.
+PRESSED = ("-grid_cells 32,16,1 -grid_length 16,8,.5 -boundary_y wall -fluid_viscosity 1.2 -wall_ymax_velocity .2,0,0 -species rbc "
+           "-rbc_law red_cell -rbc_diameter 8 -rbc_axis y -rbc_centre 8,1.85,.25 -rbc_surface_shear_modulus .1 "
+           "-rbc_bending_modulus .004 -rbc_body_force .02,-.04,0 -time_end 5300 -series_interval 10 -snapshot_interval 0").split()
+
+# Red cells that lie over each other between plates whose shear stress is some 5 times their shear modulus over a length.
+LAYERS = ("-grid_cells 24,20,18 -grid_length 12,10,9 -boundary_y wall -fluid_viscosity 1.2 -body_force 8e-4,0,0 -species rbc "
+          "-rbc_law red_cell -rbc_diameter 8 -snapshot_interval 0").split()
+
 
 class Membranes(SceneCase):
     def test_orientation_turns_the_stretch(self):
@@ -83,6 +92,21 @@ class Membranes(SceneCase):
         self.assertGreater(series.energy_lost_elastic.min(), -0.02)
         self.assertLess(series.energy_lost_elastic[-1], 0.004 * run.summary["energy_dissipated"])
 
+    def test_layers_make_no_energy(self):
+        """Markers that are carried past the edge of a cell at a wall, which the grid does not resolve, tell nothing."""
+        cells = self.room / "layers.csv"
+        cells.write_text("6,1.813,4.5\n0,5,4.5\n6,8.187,4.5\n")
+        run = self.run_program("layers", *LAYERS, *f"-rbc_placement list -rbc_positions {cells} -time_end 2500 -series_interval 20".split())
+        self.assertGreater(run.bodies.largest_stretch[-1].max(), 1.4)
+        self.assertLess(run.summary["energy_made_share"], 0.01)
+
+    def test_sides_less_than_two_cells_apart_are_told_apart(self):
+        """Cells half way between them belong to neither: wherever the grid lies, a membrane is stretched alike."""
+        stretch = [self.run_program(f"at_{y}", *LAYERS, *f"-rbc_centre 6,{y},4.5 -time_end 100".split()).bodies.largest_stretch[-1, 0]
+                   for y in (5, 5.25)]
+        self.assertLess(max(stretch), 1.04)
+        self.assertLess(abs(stretch[1] - stretch[0]), 0.01)
+
     def test_one_that_lies_on_a_wall_slides(self):
         run = self.run_program("lying", *LYING)
         self.slides(run)
@@ -91,6 +115,18 @@ class Membranes(SceneCase):
         from_wall = markers[:, 4] + 0.5 + markers[:, 7]  # row of the cell, and place in it
         self.assertGreater(len(markers), 40)
         self.assertGreater(from_wall.min(), 0.5)
+
+    def test_one_that_is_pressed_along_a_wall_goes_on(self):
+        """For 50 of its lengths, drawn along by half the force that presses it, on a film that carries it."""
+        run = self.run_program("pressed", *PRESSED)
+        bodies = run.bodies
+        self.assertGreater(bodies.centroid[-1, 0, 0] - bodies.centroid[0, 0, 0], 50 * 8)
+        half = bodies.time > 2500
+        self.assertLess(bodies.centroid[half, 0, 1].max(), 3.4)  # three quarters of its radius
+        way = numpy.polyfit(bodies.time[half], bodies.centroid[half, 0, 0], 1)  # at the same speed all the time
+        self.assertLess(abs(numpy.polyval(way, bodies.time[half]) - bodies.centroid[half, 0, 0]).max(), 8)
+        self.assertLess(bodies.largest_stretch.max(), 1.2)
+        self.assertLess(run.summary["energy_made_share"], 0.01)
 
     def test_a_wall_above_is_one_below(self):
         """Mirrored scene, mirrored result."""

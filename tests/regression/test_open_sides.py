@@ -312,6 +312,7 @@ class OpenSides(SceneCase):
                  "-series_interval 1e-9 -pressure_ymax_resistance 5").split()
         loads = {"resistance": "-pressure_xmax_resistance 5", "open": "-pressure_xmax_value 0",
                  **{f"small{n}": f"-pressure_xmax_windkessel 0,1e-{n},5" for n in (12, 6, 4)},
+                 "no_capacity": "-pressure_xmax_windkessel 2,0,3", "no_drain": "-pressure_xmax_windkessel 0,1,0",
                  "large": "-pressure_xmax_windkessel 0,1e6,5", "charged": "-pressure_xmax_windkessel 0,1e6,5 "
                  "-pressure_xmax_windkessel_start 3", "given": "-pressure_xmax_value 3",
                  "closed": "-pressure_xmax_windkessel 0,1e-12,1e12", "stiff": "-pressure_xmax_windkessel 1e6,1e-6,1e6"}
@@ -323,6 +324,8 @@ class OpenSides(SceneCase):
             self.assertLess(abs(flow[name][-1] - flow[same][-1]), 2e-3, name)
             self.assertLess(abs(numpy.diff(flow[name])).max(), 2 * abs(numpy.diff(flow[same])).max() + 1e-4, name)
             self.assertLess(abs(pressure[name][-1] - pressure[same][-1]), .05, name)
+        for name, same in (("no_capacity", "resistance"), ("no_drain", "open")):
+            numpy.testing.assert_array_equal(flow[name], flow[same], name)
         for name in ("closed", "stiff"):
             self.assertLess(abs(flow[name]).max(), 2e-5, name)
 

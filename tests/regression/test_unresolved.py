@@ -74,14 +74,14 @@ class Unresolved(unittest.TestCase):
 
     def test_membranes(self):
         """Cells with both sides less than a cell apart."""
-        options = [ROOT / "options/channel_red_cells.opts", "-grid_cells", "20,20,20", "-body_force", "4e-3,0,0",
+        options = [ROOT / "options/channel_red_cells.opts", "-grid_cells", "16,16,16", "-body_force", "1e-2,0,0",
                    "-series_interval", "75", "-snapshot_interval", "0"]
         last = [*options, "-time_steps_max", "72"]
         ended = self.run_in_ways({"one": (last, {}), "ranks": (last, {"ranks": 3}), "whole": (last, {"skip_nothing": True}),
                                   "half": ([*options, "-time_steps_max", "70"], {})})
         one, said = ended["one"]
         self.assertGreater(one["strain_forgotten"], 0)
-        self.assertRegex(said, r"\neulastic: warning: t = [^\n]*half of a membrane's area gone[^\n]*\n\Z")
+        self.assertEqual(len(re.findall(r"\neulastic: warning: t = [^\n]*half of a membrane's area gone", said)), 1)
         self.assertGreater(ended["half"][0]["strain_forgotten"], 0)
         again, _ = self.run_scene(*last, "-restart", self.room / "half", directory="rest")
         for other in ended["ranks"][0], ended["whole"][0], again:

@@ -47,8 +47,8 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table " + files / "short_table",
         {"-pressure_xmax_table: ", "short_table goes from", "-pressure_xmax_period"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2",
-        {"-pressure_xmax_windkessel: capacity"}},
+       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2 -pressure_xmax_windkessel_start 1",
+        {"-pressure_xmax_windkessel_start: there is no capacity"}},
        {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
         {"-pressure_xmax_resistance: given beside"}}});
   EXPECT_EQ(parse_line(scene + " " + way).error, "");
