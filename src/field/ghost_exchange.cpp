@@ -9,23 +9,6 @@
 namespace eulastic {
 namespace {
 
-// A point along one direction: its local index here, and at the place among the ranks that owns it.
-struct Point {
-  int here, place, there;
-};
-
-// The points of this rank along d with `ghosts` layers, but those behind walls.
-std::vector<Point> points_along(const Domain &domain, int d, int ghosts) {
-  const int n = domain.domain_cells()[d], begin = domain.layout().begin[d], cells = domain.cells()[d];
-  std::vector<Point> points;
-  for (int i = -ghosts; i < cells + ghosts; ++i) {
-    if (domain.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
-    const int image = domain.image(d, begin + i), place = domain.owner_along(d, image);
-    points.push_back({i, place, image - domain.first_cell(d, place)});
-  }
-  return points;
-}
-
 // Offset in a field of the first point in memory, where its first row begins.
 std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
 
@@ -42,37 +25,162 @@ PetscErrorCode GhostExchange::Unit::make(std::ptrdiff_t values) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf) {
+namespace {
+
+// The point that a local point is, or copies: on which rank, and where in the memory there.
+struct Source {
+  PetscInt rank = -1;  // none: behind a side of the domain
+  PetscInt offset = 0, field_size = 0, sy = 0, sz = 0;
+};
+
+class SourceFinder {
+public:
+  explicit SourceFinder(const Domain &domain) : domain_(domain), sources_(domain.layout().size) {}
+  PetscErrorCode find() {
+    MPI_Datatype type;
+    PetscFunctionBeginUser;
+    PetscCallMPI(MPI_Type_contiguous(sizeof(Source) / sizeof(PetscInt), MPIU_INT, &type));
+    PetscCallMPI(MPI_Type_commit(&type));
+    PetscCall(find_near(type));
+    if (width_ < domain_.layout().ghosts[0]) PetscCall(find_far(type));
+    PetscCallMPI(MPI_Type_free(&type));
+    PetscFunctionReturn(0);
+  }
+  const Source &at(const Int3 &point) const { return sources_[offset(point)]; }
+  bool is_owned(const Int3 &point) const {
+    for (int d = 0; d < 3; ++d)
+      if (point[d] < 0 || point[d] >= points_[d]) return false;
+    return true;
+  }
+
+private:
+  std::ptrdiff_t offset(const Int3 &p) const { return domain_.layout().offset(p[0], p[1], p[2]); }
+
+  // Within the stencil of the DMDA: by its scatter from owned to local points.
+  PetscErrorCode find_near(MPI_Datatype type) {
+    const Layout &own = domain_.layout();
+    PetscInt first[3], count[3], ghost[3], width[3], roots, leaves;
+    VecScatter scatter;
+    const PetscInt *places;
+    PetscFunctionBeginUser;
+    PetscCall(DMDAGetCorners(domain_.dm(), &first[0], &first[1], &first[2], &count[0], &count[1], &count[2]));
+    PetscCall(DMDAGetGhostCorners(domain_.dm(), &ghost[0], &ghost[1], &ghost[2], &width[0], &width[1], &width[2]));
+    PetscCall(DMDAGetStencilWidth(domain_.dm(), &width_));
+    PetscCall(DMDAGetScatter(domain_.dm(), &scatter, nullptr));
+    PetscCall(PetscSFGetGraph(scatter, &roots, &leaves, &places, nullptr));
+    for (int d = 0; d < 3; ++d) points_[d] = static_cast<int>(count[d]);
+    std::vector<Source> mine, found(static_cast<std::size_t>(width[0]) * width[1] * width[2]);
+    mine.reserve(roots);
+    const auto narrow = [](std::ptrdiff_t n) { return static_cast<PetscInt>(n); };
+    for (int k = 0; k < points_[2]; ++k)
+      for (int j = 0; j < points_[1]; ++j)
+        for (int i = 0; i < points_[0]; ++i)
+          mine.push_back(
+              {domain_.rank(), narrow(own.offset(i, j, k)), narrow(own.size), narrow(own.sy), narrow(own.sz)});
+    PetscCall(PetscSFBcastBegin(scatter, type, mine.data(), found.data(), MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(scatter, type, mine.data(), found.data(), MPI_REPLACE));
+    for (PetscInt l = 0; l < leaves; ++l) {
+      const PetscInt place = places ? places[l] : l, row = place / width[0];
+      const PetscInt local[3] = {place % width[0], row % width[1], row / width[1]};
+      Int3 point;
+      for (int d = 0; d < 3; ++d) point[d] = static_cast<int>(ghost[d] + local[d] - first[d]);
+      sources_[offset(point)] = found[place];
+    }
+    PetscFunctionReturn(0);
+  }
+
+  // Further out, where a rank is narrower than the layers of ghosts: the owner of the outermost point that is known
+  // knows those beyond it.
+  PetscErrorCode find_far(MPI_Datatype type) {
+    const Layout &own = domain_.layout();
+    std::vector<PetscInt> leaves;
+    std::vector<PetscSFNode> roots;
+    PetscFunctionBeginUser;
+    for_all([&](const Int3 &point) {
+      Int3 near, beyond;
+      for (int d = 0; d < 3; ++d) {
+        near[d] = std::clamp<int>(point[d], -width_, points_[d] + width_ - 1);
+        beyond[d] = point[d] - near[d];
+      }
+      const Source &source = at(near);
+      if (beyond == Int3{} || source.rank < 0) return;
+      leaves.push_back(static_cast<PetscInt>(offset(point)));
+      roots.push_back({source.rank, source.offset + beyond[0] + beyond[1] * source.sy + beyond[2] * source.sz});
+    });
+    SfHandle sf;
+    PetscCall(PetscSFCreate(domain_.comm(), sf.put()));
+    PetscCall(PetscSFSetGraph(sf.get(), static_cast<PetscInt>(own.size), static_cast<PetscInt>(leaves.size()),
+                              leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
+    PetscCall(PetscSFBcastBegin(sf.get(), type, sources_.data(), sources_.data(), MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf.get(), type, sources_.data(), sources_.data(), MPI_REPLACE));
+    PetscFunctionReturn(0);
+  }
+
+public:
+  // visit(point) for all points in memory: those of the box, and all ghosts.
+  template <class Visit>
+  void for_all(const Visit &visit) const {
+    const Int3 &g = domain_.layout().ghosts;
+    for (int k = -g[2]; k < points_[2] + g[2]; ++k)
+      for (int j = -g[1]; j < points_[1] + g[1]; ++j)
+        for (int i = -g[0]; i < points_[0] + g[0]; ++i) visit({i, j, k});
+  }
+
+private:
+  const Domain &domain_;
+  std::vector<Source> sources_;  // of all points in memory
+  Int3 points_{};                // owned
+  PetscInt width_ = 0;           // of the DMDA's stencil
+};
+
+}  // namespace
+
+PetscErrorCode GhostList::read(const Domain &domain) {
+  SourceFinder finder(domain);
   PetscFunctionBeginUser;
+  PetscCall(finder.find());
+  finder.for_all([&](const Int3 &point) {
+    const Source &source = finder.at(point);
+    if (finder.is_owned(point) || source.rank < 0) return;
+    ghosts.push_back({point, static_cast<int>(source.rank), source.offset});
+    field_size[static_cast<int>(source.rank)] = source.field_size;
+  });
+  PetscFunctionReturn(0);
+}
+
+// Leaves and roots are the values of all fields of a block; pieces of rows, or whole rows where x is not split.
+PetscErrorCode GhostExchange::build_scatter(int width, int fields, const GhostPieces *pieces, PetscSF *sf) {
+  PetscFunctionBeginUser;
+  if (!list_) {
+    list_ = std::make_unique<GhostList>();
+    if (find_) {
+      *list_ = find_();
+    } else {
+      PetscCall(list_->read(*domain_));
+    }
+  }
   const Layout &own = domain_->layout();
   const std::ptrdiff_t unit = pieces ? GhostPieces::cells : by_rows() ? own.sy : 1;
-  std::vector<Point> points[3];
-  for (int d = 0; d < 3; ++d) points[d] = points_along(*domain_, d, std::min(width, own.ghosts[d]));
-  if (pieces) {
-    points[0].clear();
-    for (int m = 0; m < pieces->count(); ++m) points[0].push_back({GhostPieces::cells * m, 0, GhostPieces::cells * m});
-  } else if (by_rows()) {
-    points[0] = {{-own.ghosts[0], 0, -own.ghosts[0]}};
-  }
-  if (domain_->cell_count() == 0) points[2].clear();  // nothing is around no cells
+  const auto wanted = [&](const Int3 &at) {
+    for (int d = pieces || by_rows() ? 1 : 0; d < 3; ++d)
+      if (at[d] < -width || at[d] >= own.cells[d] + width) return false;
+    if (pieces)
+      return at[0] >= 0 && at[0] % GhostPieces::cells == 0 && pieces->holds(at[1], at[2], at[0] / GhostPieces::cells);
+    return !by_rows() || at[0] == 0;
+  };
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  const auto place_in = [&](const Layout &layout, int f, const Int3 &point) {
-    const std::ptrdiff_t offset = layout.offset(point[0], point[1], point[2]) - (pieces ? 0 : first_offset(layout));
-    return static_cast<PetscInt>((f * static_cast<std::ptrdiff_t>(layout.size) + offset) / unit);
+  // The unit with the point at an offset of field f. Fields are whole rows, and all ranks have rows of one length where
+  // units are rows.
+  const auto unit_of = [&](std::ptrdiff_t field_size, int f, std::ptrdiff_t offset) {
+    return static_cast<PetscInt>((f * field_size + offset - (pieces ? 0 : first_offset(own))) / unit);
   };
   for (int f = 0; f < fields; ++f)
-    for (const Point &z : points[2])
-      for (const Point &y : points[1])
-        for (const Point &x : points[0]) {
-          const int rank = domain_->rank_at({x.place, y.place, z.place});
-          const PetscInt leaf = place_in(own, f, {x.here, y.here, z.here}),
-                         root = place_in(domain_->layout_of(rank), f, {x.there, y.there, z.there});
-          if (rank == domain_->rank() && root == leaf) continue;  // owned
-          if (pieces && !pieces->holds(y.here, z.here, x.here / GhostPieces::cells)) continue;
-          leaves.push_back(leaf);
-          roots.push_back({rank, root});
-        }
+    for (const GhostList::Ghost &ghost : list_->ghosts)
+      if (wanted(ghost.at)) {
+        leaves.push_back(unit_of(own.size, f, own.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
+        roots.push_back({ghost.owner, unit_of(list_->field_size.at(ghost.owner), f, ghost.there)});
+      }
   PetscCall(PetscSFCreate(domain_->comm(), sf));
   PetscCall(PetscSFSetFromOptions(*sf));
   PetscInt count;
@@ -89,10 +197,10 @@ PetscErrorCode GhostExchange::bring(const WantedGhosts &wanted,
   PetscFunctionBeginUser;
   FieldBlock &block = *wanted.block;
   const GhostPieces *pieces = wanted.pieces();
-  SfHandle &forest = (pieces ? pieces->forests : forests_)[{wanted.width, block.count()}];
-  if (!forest) PetscCall(make_forest(wanted.width, block.count(), pieces, forest.put()));
+  SfHandle &scatter = (pieces ? pieces->scatters : scatters_)[{wanted.width, block.count()}];
+  if (!scatter) PetscCall(build_scatter(wanted.width, block.count(), pieces, scatter.put()));
   double *first = block.data() + (pieces ? 0 : first_offset(block.layout()));
-  PetscCall(bcast(forest.get(), (pieces ? piece_ : unit_).type, first, first, MPI_REPLACE));
+  PetscCall(bcast(scatter.get(), (pieces ? piece_ : unit_).type, first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 

@@ -1,9 +1,8 @@
-// Ghosts of the local arrays, by PETSc: a PetscSF whose roots are the values a rank owns and whose leaves are its
-// ghosts, across periodic sides too. The grid's DMDA says who owns what.
+// Ghost updates by PETSc: a PetscSF whose roots are the values that a rank owns and whose leaves are ghosts, across
+// periodic sides too. Who owns which ghost is read from the scatter of the DMDA.
 //
 // The fields of a block travel in one message to each neighbour. While x is not split, roots and leaves are whole rows,
-// and the ghosts at their ends are the other end of the same row. Index N of a wall direction (the high wall of
-// staggered fields), which a DMDA does not number, belongs to the owner of N - 1: its values travel like any others.
+// and the ghosts at their ends are the other end of the same row.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,8 +10,11 @@
 #include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace eulastic {
 
@@ -29,9 +31,25 @@ struct WantedGhosts {
   const GhostPieces *pieces() const { return near && rows ? rows->near() : nullptr; }
 };
 
+/// All ghosts of this rank that copy a point, so those that are not behind sides of the domain.
+struct GhostList {
+  struct Ghost {
+    Int3 at;               ///< local indices
+    int owner;             ///< rank of the point that it copies
+    std::ptrdiff_t there;  ///< offset of that point in a field of its owner
+  };
+  std::vector<Ghost> ghosts;
+  std::map<int, std::ptrdiff_t> field_size;  ///< doubles per field of each owner
+
+  /// Reads them from the scatter of the domain's DMDA. Collective.
+  PetscErrorCode read(const Domain &domain);
+};
+
 class GhostExchange {
 public:
   explicit GhostExchange(const Domain &domain) : domain_(&domain) {}
+  /// For a domain without a DMDA, which must say which ghosts it has.
+  GhostExchange(const Domain &domain, std::function<GhostList()> find) : domain_(&domain), find_(std::move(find)) {}
 
   /// Afterwards every ghost within `width` that is not behind a wall is right, on ranks that have cells. In ghost rows
   /// those behind walls of x and further out in x may have changed; all others are not touched.
@@ -55,14 +73,16 @@ private:
     }
   };
   bool by_rows() const { return domain_->processors(0) == 1; }
-  PetscErrorCode make_forest(int width, int fields, const GhostPieces *pieces, PetscSF *sf);
+  PetscErrorCode build_scatter(int width, int fields, const GhostPieces *pieces, PetscSF *sf);
   PetscErrorCode bring(const WantedGhosts &wanted,
                        PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
   const Domain *domain_;
+  std::function<GhostList()> find_;
+  std::unique_ptr<GhostList> list_;  ///< found when it is first needed
   Unit unit_, piece_;
-  std::map<std::pair<int, int>, SfHandle> forests_;  ///< by width and number of fields
+  std::map<std::pair<int, int>, SfHandle> scatters_;  ///< by width and number of fields
 };
 
 }  // namespace eulastic

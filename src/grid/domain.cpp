@@ -158,26 +158,34 @@ PetscErrorCode Domain::create(MPI_Comm comm, const GridSpec &spec) {
   const std::string reason = why_not(spec, ranks);
   PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
   divide(spec, ranks);
-  PetscCall(create_dm(DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));
-  Int3 place;
-  PetscCall(ask_dm(&place));
-  set_box(place);
+  PetscCall(create_dm(true, DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));
+  PetscCall(read_dm());
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Domain::create_dm(DMDAStencilType stencil, int width, DM *dm) const {
+PetscErrorCode Domain::create_cell_dm(DMDAStencilType stencil, int width, DM *dm) const {
+  PetscFunctionBeginUser;
+  PetscCall(create_dm(false, stencil, width, dm));
+  PetscFunctionReturn(0);
+}
+
+// With `high_faces` a direction with boundaries has a point more than cells.
+PetscErrorCode Domain::create_dm(bool high_faces, DMDAStencilType stencil, int width, DM *dm) const {
   PetscFunctionBeginUser;
   std::array<std::vector<PetscInt>, 3> counts;
   std::array<DMBoundaryType, 3> type{};
+  Int3 points = spec_.cells;
   for (int d = 0; d < 3; ++d) {
     for (int p = 0; p < processors(d); ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
+    const bool wall = spec_.is_wall(d), more = wall && high_faces;
     if (d < spec_.dimension()) width = std::min<int>(width, *std::min_element(counts[d].begin(), counts[d].end()));
-    type[d] = spec_.is_wall(d) ? DM_BOUNDARY_NONE : DM_BOUNDARY_PERIODIC;
+    counts[d].back() += more;
+    points[d] += more;
+    type[d] = !wall ? DM_BOUNDARY_PERIODIC : high_faces ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_NONE;
   }
-  const Int3 &n = spec_.cells;
   PetscCall(DMDACreate(comm_, dm));
   PetscCall(DMSetDimension(*dm, spec_.dimension()));
-  PetscCall(DMDASetSizes(*dm, n[0], n[1], n[2]));
+  PetscCall(DMDASetSizes(*dm, points[0], points[1], points[2]));
   PetscCall(DMDASetNumProcs(*dm, processors(0), processors(1), processors(2)));
   PetscCall(DMDASetOwnershipRanges(*dm, counts[0].data(), counts[1].data(), counts[2].data()));
   PetscCall(DMDASetBoundaryType(*dm, type[0], type[1], type[2]));
@@ -189,18 +197,22 @@ PetscErrorCode Domain::create_dm(DMDAStencilType stencil, int width, DM *dm) con
   PetscFunctionReturn(0);
 }
 
-// What each rank owns, and the place of this one.
-PetscErrorCode Domain::ask_dm(Int3 *place) {
+// What each rank owns, and the box of this one.
+PetscErrorCode Domain::read_dm() {
+  const PetscInt *points[3];
+  PetscInt begin[3], count[3];
   PetscFunctionBeginUser;
-  const PetscInt *counts[3];
-  PetscInt begin[3];
-  PetscCall(DMDAGetOwnershipRanges(dm_.get(), &counts[0], &counts[1], &counts[2]));
-  PetscCall(DMDAGetCorners(dm_.get(), &begin[0], &begin[1], &begin[2], nullptr, nullptr, nullptr));
+  PetscCall(DMDAGetOwnershipRanges(dm_.get(), &points[0], &points[1], &points[2]));
+  PetscCall(DMDAGetCorners(dm_.get(), &begin[0], &begin[1], &begin[2], &count[0], &count[1], &count[2]));
+  Int3 first, cells;
   for (int d = 0; d < 3; ++d) {
+    const int N = spec_.cells[d];  // the point N is no cell
     for (int p = 0; p < processors(d); ++p)
-      starts_[d][p + 1] = starts_[d][p] + (counts[d] ? static_cast<int>(counts[d][p]) : 1);
-    (*place)[d] = owner_along(d, static_cast<int>(begin[d]));
+      starts_[d][p + 1] = std::min(N, starts_[d][p] + (points[d] ? static_cast<int>(points[d][p]) : 1));
+    first[d] = static_cast<int>(begin[d]);
+    cells[d] = std::min(N, static_cast<int>(begin[d] + count[d])) - first[d];
   }
+  static_cast<Box &>(*this) = Box(spec_, first, cells, spec_.ghosts);
   PetscFunctionReturn(0);
 }
 

@@ -34,11 +34,13 @@ public:
   /// The largest number of cells of a rank along each direction.
   static Int3 largest_box(const GridSpec &spec, const Int3 &ranks);
 
-  /// The DMDA: one value per cell. Its stencil is a box as wide as there are ghosts, or as the narrowest rank has
-  /// cells. Null for a coarse() domain.
+  /// The DMDA of all fields: one value per point. Its stencil is a box as wide as there are ghosts, or as the narrowest
+  /// rank has cells. A direction with boundaries has N + 1 points, so that the high face is a point like any other, and
+  /// DM_BOUNDARY_GHOSTED. Null for a coarse() domain.
   DM dm() const { return dm_.get(); }
-  /// Another DMDA of the same split: matrices of PETSc's solvers have a column for each point of the stencil.
-  PetscErrorCode create_dm(DMDAStencilType stencil, int width, DM *dm) const;
+  /// A DMDA with one value per cell, of the same split, for matrices: these have a column for each point of the
+  /// stencil.
+  PetscErrorCode create_cell_dm(DMDAStencilType stencil, int width, DM *dm) const;
 
   /// The same domain in fewer cells, for multigrid, without a DMDA. In a direction with fewer cells each rank begins at
   /// half of its first cell, rounded up, so a rank may have no cells. With `everywhere` every rank has all cells.
@@ -68,7 +70,8 @@ public:
 
 private:
   void divide(const GridSpec &spec, int ranks);
-  PetscErrorCode ask_dm(Int3 *place);
+  PetscErrorCode create_dm(bool high_faces, DMDAStencilType stencil, int width, DM *dm) const;
+  PetscErrorCode read_dm();
   Box box_at(const Int3 &place) const;
   void set_box(const Int3 &place) { static_cast<Box &>(*this) = box_at(place); }
 

@@ -33,7 +33,7 @@ public:
   bool hold(const GhostPieces &other) const noexcept;
 
   /// Of GhostExchange, by width and number of fields.
-  mutable std::map<std::pair<int, int>, SfHandle> forests;
+  mutable std::map<std::pair<int, int>, SfHandle> scatters;
 
 private:
   static constexpr int bits = 64;

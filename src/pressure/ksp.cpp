@@ -117,7 +117,7 @@ PetscErrorCode KspSolver::create(const Domain &domain, GhostExchange &exchange) 
   PetscFunctionBeginUser;
   domain_ = &domain;
   exchange_ = &exchange;
-  PetscCall(domain.create_dm(DMDA_STENCIL_STAR, 1, cells_.put()));
+  PetscCall(domain.create_cell_dm(DMDA_STENCIL_STAR, 1, cells_.put()));
   PetscCall(DMDASetInterpolationType(cells_.get(), DMDA_Q0));
   PetscCall(DMCreateGlobalVector(cells_.get(), rhs_.put()));
   PetscCall(VecDuplicate(rhs_.get(), solution_.put()));

@@ -32,10 +32,50 @@ std::vector<double> centres(const std::vector<double> &widths) {
   return centre;
 }
 
+// A point along one direction: its local index here, the position of its owner among the ranks, and its index there.
+struct Point {
+  int here, place, there;
+};
+
+// The points of this rank along d with all its ghosts, but those behind sides of the domain.
+std::vector<Point> points_along(const Domain &domain, int d) {
+  const int n = domain.domain_cells()[d], begin = domain.layout().begin[d], ghosts = domain.layout().ghosts[d];
+  std::vector<Point> points;
+  for (int i = -ghosts; i < domain.cells()[d] + ghosts; ++i) {
+    if (domain.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
+    const int image = domain.image(d, begin + i), place = domain.owner_along(d, image);
+    points.push_back({i, place, image - domain.first_cell(d, place)});
+  }
+  return points;
+}
+
+// The ghosts of a level, on which ranks may have no cells or fewer than layers of ghosts, as a DMDA does not allow.
+GhostList ghosts_of(const Domain &domain) {
+  GhostList list;
+  const Int3 &n = domain.cells();
+  if (domain.cell_count() == 0) return list;
+  const std::vector<Point> x = points_along(domain, 0), y = points_along(domain, 1), z = points_along(domain, 2);
+  for (const Point &k : z)
+    for (const Point &j : y)
+      for (const Point &i : x) {
+        const Int3 at{i.here, j.here, k.here};
+        if (at[0] >= 0 && at[0] < n[0] && at[1] >= 0 && at[1] < n[1] && at[2] >= 0 && at[2] < n[2]) continue;
+        const int owner = domain.rank_at({i.place, j.place, k.place});
+        const Layout theirs = domain.layout_of(owner);
+        if (owner == domain.rank() && at == Int3{i.there, j.there, k.there}) continue;  // N of a direction with sides
+        list.ghosts.push_back({at, owner, theirs.offset(i.there, j.there, k.there)});
+        list.field_size[owner] = theirs.size;
+      }
+  return list;
+}
+
 }  // namespace
 
-MultigridLevel::MultigridLevel(Domain &&grid, const Widths &widths, const Real3 &finest_spacing)
-    : domain_(std::move(grid)), exchange_(domain_), widths_(widths), finest_spacing_(finest_spacing) {
+MultigridLevel::MultigridLevel(Domain &&domain, const Widths &widths, const Real3 &finest_spacing)
+    : domain_(std::move(domain)),
+      exchange_(domain_, [this] { return ghosts_of(domain_); }),
+      widths_(widths),
+      finest_spacing_(finest_spacing) {
   double diagonal = 0;
   for (int d = 0; d < 3; ++d) {
     const std::vector<double> &w = widths_[d];

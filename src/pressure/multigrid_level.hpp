@@ -42,7 +42,7 @@ class MultigridLevel {
 public:
   using Widths = std::array<std::vector<double>, 3>;  ///< of all cells, in units of the finest spacing
 
-  MultigridLevel(Domain &&grid, const Widths &widths, const Real3 &finest_spacing);
+  MultigridLevel(Domain &&domain, const Widths &widths, const Real3 &finest_spacing);
   MultigridLevel(const MultigridLevel &) = delete;
 
   const Domain &domain() const { return domain_; }

@@ -25,7 +25,23 @@ void check(const GridSpec &spec) {
   PetscInt x, y, z, nx, ny, nz;
   ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
   EXPECT_EQ(own.begin, (Int3{int(x), int(y), int(z)}));
-  EXPECT_EQ(own.cells, (Int3{int(nx), int(ny), int(nz)}));
+  // The face on a high side is a point of the DMDA, and belongs to the rank that touches the side.
+  EXPECT_EQ((Int3{int(nx), int(ny), int(nz)}),
+            (Int3{grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)}));
+  PetscInt dimension, points[3], dof, width;
+  DMBoundaryType type[3];
+  DMDAStencilType stencil;
+  ASSERT_EQ(DMDAGetInfo(grid.dm(), &dimension, &points[0], &points[1], &points[2], nullptr, nullptr, nullptr, &dof,
+                        &width, &type[0], &type[1], &type[2], &stencil),
+            0);
+  EXPECT_EQ(dimension, grid.dimension());
+  EXPECT_EQ(dof, 1);
+  EXPECT_EQ(stencil, DMDA_STENCIL_BOX);
+  EXPECT_LE(width, own.ghosts[0]);
+  for (int d = 0; d < grid.dimension(); ++d) {
+    EXPECT_EQ(points[d], spec.cells[d] + grid.is_wall(d));
+    EXPECT_EQ(type[d], grid.is_wall(d) ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_PERIODIC);
+  }
 
   const Layout mine = grid.layout_of(grid.rank());
   EXPECT_EQ(mine.begin, own.begin);
@@ -111,12 +127,14 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       };
       for (const Segment &s : grid.rows())
         for (int i = 0; i < s.size(); ++i) before[0](i, s.j, s.k) = truth(i, s.j, s.k);
+      DmHandle cell_dm;
+      ASSERT_EQ(grid.create_cell_dm(DMDA_STENCIL_BOX, 1, cell_dm.put()), 0);
       VecHandle global, natural;
-      ASSERT_EQ(DMCreateGlobalVector(grid.dm(), global.put()), 0);
-      ASSERT_EQ(DMDACreateNaturalVector(grid.dm(), natural.put()), 0);
+      ASSERT_EQ(DMCreateGlobalVector(cell_dm.get(), global.put()), 0);
+      ASSERT_EQ(DMDACreateNaturalVector(cell_dm.get(), natural.put()), 0);
       ASSERT_EQ(to_global_vector(grid, before[0], global.get()), 0);
-      ASSERT_EQ(DMDAGlobalToNaturalBegin(grid.dm(), global.get(), INSERT_VALUES, natural.get()), 0);
-      ASSERT_EQ(DMDAGlobalToNaturalEnd(grid.dm(), global.get(), INSERT_VALUES, natural.get()), 0);
+      ASSERT_EQ(DMDAGlobalToNaturalBegin(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
+      ASSERT_EQ(DMDAGlobalToNaturalEnd(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
       PetscInt first, end;
       const double *values;
       ASSERT_EQ(VecGetOwnershipRange(natural.get(), &first, &end), 0);
