@@ -27,72 +27,83 @@ PetscErrorCode GhostExchange::Unit::make(std::ptrdiff_t values) {
 
 namespace {
 
-// The point that a local point is, or copies: on which rank, and where in the memory there.
+// The point that a local point is, or copies.
 struct Source {
-  PetscInt rank = -1;  // none: behind a side of the domain
-  PetscInt offset = 0, field_size = 0, sy = 0, sz = 0;
+  PetscInt rank = -1;   // none: behind a side of the domain
+  PetscInt offset = 0;  // in the memory there
+};
+
+// Memory of a field on another rank.
+struct Shape {
+  PetscInt size, sy, sz;
 };
 
 class SourceFinder {
 public:
   explicit SourceFinder(const Domain &domain) : domain_(domain), sources_(domain.layout().size) {}
   PetscErrorCode find() {
-    MPI_Datatype type;
     PetscFunctionBeginUser;
-    PetscCallMPI(MPI_Type_contiguous(sizeof(Source) / sizeof(PetscInt), MPIU_INT, &type));
-    PetscCallMPI(MPI_Type_commit(&type));
-    PetscCall(find_near(type));
-    if (width_ < domain_.layout().ghosts[0]) PetscCall(find_far(type));
-    PetscCallMPI(MPI_Type_free(&type));
+    PetscCall(find_near());
+    PetscCall(find_shapes());
+    if (width_ < domain_.layout().ghosts[0]) {
+      PetscCall(find_far());
+      PetscCall(find_shapes());
+    }
     PetscFunctionReturn(0);
   }
   const Source &at(const Int3 &point) const { return sources_[offset(point)]; }
+  /// Of the ranks that sources lie on.
+  const std::map<PetscInt, Shape> &shapes() const { return shapes_; }
   bool is_owned(const Int3 &point) const {
     for (int d = 0; d < 3; ++d)
       if (point[d] < 0 || point[d] >= points_[d]) return false;
     return true;
   }
+  /// visit(point) for all points in memory: those of the box, and all ghosts.
+  template <class Visit>
+  void for_all(const Visit &visit) const {
+    const Int3 &g = domain_.layout().ghosts;
+    for (int k = -g[2]; k < points_[2] + g[2]; ++k)
+      for (int j = -g[1]; j < points_[1] + g[1]; ++j)
+        for (int i = -g[0]; i < points_[0] + g[0]; ++i) visit({i, j, k});
+  }
 
 private:
-  std::ptrdiff_t offset(const Int3 &p) const { return domain_.layout().offset(p[0], p[1], p[2]); }
+  PetscInt offset(const Int3 &p) const { return static_cast<PetscInt>(domain_.layout().offset(p[0], p[1], p[2])); }
 
-  // Within the stencil of the DMDA: by its scatter from owned to local points.
-  PetscErrorCode find_near(MPI_Datatype type) {
-    const Layout &own = domain_.layout();
+  // Within the stencil of the DMDA: its scatter from owned to local points brings where the owned ones lie in memory.
+  PetscErrorCode find_near() {
     PetscInt first[3], count[3], ghost[3], width[3], roots, leaves;
     VecScatter scatter;
     const PetscInt *places;
+    const PetscSFNode *nodes;
     PetscFunctionBeginUser;
     PetscCall(DMDAGetCorners(domain_.dm(), &first[0], &first[1], &first[2], &count[0], &count[1], &count[2]));
     PetscCall(DMDAGetGhostCorners(domain_.dm(), &ghost[0], &ghost[1], &ghost[2], &width[0], &width[1], &width[2]));
     PetscCall(DMDAGetStencilWidth(domain_.dm(), &width_));
     PetscCall(DMDAGetScatter(domain_.dm(), &scatter, nullptr));
-    PetscCall(PetscSFGetGraph(scatter, &roots, &leaves, &places, nullptr));
+    PetscCall(PetscSFGetGraph(scatter, &roots, &leaves, &places, &nodes));
     for (int d = 0; d < 3; ++d) points_[d] = static_cast<int>(count[d]);
-    std::vector<Source> mine, found(static_cast<std::size_t>(width[0]) * width[1] * width[2]);
+    std::vector<PetscInt> mine, found(static_cast<std::size_t>(width[0]) * width[1] * width[2]);
     mine.reserve(roots);
-    const auto narrow = [](std::ptrdiff_t n) { return static_cast<PetscInt>(n); };
     for (int k = 0; k < points_[2]; ++k)
       for (int j = 0; j < points_[1]; ++j)
-        for (int i = 0; i < points_[0]; ++i)
-          mine.push_back(
-              {domain_.rank(), narrow(own.offset(i, j, k)), narrow(own.size), narrow(own.sy), narrow(own.sz)});
-    PetscCall(PetscSFBcastBegin(scatter, type, mine.data(), found.data(), MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(scatter, type, mine.data(), found.data(), MPI_REPLACE));
+        for (int i = 0; i < points_[0]; ++i) mine.push_back(offset({i, j, k}));
+    PetscCall(PetscSFBcastBegin(scatter, MPIU_INT, mine.data(), found.data(), MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(scatter, MPIU_INT, mine.data(), found.data(), MPI_REPLACE));
     for (PetscInt l = 0; l < leaves; ++l) {
       const PetscInt place = places ? places[l] : l, row = place / width[0];
       const PetscInt local[3] = {place % width[0], row % width[1], row / width[1]};
       Int3 point;
       for (int d = 0; d < 3; ++d) point[d] = static_cast<int>(ghost[d] + local[d] - first[d]);
-      sources_[offset(point)] = found[place];
+      sources_[offset(point)] = {nodes[l].rank, found[place]};
     }
     PetscFunctionReturn(0);
   }
 
   // Further out, where a rank is narrower than the layers of ghosts: the owner of the outermost point that is known
   // knows those beyond it.
-  PetscErrorCode find_far(MPI_Datatype type) {
-    const Layout &own = domain_.layout();
+  PetscErrorCode find_far() {
     std::vector<PetscInt> leaves;
     std::vector<PetscSFNode> roots;
     PetscFunctionBeginUser;
@@ -104,33 +115,55 @@ private:
       }
       const Source &source = at(near);
       if (beyond == Int3{} || source.rank < 0) return;
-      leaves.push_back(static_cast<PetscInt>(offset(point)));
-      roots.push_back({source.rank, source.offset + beyond[0] + beyond[1] * source.sy + beyond[2] * source.sz});
+      const Shape &shape = shapes_.at(source.rank);
+      leaves.push_back(offset(point));
+      roots.push_back({source.rank, source.offset + beyond[0] + beyond[1] * shape.sy + beyond[2] * shape.sz});
     });
-    SfHandle sf;
-    PetscCall(PetscSFCreate(domain_.comm(), sf.put()));
-    PetscCall(PetscSFSetGraph(sf.get(), static_cast<PetscInt>(own.size), static_cast<PetscInt>(leaves.size()),
-                              leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
-    PetscCall(PetscSFBcastBegin(sf.get(), type, sources_.data(), sources_.data(), MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf.get(), type, sources_.data(), sources_.data(), MPI_REPLACE));
+    PetscCall(
+        bring(MPIU_2INT, static_cast<PetscInt>(sources_.size()), leaves, roots, sources_.data(), sources_.data()));
     PetscFunctionReturn(0);
   }
 
-public:
-  // visit(point) for all points in memory: those of the box, and all ghosts.
-  template <class Visit>
-  void for_all(const Visit &visit) const {
-    const Int3 &g = domain_.layout().ghosts;
-    for (int k = -g[2]; k < points_[2] + g[2]; ++k)
-      for (int j = -g[1]; j < points_[1] + g[1]; ++j)
-        for (int i = -g[0]; i < points_[0] + g[0]; ++i) visit({i, j, k});
+  PetscErrorCode find_shapes() {
+    const Layout &own = domain_.layout();
+    const Shape mine{static_cast<PetscInt>(own.size), static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)};
+    std::vector<PetscInt> leaves;
+    std::vector<PetscSFNode> roots;
+    MPI_Datatype type;
+    PetscFunctionBeginUser;
+    for (const Source &source : sources_)
+      if (source.rank >= 0) shapes_[source.rank] = {};
+    for (const auto &[rank, shape] : shapes_) {
+      leaves.push_back(static_cast<PetscInt>(leaves.size()));
+      roots.push_back({rank, 0});
+    }
+    std::vector<Shape> found(leaves.size());
+    PetscCallMPI(MPI_Type_contiguous(sizeof(Shape) / sizeof(PetscInt), MPIU_INT, &type));
+    PetscCallMPI(MPI_Type_commit(&type));
+    PetscCall(bring(type, 1, leaves, roots, &mine, found.data()));
+    PetscCallMPI(MPI_Type_free(&type));
+    std::size_t n = 0;
+    for (auto &[rank, shape] : shapes_) shape = found[n++];
+    PetscFunctionReturn(0);
   }
 
-private:
+  PetscErrorCode bring(MPI_Datatype type, PetscInt count, std::vector<PetscInt> leaves, std::vector<PetscSFNode> roots,
+                       const void *from, void *to) const {
+    SfHandle sf;
+    PetscFunctionBeginUser;
+    PetscCall(PetscSFCreate(domain_.comm(), sf.put()));
+    PetscCall(PetscSFSetGraph(sf.get(), count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
+                              roots.data(), PETSC_COPY_VALUES));
+    PetscCall(PetscSFBcastBegin(sf.get(), type, from, to, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf.get(), type, from, to, MPI_REPLACE));
+    PetscFunctionReturn(0);
+  }
+
   const Domain &domain_;
   std::vector<Source> sources_;  // of all points in memory
-  Int3 points_{};                // owned
-  PetscInt width_ = 0;           // of the DMDA's stencil
+  std::map<PetscInt, Shape> shapes_;
+  Int3 points_{};       // owned
+  PetscInt width_ = 0;  // of the DMDA's stencil
 };
 
 }  // namespace
@@ -143,8 +176,8 @@ PetscErrorCode GhostList::read(const Domain &domain) {
     const Source &source = finder.at(point);
     if (finder.is_owned(point) || source.rank < 0) return;
     ghosts.push_back({point, static_cast<int>(source.rank), source.offset});
-    field_size[static_cast<int>(source.rank)] = source.field_size;
   });
+  for (const auto &[rank, shape] : finder.shapes()) field_size[static_cast<int>(rank)] = shape.size;
   PetscFunctionReturn(0);
 }
 
