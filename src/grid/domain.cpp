@@ -114,7 +114,7 @@ Box Domain::box_at(const Int3 &place) const {
     begin[d] = starts_[d][place[d]];
     cells[d] = starts_[d][place[d] + 1] - begin[d];
   }
-  return Box(spec_, begin, cells, spec_.ghosts);
+  return Box(spec_, begin, cells, spec_.ghosts, processors(0) == 1);
 }
 
 Int3 Domain::place_of(int rank) const {
@@ -212,7 +212,7 @@ PetscErrorCode Domain::read_dm() {
     first[d] = static_cast<int>(begin[d]);
     cells[d] = std::min(N, static_cast<int>(begin[d] + count[d])) - first[d];
   }
-  static_cast<Box &>(*this) = Box(spec_, first, cells, spec_.ghosts);
+  static_cast<Box &>(*this) = Box(spec_, first, cells, spec_.ghosts, processors(0) == 1);
   PetscFunctionReturn(0);
 }
 

@@ -59,7 +59,7 @@ TEST(Box, GhostsEndBehindSidesOfTheDomainOnly) {
 }
 
 TEST(Box, FacesAndCellsOnTheSidesThatItTouches) {
-  const Box box(shape(), {0, 0, 17}, {40, 30, 3}, 3);
+  const Box box(shape(), {0, 0, 17}, {40, 30, 3}, 3, true);
   EXPECT_TRUE(box.wraps_x());
   EXPECT_TRUE(box.spans(0) && box.spans(1) && !box.spans(2));
   ASSERT_EQ(box.open_high_faces(2).size(), 30U);
