@@ -91,7 +91,7 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         bool joined = false;
         const auto levels = Multigrid::plan(many.grid);
         for (std::size_t l = 1; l < levels.size(); ++l)
-          joined |= levels[l]->domain().cells() == levels[l - 1]->domain().cells() && levels[l]->domain().ranks() > 1;
+          joined |= levels[l]->domain().domain_cells() == levels[l - 1]->domain().domain_cells() && levels[l]->domain().ranks() > 1;
         EXPECT_EQ(joined, ranks > 1);
       }
     }
