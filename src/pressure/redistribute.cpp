@@ -54,28 +54,28 @@ PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, cons
         for (int i = low[0]; i < high[0]; ++i)
           roots[mine.offset(i, j, k)] = {rank, static_cast<PetscInt>(theirs.offset(i, j, k))};
   }
-  PetscCall(PetscSFCreate(comm, forest_.put()));
-  PetscCall(PetscSFSetGraph(forest_.get(), static_cast<PetscInt>(from.box(me).size()),
+  PetscCall(PetscSFCreate(comm, scatter_.put()));
+  PetscCall(PetscSFSetGraph(scatter_.get(), static_cast<PetscInt>(from.box(me).size()),
                             static_cast<PetscInt>(roots.size()), nullptr, PETSC_OWN_POINTER, roots.data(),
                             PETSC_COPY_VALUES));
-  PetscCall(PetscSFSetUp(forest_.get()));
+  PetscCall(PetscSFSetUp(scatter_.get()));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Redistribution::forward(std::vector<double> &values, std::vector<double> &other) {
   PetscFunctionBeginUser;
-  if (!forest_) PetscFunctionReturn(0);
-  PetscCall(PetscSFBcastBegin(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  if (!scatter_) PetscFunctionReturn(0);
+  PetscCall(PetscSFBcastBegin(scatter_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(scatter_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
   values.swap(other);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Redistribution::backward(std::vector<double> &values, std::vector<double> &other) {
   PetscFunctionBeginUser;
-  if (!forest_) PetscFunctionReturn(0);
-  PetscCall(PetscSFReduceBegin(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(forest_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  if (!scatter_) PetscFunctionReturn(0);
+  PetscCall(PetscSFReduceBegin(scatter_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(scatter_.get(), MPIU_REAL, values.data(), other.data(), MPI_REPLACE));
   values.swap(other);
   PetscFunctionReturn(0);
 }

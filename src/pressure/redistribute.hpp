@@ -44,7 +44,7 @@ public:
   PetscErrorCode backward(std::vector<double> &values, std::vector<double> &other);
 
 private:
-  SfHandle forest_;  ///< roots in `from`, leaves in `to`; empty when nothing moves
+  SfHandle scatter_;  ///< roots in `from`, leaves in `to`; empty when nothing moves
 };
 
 }  // namespace eulastic
