@@ -19,18 +19,16 @@ public:
         dimension_(config.grid.cells[2] == 1 ? 2 : 3),
         film_(config.grid.longest_spacing() * (1 - 1e-9)),  // less the round-off of bodies a cell away
         posts_(config.grid, 2 * (config.grid.length[0] + config.grid.length[1] + config.grid.length[2]), 1) {
-    std::vector<SpeciesSpec> rigid;
     shapes_.reserve(config.species.size());  // bodies point into it
     for (std::size_t s = 0; s < config.species.size(); ++s) {
       const SpeciesSpec &spec = config.species[s];
       if (spec.law != Law::rigid || spec.travels(dimension_)) continue;
-      if (is_attached(spec.shape)) rigid.push_back(spec);
+      if (is_attached(spec.shape)) attached_.push_back(spec);
       if (is_attached(spec.shape) || spec.shape == Shape::voxels) continue;
       shapes_.emplace_back(spec, dimension_, film_, config.grid.length[spec.axis]);
       for (const BodyPlace &place : config.places[s].known)
         posts_.add({&shapes_.back(), place.centre, rotation(place.orientation)});
     }
-    attached_ = std::move(rigid);
     GridSpec endless = config.grid;  // is_near_side() knows which sides are solid
     endless.boundary.fill(Boundary::periodic);
     const auto add = [&](const SpeciesSpec *tube) {

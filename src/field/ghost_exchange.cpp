@@ -12,7 +12,7 @@ namespace {
 // Offset in a field of the first point in memory, where its first row begins.
 std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
 
-// Whether there is nothing to bring.
+// Whether no value has to come from elsewhere.
 bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->inside(); }
 
 }  // namespace
@@ -120,7 +120,7 @@ private:
       roots.push_back({source.rank, source.offset + beyond[0] + beyond[1] * shape.sy + beyond[2] * shape.sz});
     });
     PetscCall(
-        bring(MPIU_2INT, static_cast<PetscInt>(sources_.size()), leaves, roots, sources_.data(), sources_.data()));
+        broadcast(MPIU_2INT, static_cast<PetscInt>(sources_.size()), leaves, roots, sources_.data(), sources_.data()));
     PetscFunctionReturn(0);
   }
 
@@ -140,15 +140,15 @@ private:
     std::vector<Shape> found(leaves.size());
     PetscCallMPI(MPI_Type_contiguous(sizeof(Shape) / sizeof(PetscInt), MPIU_INT, &type));
     PetscCallMPI(MPI_Type_commit(&type));
-    PetscCall(bring(type, 1, leaves, roots, &mine, found.data()));
+    PetscCall(broadcast(type, 1, leaves, roots, &mine, found.data()));
     PetscCallMPI(MPI_Type_free(&type));
     std::size_t n = 0;
     for (auto &[rank, shape] : shapes_) shape = found[n++];
     PetscFunctionReturn(0);
   }
 
-  PetscErrorCode bring(MPI_Datatype type, PetscInt count, std::vector<PetscInt> leaves, std::vector<PetscSFNode> roots,
-                       const void *from, void *to) const {
+  PetscErrorCode broadcast(MPI_Datatype type, PetscInt count, std::vector<PetscInt> leaves,
+                           std::vector<PetscSFNode> roots, const void *from, void *to) const {
     SfHandle sf;
     PetscFunctionBeginUser;
     PetscCall(PetscSFCreate(domain_.comm(), sf.put()));

@@ -1,4 +1,4 @@
-// A field as a Vec of the grid's DMDA, for PETSc's solvers and viewers.
+// A field at centres as a Vec of the DMDA of the cells, for PETSc's solvers and viewers.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,8 +6,8 @@
 
 namespace eulastic {
 
-/// Copies what the rank owns: cells only, index N of a wall direction is in no Vec. `vector` is of DMCreateGlobalVector
-/// for the DMDA of the grid, or another of the same split.
+/// Copies the cells that the rank owns. `vector` was made by DMCreateGlobalVector for a DMDA of
+/// Domain::create_cell_dm, which has no point N.
 PetscErrorCode to_global_vector(const Domain &domain, ConstView field, Vec vector);
 PetscErrorCode from_global_vector(const Domain &domain, Vec vector, View field);
 

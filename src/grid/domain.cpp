@@ -197,7 +197,7 @@ PetscErrorCode Domain::create_dm(bool high_faces, DMDAStencilType stencil, int w
   PetscFunctionReturn(0);
 }
 
-// What each rank owns, and the box of this one.
+// Reads from the DMDA what each rank owns, and the box of this one.
 PetscErrorCode Domain::read_dm() {
   const PetscInt *points[3];
   PetscInt begin[3], count[3];
