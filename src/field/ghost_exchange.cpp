@@ -181,8 +181,8 @@ PetscErrorCode GhostList::read(const Domain &domain) {
   PetscFunctionReturn(0);
 }
 
-// Leaves and roots are the values of all fields of a block; pieces of rows, or whole rows where x is not split.
-PetscErrorCode GhostExchange::build_scatter(int width, int fields, const GhostPieces *pieces, PetscSF *sf) {
+// Leaves and roots are the values of all fields of a block, or whole rows where x is not split.
+PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
   if (!list_) {
     list_ = std::make_unique<GhostList>();
@@ -193,12 +193,10 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, const GhostPi
     }
   }
   const Layout &own = domain_->layout();
-  const std::ptrdiff_t unit = pieces ? GhostPieces::cells : by_rows() ? own.sy : 1;
+  const std::ptrdiff_t unit = by_rows() ? own.sy : 1;
   const auto wanted = [&](const Int3 &at) {
-    for (int d = pieces || by_rows() ? 1 : 0; d < 3; ++d)
+    for (int d = by_rows() ? 1 : 0; d < 3; ++d)
       if (at[d] < -width || at[d] >= own.cells[d] + width) return false;
-    if (pieces)
-      return at[0] >= 0 && at[0] % GhostPieces::cells == 0 && pieces->holds(at[1], at[2], at[0] / GhostPieces::cells);
     return !by_rows() || at[0] == 0;
   };
   std::vector<PetscInt> leaves;
@@ -206,7 +204,7 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, const GhostPi
   // The unit with the point at an offset of field f. Fields are whole rows, and all ranks have rows of one length where
   // units are rows.
   const auto unit_of = [&](std::ptrdiff_t field_size, int f, std::ptrdiff_t offset) {
-    return static_cast<PetscInt>((f * field_size + offset - (pieces ? 0 : first_offset(own))) / unit);
+    return static_cast<PetscInt>((f * field_size + offset - first_offset(own)) / unit);
   };
   for (int f = 0; f < fields; ++f)
     for (const GhostList::Ghost &ghost : list_->ghosts)
@@ -221,7 +219,7 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, const GhostPi
   PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
                             roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
-  PetscCall((pieces ? piece_ : unit_).make(unit));
+  PetscCall(unit_.make(unit));
   PetscFunctionReturn(0);
 }
 
@@ -229,11 +227,10 @@ PetscErrorCode GhostExchange::bring(const WantedGhosts &wanted,
                                     PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
   FieldBlock &block = *wanted.block;
-  const GhostPieces *pieces = wanted.pieces();
-  SfHandle &scatter = (pieces ? pieces->scatters : scatters_)[{wanted.width, block.count()}];
-  if (!scatter) PetscCall(build_scatter(wanted.width, block.count(), pieces, scatter.put()));
-  double *first = block.data() + (pieces ? 0 : first_offset(block.layout()));
-  PetscCall(bcast(scatter.get(), (pieces ? piece_ : unit_).type, first, first, MPI_REPLACE));
+  SfHandle &scatter = scatters_[{wanted.width, block.count()}];
+  if (!scatter) PetscCall(build_scatter(wanted.width, block.count(), scatter.put()));
+  double *first = block.data() + first_offset(block.layout());
+  PetscCall(bcast(scatter.get(), unit_.type, first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
@@ -285,16 +282,13 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   const Layout &own = block.layout();
   const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*domain_);
   const int layers = is_inside(wanted) ? 0 : width;
-  const GhostPieces *pieces = wanted.pieces();
   const Box::Range y = domain_->points_near(1, true, layers), z = domain_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
     for (int f = 0; f < block.count(); ++f)
       for (int k = z.begin + int(planes.begin); k < z.begin + int(planes.end); ++k)
         for (int j = y.begin; j < y.end; ++j) {
-          if (pieces) {
-            if (!pieces->holds_ends(j, k)) continue;
-          } else if (wanted.rows) {
+          if (wanted.rows) {
             const OccupiedRows::Span span = wanted.rows->span(j, k);
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
           }

@@ -20,15 +20,12 @@ namespace eulastic {
 
 /// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere:
 /// ends of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several
-/// stages that wrap x around by themselves (Sides::wrap) want no row ends. `near`: only pieces that are near() to what
-/// the rows are of, if they are known; others may hold anything. Not for what says where that is, phi.
+/// stages that wrap x around by themselves (Sides::wrap) want no row ends.
 struct WantedGhosts {
   FieldBlock *block;
   int width;
   const OccupiedRows *rows = nullptr;
   bool row_ends = true;
-  bool near = false;
-  const GhostPieces *pieces() const { return near && rows ? rows->near() : nullptr; }
 };
 
 /// All ghosts of this rank that copy a point, so those that are not behind sides of the domain.
@@ -61,7 +58,7 @@ public:
   PetscErrorCode end(const WantedGhosts &wanted);
 
 private:
-  /// What roots and leaves are: a row, its ghosts and padding included, a piece of it, or a value.
+  /// What roots and leaves are: a row, its ghosts and padding included, or a value.
   struct Unit {
     MPI_Datatype type = MPI_DATATYPE_NULL;
     Unit() = default;
@@ -73,7 +70,7 @@ private:
     }
   };
   bool by_rows() const { return domain_->processors(0) == 1; }
-  PetscErrorCode build_scatter(int width, int fields, const GhostPieces *pieces, PetscSF *sf);
+  PetscErrorCode build_scatter(int width, int fields, PetscSF *sf);
   PetscErrorCode bring(const WantedGhosts &wanted,
                        PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
@@ -81,7 +78,7 @@ private:
   const Domain *domain_;
   std::function<GhostList()> find_;
   std::unique_ptr<GhostList> list_;  ///< found when it is first needed
-  Unit unit_, piece_;
+  Unit unit_;
   std::map<std::pair<int, int>, SfHandle> scatters_;  ///< by width and number of fields
 };
 

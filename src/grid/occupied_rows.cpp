@@ -23,8 +23,6 @@ bool OccupiedRows::any(const double *row, int begin, int end) noexcept {
 
 namespace {
 
-constexpr int travel_of_near = 2;  // cells that a field may move until pieces are found anew
-
 using Span = OccupiedRows::Span;
 
 // From the first to the last piece of the row with a value that is not zero.
@@ -58,12 +56,6 @@ void add(const Span &more, Span *sum) {
 PetscErrorCode OccupiedRows::find(const Domain &domain, ConstView value) {
   PetscFunctionBeginUser;
   *this = {};
-  PetscCall(follow(domain, value));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OccupiedRows::follow(const Domain &domain, ConstView value) {
-  PetscFunctionBeginUser;
   PetscCall(follow(domain, {{this, value}}));
   PetscFunctionReturn(0);
 }
@@ -71,25 +63,15 @@ PetscErrorCode OccupiedRows::follow(const Domain &domain, ConstView value) {
 PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Moved> &moved) {
   PetscFunctionBeginUser;
   if (moved.empty()) PetscFunctionReturn(0);
-  const bool pieces = GhostPieces::exist(domain);
-  constexpr int crosses = 1, outgrown = 2;
-  std::vector<int> found;  // of each
+  std::vector<int> all_inside;  // of each, on all ranks
   for (const Moved &one : moved) {
-    OccupiedRows before = std::move(*one.rows);
+    const OccupiedRows before = std::move(*one.rows);
     one.rows->read(domain, one.value, before);
-    one.rows->near_ = std::move(before.near_);
-    const GhostPieces *near = one.rows->near();
-    const bool few = pieces && one.near > 0 && (!near || !near->hold({domain, one.value, *one.rows, one.near}));
-    found.push_back((one.rows->inside_ ? 0 : crosses) | (few ? outgrown : 0));
+    all_inside.push_back(one.rows->inside_);
   }
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_BOR, domain.comm()));
-  for (std::size_t n = 0; n < moved.size(); ++n) {
-    const Moved &one = moved[n];
-    one.rows->inside_ = (found[n] & crosses) == 0;
-    if (found[n] & outgrown)
-      one.rows->near_ = std::make_shared<const GhostPieces>(domain, one.value, *one.rows, one.near + travel_of_near);
-  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all_inside.data(), static_cast<int>(all_inside.size()), MPI_INT, MPI_LAND,
+                             domain.comm()));
+  for (std::size_t n = 0; n < moved.size(); ++n) moved[n].rows->inside_ = all_inside[n] != 0;
   PetscFunctionReturn(0);
 }
 
@@ -160,7 +142,6 @@ void OccupiedRows::count() noexcept {
 void OccupiedRows::join(const OccupiedRows &other) {
   for (std::size_t r = 0; r < spans_.size(); ++r) add(other.spans_[r], &spans_[r]);
   inside_ = inside_ && other.inside_;
-  near_.reset();
   count();
 }
 

@@ -3,10 +3,8 @@
 
 #include "base/petsc.hpp"
 #include "grid/domain.hpp"
-#include "grid/ghost_pieces.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 namespace eulastic {
@@ -20,16 +18,12 @@ public:
 
   /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
   PetscErrorCode find(const Domain &domain, ConstView value);
-  /// The same after a transport by less than a cell: what was outside the spans is still empty and is not read, ghost
-  /// rows neither if all was inside().
-  PetscErrorCode follow(const Domain &domain, ConstView value);
-  /// Rows that follow the field that they are of, and how far away near() is; 0: it is not wanted.
   struct Moved {
     OccupiedRows *rows;
-    ConstView value;
-    int near = 0;
+    ConstView value;  ///< the field whose rows they are
   };
-  /// Those of several fields, in one reduction.
+  /// Finds the rows of several fields again after a transport by less than a cell, in one reduction: what was outside
+  /// the spans is still empty and is not read; ghost rows are not read either if all was inside().
   static PetscErrorCode follow(const Domain &domain, const std::vector<Moved> &moved);
 
   /// Adds the spans of another field of the grid.
@@ -61,9 +55,6 @@ public:
   /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
   /// exchange.
   bool inside() const noexcept { return inside_; }
-  /// Pieces of ghost rows that hold all points within Moved::near of what is not zero, and some more so that they are
-  /// the same for many steps, on all ranks at the same time. Null where they are not known.
-  const GhostPieces *near() const noexcept { return near_.get(); }
 
   /// Whether one of these values is not zero.
   static bool any(const double *row, int begin, int end) noexcept;
@@ -79,7 +70,6 @@ private:
   Span whole_{-far, far};
   std::vector<Span> spans_;
   bool inside_ = false;
-  std::shared_ptr<const GhostPieces> near_;
   std::ptrdiff_t cells_ = 0;
 };
 

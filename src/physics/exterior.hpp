@@ -32,8 +32,6 @@ double damping_spacing(const Fluid &fluid, const Material &material);
 class ExteriorLayers {
 public:
   static constexpr int layers = evolve_above_half.layers;
-  /// Cells around what is solid in which anybody reads B: the layers, and edges.
-  static constexpr int near = layers + 1;
 
   /// phi of the phase needs five valid ghost layers; find_solid() has run.
   PetscErrorCode build(const Box &box, const Phase &phase);

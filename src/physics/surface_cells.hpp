@@ -14,9 +14,6 @@ class SurfaceCells {
 public:
   /// Around the cells at the surface, neighbours at corners included: as far as WENO5 reads and delta reaches.
   static constexpr int layers = 3;
-  /// Cells around what is solid in which anybody reads what lives on the surface, whose nearest cells are solid in
-  /// part.
-  static constexpr int near = layers + 1;
   struct Cell {
     Int3 place;
     std::ptrdiff_t at;  ///< offset from the origin

@@ -308,7 +308,7 @@ PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
 
 PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update({{&tensor, width, rows, true, true}}));
+  PetscCall(exchange_->update(tensor, width, rows));
   fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }

@@ -50,10 +50,8 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   std::vector<WantedGhosts> fractions, tensors;
   for (std::size_t p = 0; p < phases.size(); ++p)
     if (!phases[p].material.is_rigid()) {
-      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});  // all: it says what is near
-      const bool extended = !swaps && spec_.exterior == SolidExterior::extrapolate;
-      const int near = phases[p].material.is_membrane() ? SurfaceCells::near : extended ? ExteriorLayers::near : 0;
-      moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0], near});
+      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+      moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
     }
   PetscCall(exchange_->update(fractions));
   PetscCall(OccupiedRows::follow(*domain_, moved));  // sees what has come into ghosts, even of idle rows
@@ -68,7 +66,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     if (phase.material.is_membrane()) continue;  // with the others of its kind
     if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*domain_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
-    tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined, true, true});
+    tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined});
   }
   if (membranes_) {
     MembraneTransport::Memory memory{&now_.markers};
@@ -115,7 +113,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
 PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
-  PetscCall(exchange_->update({{&tensor, ExteriorLayers::layers, rows, true, true}}));
+  PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
   PetscCall(layers_.extend(*domain_, spec_.sides, *exchange_, tensor));
   fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
   PetscCall(limit_shear(*domain_, phase, tensor));

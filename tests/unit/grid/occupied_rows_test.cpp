@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 using namespace eulastic;
 
@@ -19,6 +20,7 @@ struct Scene {
     value = FieldBlock(grid, 1);
     reach = grid.layout().ghosts[0] + 2;
   }
+  PetscErrorCode follow() { return OccupiedRows::follow(grid, {{&rows, std::as_const(value)[0]}}); }
   // What span() promises for one cell that is not zero.
   void expect(const Int3 &cell) const {
     const bool flat = grid.dimension() == 2;
@@ -56,7 +58,7 @@ TEST(OccupiedRows, ReachAsFarAsStencilsAndFollow) {
       s.value[0](cell[0], cell[1], cell[2]) = 0;
       cell = {cell[0] + 1, cell[1] - 1, flat ? 0 : cell[2] + 1};
       s.value[0](cell[0], cell[1], cell[2]) = -1;
-      ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+      ASSERT_EQ(s.follow(), 0);
       s.expect(cell);
     }
   }
@@ -66,19 +68,19 @@ TEST(OccupiedRows, WhatIsFarFromEverythingIsNotReadAgain) {
   Scene s(true);
   ASSERT_EQ(s.rows.find(s.grid, s.value[0]), 0);
   s.value[0](24, 20, 0) = 1;
-  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  ASSERT_EQ(s.follow(), 0);
   EXPECT_EQ(s.rows.cells(), 0);
   s.value[0](24, -1, 0) = 1;  // from beyond, where nothing was near
-  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  ASSERT_EQ(s.follow(), 0);
   EXPECT_TRUE(s.rows.idle(0, 0));
   s.value[0](24, 39, 0) = 1;
   ASSERT_EQ(s.rows.find(s.grid, s.value[0]), 0);
   EXPECT_FALSE(s.rows.inside());
   s.value[0](24, -1, 0) = 0;
-  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  ASSERT_EQ(s.follow(), 0);
   EXPECT_TRUE(s.rows.idle(0, 0));
   s.value[0](24, -1, 0) = 1;  // from beyond, where something is near
-  ASSERT_EQ(s.rows.follow(s.grid, s.value[0]), 0);
+  ASSERT_EQ(s.follow(), 0);
   EXPECT_FALSE(s.rows.idle(0, 0));
 }
 
