@@ -137,7 +137,7 @@ PetscErrorCode InitialState::read(const std::string &name, const Staggering &sta
 PetscErrorCode InitialState::read_constant(const std::string &name, double value) {
   PetscFunctionBeginUser;
   if (name.empty() || !file_.has(name)) PetscFunctionReturn(0);
-  FieldBlock field(*domain_, 1);
+  Field field(*domain_, 1);
   PetscCall(read(name, at_centre, Wanted::finite, field[0]));
   bool same = true;
   for_points(domain_->rows(), [&](int i, int j, int k) { same = same && field[0](i, j, k) == value; });

@@ -20,7 +20,7 @@ PetscErrorCode Outputs::look(Measured *measured) {
   PetscCall(solver_->phases_now(&phases));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
-  const FieldBlock *viscosity = nullptr;
+  const Field *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const bool again = m.time == state.time;  // with the same velocity and pressure
   if (!again || viscosity) {
@@ -56,7 +56,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   energy.surface = measured.surface.energy;
   energy.surface_power = measured.surface.power;
   energy.dissipation = measured.flow.viscous_dissipation;
-  const FieldBlock *viscosity = nullptr;
+  const Field *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
                               &config_.sides, state.time,      viscosity};

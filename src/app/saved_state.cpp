@@ -34,7 +34,7 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
     if (phase.label) fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
   }
   // May be missing: the pressure solver can be changed at a restart.
-  if (FieldBlock *memory = solver.pressure_memory())
+  if (Field *memory = solver.pressure_memory())
     for (int f = 0; f < memory->count(); ++f)
       fields.push_back({"pressure_increment_" + std::to_string(f), at_centre, (*memory)[f], Stored::float64, true});
   return fields;

@@ -78,7 +78,7 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
     state.phases.push_back(std::move(colours[0]));
     for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
     solver->bodies().add_phase(domain, config.body_series ? placed : Places());
-    if (!config.body_series) state.phases.back().label = FieldBlock();
+    if (!config.body_series) state.phases.back().label = Field();
   }
   PetscCall(solver->set_rigid(std::move(rigid)));
   for (Phase &phase : more) state.phases.push_back(std::move(phase));

@@ -39,20 +39,20 @@ SnapshotSelection selection(const Config &config) {
 // phi of the vessels and obstacles that are rigid, or of those that are not, with ghosts; empty if there are none.
 // Collective.
 PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vector<Phase> &phases, Solver *solver,
-                                FieldBlock *solid) {
+                                Field *solid) {
   PetscFunctionBeginUser;
   const Domain &domain = solver->domain();
   for (const Phase &phase : phases) {
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || (spec->law == Law::rigid) != rigid) continue;
-    if (!*solid) *solid = FieldBlock(domain, 1);
+    if (!*solid) *solid = Field(domain, 1);
     for_points(domain.rows(), [&](int i, int j, int k) {
       double &sum = (*solid)[0](i, j, k);
       sum = std::min(1.0, sum + phase.fraction[0](i, j, k));
     });
   }
   if (!*solid) PetscFunctionReturn(0);
-  PetscCall(solver->exchange().update(*solid, 3));
+  PetscCall(solver->exchange().update_ghosts(*solid, 3));
   fill_wall_ghosts_even(domain, at_centre, (*solid)[0], 3);
   PetscFunctionReturn(0);
 }
@@ -65,29 +65,29 @@ PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   const Domain &domain = solver->domain();
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver->phases_now(&phases));
-  const FieldBlock *viscosity = nullptr;
+  const Field *viscosity = nullptr;
   PetscCall(solver->viscosity_now(&viscosity));
   const SnapshotSelection wanted = selection(config);
   std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, *phases);
   std::vector<WallStress> walls;
-  FieldBlock rigid, elastic, stress, widened;
+  Field rigid, elastic, stress, widened;
   if (wants(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
     EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
     walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, *phases);
     PetscCall(solid_of_vessels(config, true, *phases, solver, &rigid));
     PetscCall(solid_of_vessels(config, false, *phases, solver, &elastic));
-    if (rigid || elastic) stress = FieldBlock(domain, 3);
+    if (rigid || elastic) stress = Field(domain, 3);
     if (rigid) add_rigid_surface_stress(domain, config.fluid.viscosity, rigid[0], state.velocity, stress);
     if (elastic && viscosity) {
       widened.copy_from(*viscosity);
-      PetscCall(solver->exchange().update(widened, 2));
+      PetscCall(solver->exchange().update_ghosts(widened, 2));
       of_place.local = &widened;
     }
     if (elastic) add_elastic_surface_stress({of_place, state.velocity, *phases}, elastic[0], stress);
   }
   for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
   if (stress) {
-    const FieldBlock &view = stress;
+    const Field &view = stress;
     SnapshotField &field = fields.emplace_back();
     field.format = {"wall_shear_stress", at_centre, wanted.precision};
     field.components = {view[0], view[1], view[2]};

@@ -50,19 +50,19 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
   if (loads->empty()) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(solver->phases_now(&phases));
-  const FieldBlock *viscosity = nullptr;
+  const Field *viscosity = nullptr;
   PetscCall(solver->viscosity_now(&viscosity));
-  std::vector<FieldBlock> labels(phases->size());
-  std::vector<const FieldBlock *> wanted(phases->size(), nullptr);
+  std::vector<Field> labels(phases->size());
+  std::vector<const Field *> wanted(phases->size(), nullptr);
   for (std::size_t p = 0; p < phases->size(); ++p) {
     const Phase &phase = (*phases)[p];
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
-    labels[p] = FieldBlock(domain, 1);  // not one at rest: all of it is written
+    labels[p] = Field(domain, 1);  // not one at rest: all of it is written
     const Int3 &n = domain.cells();
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));
-    PetscCall(solver->exchange().update(labels[p], 1));
+    PetscCall(solver->exchange().update_ghosts(labels[p], 1));
     fill_wall_ghosts_even(domain, at_centre, labels[p][0], 1);
     wanted[p] = &labels[p];
   }

@@ -73,7 +73,7 @@ PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const 
     Phase &phase = (*phases)[p];
     if (!phase.label || phase.material.is_rigid()) continue;
     if (phase.material.is_membrane()) {
-      PetscCall(exchange.update({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
+      PetscCall(exchange.update_ghosts({{&phase.label, margin, &phase.rows}, {&phase.fraction, margin, &phase.rows}}));
     }
     for_points(domain.rows(), [&](int i, int j, int k) {
       const Int3 at{i, j, k};

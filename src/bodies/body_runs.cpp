@@ -32,7 +32,7 @@ private:
   alignas(64) double term_[ExactSums::block + lanes];
 };
 
-EULASTIC_CLONES void add_up(const Box &box, const Run &run, const Int3 &reference, const FieldBlock *velocity,
+EULASTIC_CLONES void add_up(const Box &box, const Run &run, const Int3 &reference, const Field *velocity,
                             RunSums *sums) {
   const int n = run.size();
   const double *phi = run.of(run.phase.fraction, 0);
@@ -70,7 +70,7 @@ RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference) {
   return sums;
 }
 
-RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const FieldBlock &velocity) {
+RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const Field &velocity) {
   RunSums sums;
   add_up(box, run, reference, &velocity, &sums);
   return sums;

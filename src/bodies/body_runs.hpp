@@ -21,7 +21,7 @@ struct Run {
   int body;  ///< its slot
   int begin, end, j, k;
   int size() const { return end - begin; }
-  const double *of(const FieldBlock &block, int f) const { return block[f].row(j, k) + begin; }
+  const double *of(const Field &block, int f) const { return block[f].row(j, k) + begin; }
 };
 
 /// Calls visit(run) for all runs of a part, and start(phase, piece of a row) before those of that piece.
@@ -57,6 +57,6 @@ struct RunSums {
 /// The first three sums.
 RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference);
 /// All of them; one ghost of velocity and B.
-RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const FieldBlock &velocity);
+RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const Field &velocity);
 
 }  // namespace eulastic

@@ -43,12 +43,12 @@ void copy_component(const Box &box, const Ways &ways, const BodyCells &cells, co
       }
 }
 
-// Copies of one field of every phase that bodies leave, taken by `field(phase)`.
-template <class Field>
-std::vector<FieldBlock> copies(const std::vector<Ways> &ways, std::vector<Phase> *phases, Field field) {
-  std::vector<FieldBlock> result(phases->size());
+// Copies of one field of every phase that bodies leave, taken by `member(phase)`.
+template <class Member>
+std::vector<Field> copies(const std::vector<Ways> &ways, std::vector<Phase> *phases, Member member) {
+  std::vector<Field> result(phases->size());
   for (std::size_t p = 0; p < phases->size(); ++p)
-    if (!ways[p].empty()) result[p].copy_from(field((*phases)[p]));
+    if (!ways[p].empty()) result[p].copy_from(member((*phases)[p]));
   return result;
 }
 

@@ -33,9 +33,9 @@ PetscErrorCode update_ghosts(GhostExchange &exchange, int reach, const std::vect
   PetscFunctionBeginUser;
   std::vector<WantedGhosts> wanted;
   for (const int p : colours)
-    for (FieldBlock *block : {&(*phases)[p].label, &(*phases)[p].fraction})
+    for (Field *block : {&(*phases)[p].label, &(*phases)[p].fraction})
       wanted.push_back({block, reach, &(*phases)[p].rows});
-  PetscCall(exchange.update(wanted));
+  PetscCall(exchange.update_ghosts(wanted));
   PetscFunctionReturn(0);
 }
 

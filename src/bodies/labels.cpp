@@ -80,7 +80,7 @@ OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View la
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
       if (fraction[i] <= label_threshold) {
-        if (own[i] == 0) continue;  // rest is left at rest: FieldBlock::at_rest
+        if (own[i] == 0) continue;  // rest is left at rest: Field::at_rest
         own[i] = -own[i];
         cells.emptied.push_back({i, row.j, row.k});
         continue;
@@ -107,7 +107,7 @@ OpenCells new_cells(const Box &box, const RowPart &part, const OccupiedRows &row
 PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool new_alone, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  PetscCall(exchange.update(phase->fraction, 1, &phase->rows));
+  PetscCall(exchange.update_ghosts(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];
   std::vector<OpenCells> cells(row_parts(box));
@@ -116,7 +116,7 @@ PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool new_alone, Ph
   });
   const Reach reach(box);
   for (int layer = 0; layer < layers; ++layer) {
-    PetscCall(exchange.update(phase->label, 1, &phase->rows));
+    PetscCall(exchange.update_ghosts(phase->label, 1, &phase->rows));
     in_row_parts(box, [&](const RowPart &part) {
       for (Open &o : cells[part.number].open) {
         const Candidate best = best_neighbour(o.cell, reach, phi, label);

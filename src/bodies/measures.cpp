@@ -147,7 +147,7 @@ struct Largest {
 };
 
 // Scales, the largest tr B of every body, and energy densities along the pieces of rows of every part. Collective.
-PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
                             const BodyOwners &owners, const RowEnergy &energy,
                             std::vector<std::vector<double>> *energies, Largest *largest) {
   PetscFunctionBeginUser;
@@ -241,7 +241,7 @@ PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
                                     const RowEnergy &energy, std::vector<BodyMeasure> *result) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);

@@ -70,7 +70,7 @@ public:
   PetscErrorCode follow(const Domain &domain, const std::vector<Phase> &phases);
   /// Measures all bodies, changing nothing; every rank gets those that it owns. `velocity`: u, v (, w) on faces with
   /// one valid ghost layer, as phi and B. Collective.
-  PetscErrorCode measure(const Domain &domain, const std::vector<Phase> &phases, const FieldBlock &velocity,
+  PetscErrorCode measure(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
                          const RowEnergy &energy, std::vector<BodyMeasure> *bodies);
 
   /// Moves reference cells into the box, where it is new.

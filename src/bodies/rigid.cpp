@@ -33,7 +33,7 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
   PetscFunctionBeginUser;
   const int dimension = domain_.dimension(), motion = static_cast<int>(faces_.motions.size());
   if (!exist())
-    for (int a = 0; a < dimension; ++a) inside_[a] = FieldBlock(domain_, 1);
+    for (int a = 0; a < dimension; ++a) inside_[a] = Field(domain_, 1);
   faces_.motions.push_back(spec.motion);
   faces_.motions.back().travelling = spec.travelling(dimension);
   faces_.motions.back().turning = spec.turns(dimension);
@@ -47,7 +47,7 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
     PetscCall(map_file(spec, *phase, &surface, &mass, wrong));
     if (!wrong->empty()) PetscFunctionReturn(0);
   } else if (file) {
-    PetscCall(exchange_.update(phase->fraction, 1));
+    PetscCall(exchange_.update_ghosts(phase->fraction, 1));
     fill_wall_ghosts_even(domain_, at_centre, phase->fraction[0], 1);
   } else {
     surface = std::make_shared<const Surface>(spec, dimension);
@@ -161,7 +161,7 @@ void RigidBodies::note_contact(int image, int other) {
 
 // Of a file a face is inside where phi, averaged to it, is above 1/2.
 void RigidBodies::mark_file(int a, ConstView phi, int index) {
-  if (!level_[a]) level_[a] = FieldBlock(domain_, 1);
+  if (!level_[a]) level_[a] = Field(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
   for (int k = 0; k < domain_.faces_end(a, 2); ++k)

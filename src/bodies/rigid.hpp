@@ -76,11 +76,11 @@ private:
   const Domain &domain_;
   GhostExchange &exchange_;
   RigidFaces faces_;
-  std::vector<Source> sources_;       ///< of every body
-  std::vector<Species> species_;      ///< by motion
-  std::array<FieldBlock, 3> inside_;  ///< of every component: 1 + image of the body a face is in
-  std::array<FieldBlock, 3> level_;   ///< of files, else empty
-  std::array<int, 2> contact_{};      ///< indices of two bodies that touch, ascending; none: equal
+  std::vector<Source> sources_;   ///< of every body
+  std::vector<Species> species_;  ///< by motion
+  std::array<Field, 3> inside_;   ///< of every component: 1 + image of the body a face is in
+  std::array<Field, 3> level_;    ///< of files, else empty
+  std::array<int, 2> contact_{};  ///< indices of two bodies that touch, ascending; none: equal
   std::string touching_;
 };
 

@@ -150,8 +150,8 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
   std::array<RigidFaces::Component, 3> components;
   faces_.speed = {};
   for (int a = 0; a < domain_.dimension(); ++a) {
-    PetscCall(exchange_.update(inside_[a], domain_.layout().ghosts[a]));
-    if (level_[a]) PetscCall(exchange_.update(level_[a], domain_.layout().ghosts[a]));
+    PetscCall(exchange_.update_ghosts(inside_[a], domain_.layout().ghosts[a]));
+    if (level_[a]) PetscCall(exchange_.update_ghosts(level_[a], domain_.layout().ghosts[a]));
     components[a] = component(a, layers);
     for (const RigidFaces::Cut &cut : components[a].cuts) {
       const double along = std::fabs(faces_.motions[faces_.bodies[cut.body].motion].velocity[a]);

@@ -82,14 +82,14 @@ PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase
 }
 
 PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale,
-                                  FieldBlock &scratch, FieldBlock &rate) const {
+                                  Field &scratch, Field &rate) const {
   PetscFunctionBeginUser;
   scratch.fill(0, 0);
   const View force = scratch[0];
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
     force(i, j, k) += phase.material.stretch_force.force * pull_[body][column] * phase.fraction[0](i, j, k);
   });
-  PetscCall(exchange.update(scratch, 1));
+  PetscCall(exchange.update_ghosts(scratch, 1));
   for (const Segment &row : domain_->rows()) {
     const double *f = force.row(row.j, row.k);
     double *out = rate[0].row(row.j, row.k);
@@ -98,7 +98,7 @@ PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Pha
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::power(const std::vector<Phase> &phases, const FieldBlock &velocity, double *power) const {
+PetscErrorCode StretchForces::power(const std::vector<Phase> &phases, const Field &velocity, double *power) const {
   PetscFunctionBeginUser;
   ExactSums sum(1);
   const ConstView v = velocity[0];

@@ -19,10 +19,10 @@ public:
   PetscErrorCode find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
                       const std::vector<Int3> &references);
   /// rate += scale times the force per volume at owned faces. `scratch`: a field.
-  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale, FieldBlock &scratch,
-                     FieldBlock &rate) const;
+  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale, Field &scratch,
+                     Field &rate) const;
   /// What they do on the flow; one ghost of the velocity. Collective.
-  PetscErrorCode power(const std::vector<Phase> &phases, const FieldBlock &velocity, double *power) const;
+  PetscErrorCode power(const std::vector<Phase> &phases, const Field &velocity, double *power) const;
 
 private:
   template <class Visit>

@@ -13,7 +13,7 @@ namespace eulastic {
 
 /// Pointers to the components of B of one cell, in their order; 2-D has three.
 struct CellTensor {
-  CellTensor(const FieldBlock &tensor, int i, int j, int k) {
+  CellTensor(const Field &tensor, int i, int j, int k) {
     for (int c = 0; c < 6; ++c) component[c] = &tensor[std::min(c, tensor.count() - 1)](i, j, k);
   }
   const double *component[6];
@@ -55,7 +55,7 @@ inline double centre_stress(int dimension, const Phase &phase, int a, int i, int
 /// Viscous and elastic stress together, without the pressure.
 struct WholeStress {
   EdgeViscosity viscosity;
-  const FieldBlock &velocity;
+  const Field &velocity;
   const std::vector<Phase> &phases;
 
   double normal(int a, const Int3 &cell) const {

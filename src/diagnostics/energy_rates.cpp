@@ -88,7 +88,7 @@ EULASTIC_CLONES void power_3d(const Row &row, const double *inverse, double *out
   power_of_law<3>(row, inverse, out);
 }
 
-void stress_power(const Box &box, const Phase &phase, const FieldBlock &velocity, const Segment &row, double *out) {
+void stress_power(const Box &box, const Phase &phase, const Field &velocity, const Segment &row, double *out) {
   Row at(phase, row);
   for (int d = 0; d < box.dimension(); ++d) at.v[d] = velocity[d].row(row.j, row.k);
   const Real3 &h = box.spacing();
@@ -99,7 +99,7 @@ void stress_power(const Box &box, const Phase &phase, const FieldBlock &velocity
 // Speed times traction of every tangential face beside a moving wall.
 class WallPower {
 public:
-  WallPower(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
+  WallPower(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
             const EdgeViscosity &viscosity)
       : domain_(domain), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
 
@@ -157,12 +157,12 @@ private:
   }
 
   const Domain &domain_;
-  const FieldBlock &velocity_;
+  const Field &velocity_;
   const std::vector<Phase> &phases_;
   EdgeViscosity viscosity_;
 };
 
-void add_elastic(const Box &box, const RowPart &part, const FieldBlock &velocity, const Phase &phase, ExactSums *sums) {
+void add_elastic(const Box &box, const RowPart &part, const Field &velocity, const Phase &phase, ExactSums *sums) {
   if (!phase.material.elastic()) return;
   std::vector<double> power(box.cells()[0]), energy(power.size());
   for (const Segment &whole : part.rows(box)) {
@@ -187,7 +187,7 @@ void strain_energy(const Box &box, const Phase &phase, const Segment &row, doubl
   (box.dimension() == 2 ? energy_2d : energy_3d)(Row(phase, row), out);
 }
 
-PetscErrorCode measure_energy_rates(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
                                     const EnergyNumbers &numbers, EnergyRates *rates) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);

@@ -18,7 +18,7 @@ struct EnergyNumbers {
   Real3 force{};                      ///< body force per mass, now
   const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
-  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
+  const Field *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
 };
 
 /// Energy per time; 2-D: per unit depth.
@@ -35,7 +35,7 @@ struct EnergyRates {
 void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out);
 
 /// `velocity` (of `time`), phi and B with one ghost layer. One Allreduce.
-PetscErrorCode measure_energy_rates(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
                                     const EnergyNumbers &numbers, EnergyRates *rates);
 
 }  // namespace eulastic

@@ -20,7 +20,7 @@ double square(double x) { return x * x; }
 // One row at a time: each measure of its cells, ready to be added up.
 class RowMeasures {
 public:
-  RowMeasures(const Box &box, const FieldBlock &velocity)
+  RowMeasures(const Box &box, const Field &velocity)
       : box_(box), velocity_(velocity), dimension_(box.dimension()), n_(box.cells()[0]), values_(n_) {}
 
   const double *squared_speed(const Segment &row) {
@@ -97,7 +97,7 @@ private:
   }
 
   const Box &box_;
-  const FieldBlock &velocity_;
+  const Field &velocity_;
   int dimension_, n_;
   std::vector<double> values_;
 };
@@ -107,7 +107,7 @@ private:
 class SideFaces {
 public:
   /// `viscosity`: that the squares of gradients are weighted with.
-  SideFaces(const Box &box, const FieldBlock &velocity, double viscosity, ExactSums *sums)
+  SideFaces(const Box &box, const Field &velocity, double viscosity, ExactSums *sums)
       : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
 
   void add(int d, bool high) const {
@@ -131,7 +131,7 @@ private:
   }
 
   const Box &box_;
-  const FieldBlock &velocity_;
+  const Field &velocity_;
   double viscosity_;
   ExactSums *sums_;
 };
@@ -164,7 +164,7 @@ FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *
 
 }  // namespace
 
-PetscErrorCode measure_flow(const Domain &domain, const FieldBlock &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);

@@ -12,11 +12,11 @@
 namespace eulastic {
 
 struct FlowNumbers {
-  double density = 1, viscosity = 1;            ///< rho and mu (dynamic)
-  double dt = 0;                                ///< time step
-  double force = 0;                             ///< |f|, per mass
-  const FieldBlock *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
-  const BoxSides *sides = nullptr;              ///< null: volume crosses none
+  double density = 1, viscosity = 1;       ///< rho and mu (dynamic)
+  double dt = 0;                           ///< time step
+  double force = 0;                        ///< |f|, per mass
+  const Field *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
+  const BoxSides *sides = nullptr;         ///< null: volume crosses none
 };
 
 struct FlowMeasures {
@@ -32,7 +32,7 @@ struct FlowMeasures {
 };
 
 /// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
-PetscErrorCode measure_flow(const Domain &domain, const FieldBlock &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures);
 /// The last two of the measures.
 PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures);

@@ -28,7 +28,7 @@ PetscErrorCode largest(const Domain &domain, Value value, Real3 *place) {
 
 }  // namespace
 
-PetscErrorCode place_of_speed(const Domain &domain, const FieldBlock &velocity, Real3 *place) {
+PetscErrorCode place_of_speed(const Domain &domain, const Field &velocity, Real3 *place) {
   PetscFunctionBeginUser;
   const auto rate = [&](int i, int j, int k) {
     double sum = 0;
@@ -39,7 +39,7 @@ PetscErrorCode place_of_speed(const Domain &domain, const FieldBlock &velocity, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode place_of_divergence(const Domain &domain, const FieldBlock &velocity, Real3 *place) {
+PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, Real3 *place) {
   PetscFunctionBeginUser;
   const auto divergence = [&](int i, int j, int k) {
     double sum = 0;

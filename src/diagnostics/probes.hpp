@@ -16,7 +16,7 @@ struct Sample {
 
 /// One ghost layer of all must be valid; phases are those at the time of the velocity.
 struct SampledFields {
-  const FieldBlock &velocity, &pressure;
+  const Field &velocity, &pressure;
   const std::vector<Phase> &phases;
 };
 

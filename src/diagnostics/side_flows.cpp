@@ -12,7 +12,7 @@ enum Sum { into_box, pressure_sum, power_sum, faces_sum, sums };
 // Sums over the faces of one side, if this rank has any.
 class SideSums {
 public:
-  SideSums(const Box &box, double density, const FieldBlock &velocity, const FieldBlock &pressure)
+  SideSums(const Box &box, double density, const Field &velocity, const Field &pressure)
       : box_(box), density_(density), velocity_(velocity), pressure_(pressure) {}
 
   /// `profile`: of an inflow side, 0 where it is covered; or null.
@@ -60,7 +60,7 @@ private:
 
   const Box &box_;
   double density_;
-  const FieldBlock &velocity_, &pressure_;
+  const Field &velocity_, &pressure_;
 };
 
 }  // namespace
@@ -80,8 +80,7 @@ std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box) {
 }
 
 PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
-                                  const FieldBlock &velocity, const FieldBlock &pressure,
-                                  std::vector<SideFlow> *flows) {
+                                  const Field &velocity, const Field &pressure, std::vector<SideFlow> *flows) {
   PetscFunctionBeginUser;
   *flows = crossed_sides(sides, domain);
   if (flows->empty()) PetscFunctionReturn(0);

@@ -23,6 +23,6 @@ struct SideFlow {
 std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box);
 /// Measures them. One ghost layer of the velocity. One Allreduce, or none if there are none.
 PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
-                                  const FieldBlock &velocity, const FieldBlock &pressure, std::vector<SideFlow> *flows);
+                                  const Field &velocity, const Field &pressure, std::vector<SideFlow> *flows);
 
 }  // namespace eulastic

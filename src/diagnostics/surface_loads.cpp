@@ -14,8 +14,8 @@ constexpr int per_body = 6;  // force, torque
 
 class SurfaceLoads {
 public:
-  SurfaceLoads(const EdgeViscosity &viscosity, const FieldBlock &velocity, const FieldBlock &pressure,
-               const std::vector<Phase> &phases, const std::vector<const FieldBlock *> &labels,
+  SurfaceLoads(const EdgeViscosity &viscosity, const Field &velocity, const Field &pressure,
+               const std::vector<Phase> &phases, const std::vector<const Field *> &labels,
                const std::vector<SurfaceLoad> &loads)
       : box_(viscosity.box),
         stress_{viscosity, velocity, phases},
@@ -113,9 +113,9 @@ private:
 
   const Box &box_;
   WholeStress stress_;
-  const FieldBlock &pressure_;
+  const Field &pressure_;
   const std::vector<Phase> &phases_;
-  const std::vector<const FieldBlock *> &labels_;
+  const std::vector<const Field *> &labels_;
   const std::vector<SurfaceLoad> &loads_;
   std::vector<int> index_;  ///< of every label
   std::vector<unsigned char> flags_;
@@ -123,9 +123,9 @@ private:
 
 }  // namespace
 
-PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const FieldBlock &velocity,
-                                     const FieldBlock &pressure, const std::vector<Phase> &phases,
-                                     const std::vector<const FieldBlock *> &labels, std::vector<SurfaceLoad> *loads) {
+PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const Field &velocity,
+                                     const Field &pressure, const std::vector<Phase> &phases,
+                                     const std::vector<const Field *> &labels, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   if (loads->empty()) PetscFunctionReturn(0);
   const VerbScope scope(Verb::sums);

@@ -17,8 +17,8 @@ struct SurfaceLoad {
 
 /// Measures the loads of bodies whose label and centre are given; `labels`: of every phase, null where none of them is
 /// in it, else one field. One ghost of velocity, pressure, phi, B and labels. Exact sums: the same bits on any ranks.
-PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const FieldBlock &velocity,
-                                     const FieldBlock &pressure, const std::vector<Phase> &phases,
-                                     const std::vector<const FieldBlock *> &labels, std::vector<SurfaceLoad> *loads);
+PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const Field &velocity,
+                                     const Field &pressure, const std::vector<Phase> &phases,
+                                     const std::vector<const Field *> &labels, std::vector<SurfaceLoad> *loads);
 
 }  // namespace eulastic

@@ -79,7 +79,7 @@ public:
 
   // Adds traction(cell, plane), which need not be tangential.
   template <class Traction>
-  void add_to(FieldBlock &stress, const Traction &traction) const {
+  void add_to(Field &stress, const Traction &traction) const {
     for_points(box_.rows(), [&](int i, int j, int k) {
       const Int3 cell{i, j, k};
       SurfacePlane plane;
@@ -168,14 +168,13 @@ public:
 
 private:
   const WholeStress &whole_;
-  FieldBlock known_;
+  Field known_;
 };
 
 }  // namespace
 
 // From the fluid's side: quadratics through its velocity, the closer the further from the surface it is.
-void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const FieldBlock &velocity,
-                              FieldBlock &stress) {
+void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress) {
   const VerbScope scope(Verb::sums);
   const SurfaceCells cells(box, solid);
   const int dimension = box.dimension();
@@ -208,7 +207,7 @@ void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid,
 
 // Through the surface: what the momentum equation passes on there, viscous and elastic, goes from one side to the
 // other.
-void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, FieldBlock &stress) {
+void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress) {
   const VerbScope scope(Verb::sums);
   const Box &box = whole.viscosity.box;
   const SurfaceCells cells(box, solid);

@@ -9,9 +9,8 @@ namespace eulastic {
 /// Adds to `stress`, three fields, in owned cells that the surface cuts, and in those without solid whose neighbour is
 /// full of it. `solid`: volume fraction of rigid bodies, three ghosts, as of the velocity; `viscosity`: dynamic, of the
 /// fluid.
-void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const FieldBlock &velocity,
-                              FieldBlock &stress);
+void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress);
 /// The same of elastic bodies; two ghosts of B and of the viscosity too.
-void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, FieldBlock &stress);
+void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress);
 
 }  // namespace eulastic

@@ -8,7 +8,7 @@ namespace {
 double square(double x) { return x * x; }
 
 // nu (d_b v_a + d_a v_b)^2 on the low edge normal to a and b of the cell that everything points to.
-double on_edge(const FieldBlock &viscosity, const FieldBlock &velocity, const Real3 &h, int slot, int a, int b,
+double on_edge(const Field &viscosity, const Field &velocity, const Real3 &h, int slot, int a, int b,
                const Int3 &edge) {
   const ConstView u = velocity[a], v = velocity[b];
   const double *p = &u(edge[0], edge[1], edge[2]), *q = &v(edge[0], edge[1], edge[2]);
@@ -17,7 +17,7 @@ double on_edge(const FieldBlock &viscosity, const FieldBlock &velocity, const Re
 }
 
 // Of the deviator times twice D.
-double at_centre_of(const ConstView &viscosity, const FieldBlock &velocity, const Real3 &h, int dimension,
+double at_centre_of(const ConstView &viscosity, const Field &velocity, const Real3 &h, int dimension,
                     const Int3 &cell) {
   double rate[3] = {}, sum = 0;
   for (int a = 0; a < dimension; ++a) {
@@ -32,7 +32,7 @@ double at_centre_of(const ConstView &viscosity, const FieldBlock &velocity, cons
 
 // That of the stress along surfaces: it and the rate of strain have no shear across them in common.
 template <int Dim>
-double along_surface(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity, const Int3 &cell) {
+double along_surface(const Box &box, const Field &viscosity, const Field &velocity, const Int3 &cell) {
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, cell[1], cell[2]);
   if (stress.excess[cell[0]] == 0) return 0;
   const typename kernels::TangentialStress<Dim>::Rate D = stress.rate(cell[0]);
@@ -43,7 +43,7 @@ double along_surface(const Box &box, const FieldBlock &viscosity, const FieldBlo
 
 }  // namespace
 
-void viscous_dissipation(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity, const Segment &row,
+void viscous_dissipation(const Box &box, const Field &viscosity, const Field &velocity, const Segment &row,
                          double *out) {
   const int dim = box.dimension();
   const Real3 &h = box.spacing();

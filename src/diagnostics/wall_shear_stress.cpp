@@ -61,7 +61,7 @@ private:
 }  // namespace
 
 std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
-                                          const EdgeViscosity &viscosity, const FieldBlock &velocity,
+                                          const EdgeViscosity &viscosity, const Field &velocity,
                                           const std::vector<Phase> &phases) {
   const VerbScope scope(Verb::sums);
   std::vector<WallStress> all;

@@ -23,7 +23,7 @@ struct WallStress {
 
 /// All walls of the box. One ghost layer of velocity (at `time`) and B must be valid.
 std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
-                                          const EdgeViscosity &viscosity, const FieldBlock &velocity,
+                                          const EdgeViscosity &viscosity, const Field &velocity,
                                           const std::vector<Phase> &phases);
 
 }  // namespace eulastic

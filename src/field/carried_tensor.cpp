@@ -13,9 +13,9 @@ const std::vector<TensorComponent> &tensor_components(int dimension, bool centre
   return centred ? full_centred : full;
 }
 
-FieldBlock tensor_at_rest(const Box &box) {
+Field tensor_at_rest(const Box &box) {
   const int dimension = box.dimension();
-  return FieldBlock::at_rest(box, static_cast<int>(tensor_components(dimension).size()), dimension);
+  return Field::at_rest(box, static_cast<int>(tensor_components(dimension).size()), dimension);
 }
 
 }  // namespace eulastic

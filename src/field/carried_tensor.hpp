@@ -1,7 +1,7 @@
 // What a phase carries beside phi: a symmetric tensor that remembers its deformation.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/active_segments.hpp"
 #include "kernels/solid_shear.hpp"
 
@@ -41,7 +41,7 @@ EULASTIC_INLINE auto with_viscosity(const EvolveRule &rule, const Use &use) {
 
 /// B of a solid, its off-diagonals on edges, or B_s of a membrane, all of it at centres.
 struct CarriedTensor {
-  FieldBlock field;  ///< I where nothing evolves or is extended
+  Field field;  ///< I where nothing evolves or is extended
   bool centred = false;
   EvolveRule rule{};
   ActiveSegments evolving;  ///< points where it may evolve
@@ -55,6 +55,6 @@ struct CarriedTensor {
 };
 
 /// I everywhere.
-FieldBlock tensor_at_rest(const Box &box);
+Field tensor_at_rest(const Box &box);
 
 }  // namespace eulastic

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "grid/threads.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 
 #include <vector>

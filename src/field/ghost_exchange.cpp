@@ -181,7 +181,7 @@ PetscErrorCode GhostList::read(const Domain &domain) {
   PetscFunctionReturn(0);
 }
 
-// Leaves and roots are the values of all fields of a block, or whole rows where x is not split.
+// Leaves and roots are the values of all components of a field, or whole rows where x is not split.
 PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
   if (!list_) {
@@ -223,53 +223,53 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::bring(const WantedGhosts &wanted,
-                                    PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
+PetscErrorCode GhostExchange::broadcast(const WantedGhosts &wanted,
+                                        PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
-  FieldBlock &block = *wanted.block;
-  SfHandle &scatter = scatters_[{wanted.width, block.count()}];
-  if (!scatter) PetscCall(build_scatter(wanted.width, block.count(), scatter.put()));
-  double *first = block.data() + first_offset(block.layout());
+  Field &field = *wanted.field;
+  SfHandle &scatter = scatters_[{wanted.width, field.count()}];
+  if (!scatter) PetscCall(build_scatter(wanted.width, field.count(), scatter.put()));
+  double *first = field.data() + first_offset(field.layout());
   PetscCall(bcast(scatter.get(), unit_.type, first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::begin(const WantedGhosts &wanted) {
+PetscErrorCode GhostExchange::begin_update(const WantedGhosts &wanted) {
   PetscFunctionBeginUser;
   if (is_inside(wanted)) PetscFunctionReturn(0);
   VerbScope scope(Verb::exchange);
-  PetscCall(bring(wanted, PetscSFBcastBegin));
+  PetscCall(broadcast(wanted, PetscSFBcastBegin));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::end(const WantedGhosts &wanted) {
+PetscErrorCode GhostExchange::end_update(const WantedGhosts &wanted) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
   if (!is_inside(wanted)) {
     VerbScope wait(Verb::wait);
-    PetscCall(bring(wanted, PetscSFBcastEnd));
+    PetscCall(broadcast(wanted, PetscSFBcastEnd));
   }
   wrap_rows(wanted);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::update(const std::vector<WantedGhosts> &wanted) {
+PetscErrorCode GhostExchange::update_ghosts(const std::vector<WantedGhosts> &wanted) {
   PetscFunctionBeginUser;
   constexpr int most = 6;  // fields: each of them that is under way has buffers of its own, for good
   for (auto first = wanted.begin(), last = first; first != wanted.end();) {
-    for (int fields = 0; last != wanted.end() && (fields == 0 || fields + last->block->count() <= most); ++last) {
-      fields += last->block->count();
-      PetscCall(begin(*last));
+    for (int fields = 0; last != wanted.end() && (fields == 0 || fields + last->field->count() <= most); ++last) {
+      fields += last->field->count();
+      PetscCall(begin_update(*last));
     }
-    for (; first != last; ++first) PetscCall(end(*first));
+    for (; first != last; ++first) PetscCall(end_update(*first));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const OccupiedRows *rows) {
+PetscErrorCode GhostExchange::update_ghosts(Field &field, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(begin({&block, width, rows}));
-  PetscCall(end({&block, width, rows}));
+  PetscCall(begin_update({&field, width, rows}));
+  PetscCall(end_update({&field, width, rows}));
   PetscFunctionReturn(0);
 }
 
@@ -278,21 +278,21 @@ PetscErrorCode GhostExchange::update(FieldBlock &block, int width, const Occupie
 void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
   if (!domain_->wraps_x() || !wanted.row_ends) return;
-  FieldBlock &block = *wanted.block;
-  const Layout &own = block.layout();
+  Field &field = *wanted.field;
+  const Layout &own = field.layout();
   const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*domain_);
   const int layers = is_inside(wanted) ? 0 : width;
   const Box::Range y = domain_->points_near(1, true, layers), z = domain_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
-    for (int f = 0; f < block.count(); ++f)
+    for (int f = 0; f < field.count(); ++f)
       for (int k = z.begin + int(planes.begin); k < z.begin + int(planes.end); ++k)
         for (int j = y.begin; j < y.end; ++j) {
           if (wanted.rows) {
             const OccupiedRows::Span span = wanted.rows->span(j, k);
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
           }
-          double *row = block[f].row(j, k);
+          double *row = field[f].row(j, k);
           const double *later = row + ahead * own.sy;
           for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
           for (int m = 1; m <= width; ++m) {

@@ -1,12 +1,12 @@
 // Ghost updates by PETSc: a PetscSF whose roots are the values that a rank owns and whose leaves are ghosts, across
 // periodic sides too. Who owns which ghost is read from the scatter of the DMDA.
 //
-// The fields of a block travel in one message to each neighbour. While x is not split, roots and leaves are whole rows,
-// and the ghosts at their ends are the other end of the same row.
+// The components of a field travel in one message to each neighbour. While x is not split, roots and leaves are whole
+// rows, and the ghosts at their ends are the other end of the same row.
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"
 
@@ -18,11 +18,11 @@
 
 namespace eulastic {
 
-/// Layers of ghosts that are wanted of all fields of a block. Where `rows` is given the block is at rest elsewhere:
-/// ends of rows that no span comes near are left alone, and if all is inside() ghost rows are, too. Passes of several
-/// stages that wrap x around by themselves (Sides::wrap) want no row ends.
+/// The layers of ghosts of a field to update. With `rows`, outside of whose spans the field holds its default, the ends
+/// of rows that no span comes near are left alone, and if all spans are inside() ghost rows are, too. Without
+/// `row_ends` rows are not wrapped around a periodic x: passes of several stages do that themselves (Sides::wrap).
 struct WantedGhosts {
-  FieldBlock *block;
+  Field *field;
   int width;
   const OccupiedRows *rows = nullptr;
   bool row_ends = true;
@@ -48,14 +48,15 @@ public:
   /// For a domain without a DMDA, which must say which ghosts it has.
   GhostExchange(const Domain &domain, std::function<GhostList()> find) : domain_(&domain), find_(std::move(find)) {}
 
-  /// Afterwards every ghost within `width` that is not behind a wall is right, on ranks that have cells. In ghost rows
-  /// those behind walls of x and further out in x may have changed; all others are not touched.
-  PetscErrorCode update(FieldBlock &block, int width, const OccupiedRows *rows = nullptr);
-  /// The same of several blocks, whose messages are under way together, those of six fields at a time, or of one block.
-  PetscErrorCode update(const std::vector<WantedGhosts> &wanted);
-  /// Its halves: owned values must not change in between. Other blocks may be begun meanwhile.
-  PetscErrorCode begin(const WantedGhosts &wanted);
-  PetscErrorCode end(const WantedGhosts &wanted);
+  /// Afterwards every ghost within `width` layers that is not behind a wall is right, on ranks that have cells. In
+  /// ghost rows, ghosts behind walls of x and further out in x may have changed; all others are not touched.
+  /// Collective.
+  PetscErrorCode update_ghosts(Field &field, int width, const OccupiedRows *rows = nullptr);
+  /// The same for several fields, whose messages are under way together, up to six components at a time.
+  PetscErrorCode update_ghosts(const std::vector<WantedGhosts> &wanted);
+  /// Its halves. Owned values must not change in between; updates of other fields may begin meanwhile.
+  PetscErrorCode begin_update(const WantedGhosts &wanted);
+  PetscErrorCode end_update(const WantedGhosts &wanted);
 
 private:
   /// What roots and leaves are: a row, its ghosts and padding included, or a value.
@@ -71,8 +72,8 @@ private:
   };
   bool by_rows() const { return domain_->processors(0) == 1; }
   PetscErrorCode build_scatter(int width, int fields, PetscSF *sf);
-  PetscErrorCode bring(const WantedGhosts &wanted,
-                       PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
+  PetscErrorCode broadcast(const WantedGhosts &wanted,
+                           PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
   const Domain *domain_;

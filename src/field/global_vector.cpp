@@ -4,7 +4,7 @@
 
 namespace eulastic {
 
-PetscErrorCode to_global_vector(const Domain &domain, ConstView field, Vec vector) {
+PetscErrorCode to_global(const Domain &domain, ConstView field, Vec vector) {
   double *values;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(vector, &values));
@@ -14,7 +14,7 @@ PetscErrorCode to_global_vector(const Domain &domain, ConstView field, Vec vecto
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode from_global_vector(const Domain &domain, Vec vector, View field) {
+PetscErrorCode from_global(const Domain &domain, Vec vector, View field) {
   const double *values;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(vector, &values));

@@ -1,4 +1,4 @@
-// A field at centres as a Vec of the DMDA of the cells, for PETSc's solvers and viewers.
+// A field at centres as a global Vec of the DMDA of the cells, for PETSc's solvers and viewers.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,9 +6,9 @@
 
 namespace eulastic {
 
-/// Copies the cells that the rank owns. `vector` was made by DMCreateGlobalVector for a DMDA of
-/// Domain::create_cell_dm, which has no point N.
-PetscErrorCode to_global_vector(const Domain &domain, ConstView field, Vec vector);
-PetscErrorCode from_global_vector(const Domain &domain, Vec vector, View field);
+/// Copies the owned cells of a field, row by row. `vector` must come from DMCreateGlobalVector of a DMDA that
+/// Domain::create_cell_dm made, which has no point N.
+PetscErrorCode to_global(const Domain &domain, ConstView field, Vec vector);
+PetscErrorCode from_global(const Domain &domain, Vec vector, View field);
 
 }  // namespace eulastic

@@ -1,7 +1,7 @@
 // Where a field of viscosity has its values, and the viscosity that edges see.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/box.hpp"
 
 namespace eulastic {
@@ -17,7 +17,7 @@ struct EdgeViscosity {
   const Box &box;
   double uniform;  ///< dynamic
   double density;
-  const FieldBlock *local;  ///< kinematic, of compute_viscosity(); null: uniform
+  const Field *local;  ///< kinematic, of compute_viscosity(); null: uniform
 
   /// On the low edge of a cell normal to the directions a and b.
   double at(int a, int b, const Int3 &cell) const {

@@ -57,7 +57,7 @@ void fill_ghosts_of_increment(const Box &box, View field, int width) {
 }
 
 void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
-                                   const FieldBlock &velocity, View pressure) {
+                                   const Field &velocity, View pressure) {
   for (const auto [d, high] : box.sides()) {
     if (!box.is_open(d, high)) continue;
     const bool outflow = sides[d][high].kind == SideKind::outflow;

@@ -20,7 +20,7 @@ void fill_ghosts_of_increment(const Box &box, View field, int width);
 /// One ghost layer of the pressure behind open sides, so that its mean with the one before the side is what is given at
 /// `time`. `velocity`: on the sides, for what flows back in through an outflow side.
 void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
-                                   const FieldBlock &velocity, View pressure);
+                                   const Field &velocity, View pressure);
 /// 0 in `width` ghost layers behind open sides.
 void clear_open_ghosts(const Box &box, View field, int width);
 

@@ -3,10 +3,10 @@
 namespace eulastic {
 
 void Phase::empty(const Box &box, bool labels) {
-  fraction = FieldBlock::at_rest(box, 1);
+  fraction = Field::at_rest(box, 1);
   tensor.field = tensor_at_rest(box);
   tensor.centred = material.is_membrane();
-  label = labels ? FieldBlock::at_rest(box, 1) : FieldBlock();
+  label = labels ? Field::at_rest(box, 1) : Field();
 }
 
 void Phase::copy_from(const Phase &other) {

@@ -15,12 +15,12 @@ struct Phase {
   Material material;
   int colour = 0;         ///< 0: the first phase of the species; the others come after the first ones of all species
   bool separate = false;  ///< bodies that come near get phases of their own; needs labels
-  FieldBlock fraction;    ///< phi, one centred field, 0 ... 1
+  Field fraction;         ///< phi, one centred field, 0 ... 1
   OccupiedRows rows;      ///< of phi; once they are known the tensor is I in all others
   CarriedTensor tensor;   ///< B
-  FieldBlock label;       ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+  Field label;            ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
 
-  /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (FieldBlock::at_rest).
+  /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (Field::at_rest).
   void empty(const Box &box, bool labels);
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);

@@ -1,7 +1,7 @@
 // Ghosts behind one side of the box as an image of what is before it; for the files of this room.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/occupied_rows.hpp"
 
 namespace eulastic {

@@ -52,7 +52,7 @@ void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflectio
 namespace {
 
 // The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests
-// is left alone (FieldBlock::at_rest).
+// is left alone (Field::at_rest).
 void clear_face(const Box &box, View q, int d, bool high) {
   const Layout &layout = box.layout();
   const Plane plane(layout, d);
@@ -87,7 +87,7 @@ double wall_speed(const BoxSides &sides) {
   return speed;
 }
 
-void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, FieldBlock &velocity, int width) {
+void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, Field &velocity, int width) {
   VerbScope scope(Verb::wall_ghosts);
   const int dimension = box.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
@@ -123,7 +123,7 @@ void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int w
     if (is_solid(sides[d][high].kind)) reflect(box, field, d, high, false, {0.0, 0.0}, width, rows);
 }
 
-void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, FieldBlock &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
                              const OccupiedRows *rows) {
   VerbScope scope(Verb::wall_ghosts);
   clear_symmetry_planes(box, sides, tensor);
@@ -137,14 +137,14 @@ void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, FieldBlock &
   }
 }
 
-void fill_wall_ghosts_centred_tensor(const Box &box, FieldBlock &tensor, int width, const OccupiedRows *rows) {
+void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, const OccupiedRows *rows) {
   const auto &components = tensor_components(box.dimension());
   for (int c = 0; c < tensor.count(); ++c)
     for (const auto [d, high] : box.sides())
       reflect(box, tensor[c], d, high, false, {components[c].at[d] ? -1.0 : 1.0, 0.0}, width, rows);
 }
 
-void clear_symmetry_planes(const Box &box, const BoxSides &sides, FieldBlock &tensor) {
+void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor) {
   const auto &components = tensor_components(box.dimension());
   for (const auto [d, high] : box.sides())
     for (int c = 0; sides[d][high].kind == SideKind::symmetry && c < tensor.count(); ++c)

@@ -8,7 +8,7 @@
 // evenly, and tensor components on the plane are 0 and reflect oddly.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "field/time_course.hpp"
 #include "grid/occupied_rows.hpp"
 
@@ -64,7 +64,7 @@ double wall_speed(const BoxSides &sides);
 void close_wall_faces(const Box &box, View component, int d);
 /// Fills `width` layers behind every side this rank touches; ghosts from the exchange must be there already.
 /// Velocity: `velocity` holds u, v (, w); faces on sides are set to 0.
-void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, FieldBlock &velocity, int width);
+void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, Field &velocity, int width);
 /// Even reflection of one field of the given staggering, also behind a neighbour's side where ghosts reach beyond it;
 /// not where `rows`, if it is given, is idle before the side.
 void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View field, int width,
@@ -73,11 +73,11 @@ void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View fi
 void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width,
                         const OccupiedRows *rows = nullptr);
 /// All components of a left Cauchy-Green block.
-void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, FieldBlock &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
                              const OccupiedRows *rows = nullptr);
 /// The same where all components live at centres: the mirror image.
-void fill_wall_ghosts_centred_tensor(const Box &box, FieldBlock &tensor, int width, const OccupiedRows *rows);
+void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, const OccupiedRows *rows);
 /// Components of a left Cauchy-Green block on planes of symmetry: 0, ghosts of the other directions included.
-void clear_symmetry_planes(const Box &box, const BoxSides &sides, FieldBlock &tensor);
+void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor);
 
 }  // namespace eulastic

@@ -8,12 +8,12 @@ namespace eulastic {
 
 /// The stress along surfaces around the centres of a row; two ghosts of v.
 template <int Dim>
-EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Box &box, const FieldBlock &viscosity,
-                                                                 const FieldBlock &velocity, int j, int k) {
+EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Box &box, const Field &viscosity,
+                                                                 const Field &velocity, int j, int k) {
   const int along = viscosity_along_surface(Dim), last = Dim - 1;
   const ConstView q = velocity[0];
   const Real3 &h = box.spacing();
-  const auto of_block = [j, k](const FieldBlock &block, int f) { return block[f].row(j, k); };
+  const auto of_block = [j, k](const Field &block, int f) { return block[f].row(j, k); };
   return {of_block(velocity, 0),
           of_block(velocity, 1),
           of_block(velocity, last),

@@ -34,7 +34,7 @@ PetscErrorCode WorkSpace::reserve(int count) {
   const bool out = std::any_of(holder_.begin(), holder_.end(), [](const char *name) { return name != nullptr; });
   PetscCheck(!out, domain_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s", holders().c_str());
   fields_ = {};
-  fields_ = FieldBlock(*domain_, count);
+  fields_ = Field(*domain_, count);
   holder_.assign(count, nullptr);
   PetscFunctionReturn(0);
 }

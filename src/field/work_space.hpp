@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 
 #include <string>
@@ -19,15 +19,15 @@ public:
     Lease(const Lease &) = delete;
     Lease &operator=(const Lease &) = delete;
     ~Lease();
-    FieldBlock &fields() noexcept { return fields_; }
+    Field &fields() noexcept { return fields_; }
     /// `count` of them, from `first` on.
-    FieldBlock part(int first, int count) noexcept { return fields_.part(first, count); }
+    Field part(int first, int count) noexcept { return fields_.part(first, count); }
 
   private:
     friend class WorkSpace;
     WorkSpace *space_ = nullptr;
     int first_ = 0;
-    FieldBlock fields_;
+    Field fields_;
   };
 
   explicit WorkSpace(const Domain &domain) : domain_(&domain) {}
@@ -41,7 +41,7 @@ private:
   std::string holders() const;
 
   const Domain *domain_;
-  FieldBlock fields_;
+  Field fields_;
   std::vector<const char *> holder_;  ///< of every field, or null
 };
 

@@ -164,7 +164,7 @@ PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, c
   const T *value = values.data();
   for (int k = 0; k < int(slab.count[0]); ++k)
     for (int j = 0; j < int(slab.count[1]); ++j, value += slab.count[2])
-      for (int i = 0; i < int(slab.count[2]); ++i) {  // what is equal is not written: FieldBlock::at_rest
+      for (int i = 0; i < int(slab.count[2]); ++i) {  // what is equal is not written: Field::at_rest
         const double found = static_cast<double>(value[i]);
         if (std::memcmp(&found, &field(i, j, k), sizeof found) != 0) field(i, j, k) = found;
       }

@@ -17,8 +17,8 @@ double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) 
 
 }  // namespace
 
-void SnapshotFields::centre_velocity(const FieldBlock &velocity) {
-  if (!velocity_) velocity_ = FieldBlock(*box_, 3);
+void SnapshotFields::centre_velocity(const Field &velocity) {
+  if (!velocity_) velocity_ = Field(*box_, 3);
   for (int c = 0; c < velocity.count(); ++c) {
     const ConstView from = velocity[c];
     const View to = velocity_[c];
@@ -79,7 +79,7 @@ void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &col
 }
 
 void SnapshotFields::mix_fractions(const Phases &phases) {
-  if (!fraction_) fraction_ = FieldBlock(*box_, 1);
+  if (!fraction_) fraction_ = Field(*box_, 1);
   for_points(box_->rows(), [&](int i, int j, int k) {
     double sum = 0;
     for (const Phase *phase : phases) sum += phase->fraction[0](i, j, k);
@@ -89,7 +89,7 @@ void SnapshotFields::mix_fractions(const Phases &phases) {
 
 // The label of the phase that fills most of the cell.
 void SnapshotFields::mix_labels(const Phases &phases) {
-  if (!label_) label_ = FieldBlock(*box_, 1);
+  if (!label_) label_ = Field(*box_, 1);
   for_points(box_->rows(), [&](int i, int j, int k) {
     const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase *p, const Phase *q) {
       return p->fraction[0](i, j, k) < q->fraction[0](i, j, k);
@@ -100,7 +100,7 @@ void SnapshotFields::mix_labels(const Phases &phases) {
 
 // I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
 void SnapshotFields::mix_tensors(const Phases &phases) {
-  if (!tensor_.field) tensor_.field = FieldBlock(*box_, phases[0]->tensor.field.count());
+  if (!tensor_.field) tensor_.field = Field(*box_, phases[0]->tensor.field.count());
   for (int c = 0; c < tensor_.field.count(); ++c) {
     const TensorComponent &component = tensor_.components()[c];
     for_points(box_->rows(), [&](int i, int j, int k) {
@@ -114,8 +114,8 @@ void SnapshotFields::mix_tensors(const Phases &phases) {
   }
 }
 
-std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &selection, const FieldBlock &velocity,
-                                                   const FieldBlock &pressure, const std::vector<Phase> &phases) {
+std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &selection, const Field &velocity,
+                                                   const Field &pressure, const std::vector<Phase> &phases) {
   std::vector<SnapshotField> fields;
   const auto add = [&](const std::string &name, ConstView view, const Staggering &staggering, Stored stored) {
     SnapshotField &field = fields.emplace_back();
@@ -127,7 +127,7 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
       add("left_cauchy_green_" + tensor.components()[c].name() + suffix, tensor.field[c], tensor.components()[c].at,
           selection.precision);
   };
-  const FieldBlock &flow = velocity_;
+  const Field &flow = velocity_;
   if (selection.velocity) {
     for (int c = 0; c < velocity.count(); ++c)
       add(std::string("velocity_") + axes[c], velocity[c], at_face[c], selection.precision);
@@ -144,7 +144,7 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     if (selection.left_cauchy_green) mix_tensors(species);
     if (selection.body) mix_labels(species);
   }
-  const auto add_phase = [&](const FieldBlock &fraction, const CarriedTensor &tensor, const FieldBlock &label,
+  const auto add_phase = [&](const Field &fraction, const CarriedTensor &tensor, const Field &label,
                              const std::string &suffix) {
     if (selection.solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, selection.precision);
     if (selection.left_cauchy_green) add_tensor(tensor, suffix);

@@ -22,11 +22,11 @@ public:
 
   /// One ghost layer must be valid in `velocity` and, with several phases, in their fractions. The result holds
   /// views: it is good until the state or this object changes.
-  std::vector<SnapshotField> collect(const SnapshotSelection &selection, const FieldBlock &velocity,
-                                     const FieldBlock &pressure, const std::vector<Phase> &phases);
+  std::vector<SnapshotField> collect(const SnapshotSelection &selection, const Field &velocity, const Field &pressure,
+                                     const std::vector<Phase> &phases);
 
 private:
-  void centre_velocity(const FieldBlock &velocity);
+  void centre_velocity(const Field &velocity);
   using Phases = std::vector<const Phase *>;
   Phases by_species(const SnapshotSelection &selection, const std::vector<Phase> &phases);
   void merge(const SnapshotSelection &selection, const Phases &colours, Phase *merged);
@@ -35,7 +35,7 @@ private:
   void mix_tensors(const Phases &phases);
 
   const Box *box_;
-  FieldBlock velocity_, fraction_, label_;
+  Field velocity_, fraction_, label_;
   CarriedTensor tensor_;
   std::map<std::string, Phase> merged_;
 };

@@ -21,8 +21,8 @@ EULASTIC_INLINE void in_pieces(const Segment &row, const RowsAhead &ahead, const
 }
 
 template <int Dim>
-EULASTIC_INLINE void of_faces(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing,
-                              double epsilon, const RowsAhead &ahead, double *rate) {
+EULASTIC_INLINE void of_faces(const Segment &row, const Field &v, int a, const double *inverse_spacing, double epsilon,
+                              const RowsAhead &ahead, double *rate) {
   const ConstView q = v[a];
   in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
@@ -39,8 +39,8 @@ EULASTIC_INLINE void of_faces(const Segment &row, const FieldBlock &v, int a, co
 }
 
 template <int Dim>
-EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const FieldBlock &v,
-                                const double *inverse_spacing, double epsilon, const RowsAhead &ahead, double *rate) {
+EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const Field &v, const double *inverse_spacing,
+                                double epsilon, const RowsAhead &ahead, double *rate) {
   in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
@@ -50,31 +50,31 @@ EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const Fi
   });
 }
 
-EULASTIC_CLONES void of_faces_2d(const Segment &s, const FieldBlock &v, int a, const double *h, double e,
+EULASTIC_CLONES void of_faces_2d(const Segment &s, const Field &v, int a, const double *h, double e,
                                  const RowsAhead &ahead, double *r) {
   of_faces<2>(s, v, a, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_faces_3d(const Segment &s, const FieldBlock &v, int a, const double *h, double e,
+EULASTIC_CLONES void of_faces_3d(const Segment &s, const Field &v, int a, const double *h, double e,
                                  const RowsAhead &ahead, double *r) {
   of_faces<3>(s, v, a, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_centres_2d(const Segment &s, const ConstView &q, const FieldBlock &v, const double *h, double e,
+EULASTIC_CLONES void of_centres_2d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
                                    const RowsAhead &ahead, double *r) {
   of_centres<2>(s, q, v, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_centres_3d(const Segment &s, const ConstView &q, const FieldBlock &v, const double *h, double e,
+EULASTIC_CLONES void of_centres_3d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
                                    const RowsAhead &ahead, double *r) {
   of_centres<3>(s, q, v, h, e, ahead, r);
 }
 
 }  // namespace
 
-void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing, double epsilon,
+void face_advection_rate(const Segment &row, const Field &v, int a, const double *inverse_spacing, double epsilon,
                          const RowsAhead &ahead, double *rate) {
   (v.count() == 2 ? of_faces_2d : of_faces_3d)(row, v, a, inverse_spacing, epsilon, ahead, rate);
 }
 
-void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
+void centre_advection_rate(const Segment &row, ConstView q, const Field &v, const double *inverse_spacing,
                            double epsilon, const RowsAhead &ahead, double *rate) {
   (v.count() == 2 ? of_centres_2d : of_centres_3d)(row, q, v, inverse_spacing, epsilon, ahead, rate);
 }

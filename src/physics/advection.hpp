@@ -2,7 +2,7 @@
 // compilers keep on the stack what these need in registers.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/blocks.hpp"
 
 namespace eulastic {
@@ -23,11 +23,11 @@ struct RowsAhead {
 /// rate = -v . grad v_a on a row of faces of direction a. v: the face velocities, three ghosts. Here and below
 /// `inverse_spacing`: 1/h of every direction; `epsilon`: 1e-6 (scale of what is carried)^2; `rate`: by cells of the
 /// row.
-void face_advection_rate(const Segment &row, const FieldBlock &v, int a, const double *inverse_spacing, double epsilon,
+void face_advection_rate(const Segment &row, const Field &v, int a, const double *inverse_spacing, double epsilon,
                          const RowsAhead &ahead, double *rate);
 
 /// rate = -v . grad q on a row of centres; q has three ghosts, v one.
-void centre_advection_rate(const Segment &row, ConstView q, const FieldBlock &v, const double *inverse_spacing,
+void centre_advection_rate(const Segment &row, ConstView q, const Field &v, const double *inverse_spacing,
                            double epsilon, const RowsAhead &ahead, double *rate);
 
 }  // namespace eulastic

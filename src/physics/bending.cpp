@@ -70,7 +70,7 @@ MembraneBending::Window MembraneBending::around(const Phase &phase, int ghosts) 
 }
 
 template <int Dim>
-void MembraneBending::find_curvature(const Phase &phase, FieldBlock &fields) {
+void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
   const Local local(*box_, fields[smoothed]);
   const View psi = fields[smoothed];
   const Window box = around(phase, curvature_ghosts), forced = around(phase, force_ghosts);
@@ -107,7 +107,7 @@ void MembraneBending::find_curvature(const Phase &phase, FieldBlock &fields) {
 
 // E_b (div(delta P grad kappa) + delta ...), where all faces around are known.
 template <int Dim>
-void MembraneBending::find_force(const Phase &phase, FieldBlock &fields) {
+void MembraneBending::find_force(const Phase &phase, Field &fields) {
   const Local local(*box_, fields[smoothed]);
   const double *level_of = fields[level].origin, *curvature_of = fields[curvature].origin,
                *delta_of = fields[delta].origin;
@@ -134,11 +134,11 @@ void MembraneBending::find_force(const Phase &phase, FieldBlock &fields) {
 
 // What waves as short as cells make of the curvature is noise that would drive a flow for ever: force and delta are
 // averaged like the fraction that they come from.
-PetscErrorCode MembraneBending::smooth_force(const Phase &phase, FieldBlock &fields) {
+PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   const int far = mean_ghosts + smooth_reach, dim = box_->dimension();
-  FieldBlock both = fields.part(delta, 2);
-  PetscCall(exchange_->update(both, far, &phase.rows));
+  Field both = fields.part(delta, 2);
+  PetscCall(exchange_->update_ghosts(both, far, &phase.rows));
   for (const int f : {delta, force}) fill_wall_ghosts_even(*box_, at_centre, fields[f], far, &phase.rows);
   const Int3 &n = box_->cells();
   const int deep = dim == 3 ? mean_ghosts : 0, rows = n[1] + 2 * mean_ghosts, planes = n[2] + 2 * deep;
@@ -156,7 +156,7 @@ PetscErrorCode MembraneBending::smooth_force(const Phase &phase, FieldBlock &fie
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, FieldBlock &fields) {
+PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field &fields) {
   PetscFunctionBeginUser;
   const int dim = box_->dimension();
   const Window box = around(phase, level_ghosts);
@@ -187,13 +187,13 @@ PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field
   PetscFunctionReturn(0);
 }
 
-void MembraneBending::force_row(const FieldBlock &fields, int a, int j, int k, double *out) const {
+void MembraneBending::force_row(const Field &fields, int a, int j, int k, double *out) const {
   const ForceRows rows{fields[smoothed].row(j, k), fields[mean].row(j, k), fields[weight].row(j, k),
                        fields[delta].row(j, k)};
   force_of_row(rows, fields[smoothed].stride(a), 1 / box_->spacing()[a], box_->cells()[0], out);
 }
 
-double MembraneBending::energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at) {
+double MembraneBending::energy(const Material &material, const Field &fields, std::ptrdiff_t at) {
   if (!(fields[delta].origin[at] > 0)) return 0;
   const double k = fields[curvature].origin[at] - material.membrane.spontaneous_curvature;
   return 0.5 * material.membrane.bending_modulus * (k * k);

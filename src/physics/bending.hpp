@@ -16,15 +16,15 @@ public:
   MembraneBending(const Box &box, GhostExchange &exchange) : box_(&box), exchange_(&exchange) {}
   /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
   /// around the rows of the phase.
-  PetscErrorCode find(const Phase &phase, ConstView smooth, FieldBlock &fields);
+  PetscErrorCode find(const Phase &phase, ConstView smooth, Field &fields);
   /// The force along `a` on the owned faces of a row into out[0 .. cells); of the last find().
-  void force_row(const FieldBlock &fields, int a, int j, int k, double *out) const;
+  void force_row(const Field &fields, int a, int j, int k, double *out) const;
   /// Energy per area at a cell; 0 where no curvature is known.
-  static double energy(const Material &material, const FieldBlock &fields, std::ptrdiff_t at);
+  static double energy(const Material &material, const Field &fields, std::ptrdiff_t at);
 
 private:
   /// The last two are the means of force and delta around.
-  enum Field { smoothed, curvature, delta, force, level, weight, mean = level };
+  enum Scratch { smoothed, curvature, delta, force, level, weight, mean = level };
   struct Window {
     Box::Range range[3];
     bool holds(const Int3 &place) const {
@@ -39,11 +39,11 @@ private:
   };
   Window around(const Phase &phase, int ghosts) const;
   template <int Dim>
-  void find_curvature(const Phase &phase, FieldBlock &fields);
+  void find_curvature(const Phase &phase, Field &fields);
   template <int Dim>
-  void find_force(const Phase &phase, FieldBlock &fields);
+  void find_force(const Phase &phase, Field &fields);
 
-  PetscErrorCode smooth_force(const Phase &phase, FieldBlock &fields);
+  PetscErrorCode smooth_force(const Phase &phase, Field &fields);
 
   const Box *box_;
   GhostExchange *exchange_;

@@ -14,8 +14,7 @@ EULASTIC_INLINE void correct_row(int n, double factor, const double *increment, 
 }
 
 EULASTIC_CLONES void correct_rows(const Box &box, const RowPart &part, double dt_over_density, double rotation,
-                                  const FieldBlock &increment, const FieldBlock &divergence, FieldBlock &velocity,
-                                  FieldBlock &pressure) {
+                                  const Field &increment, const Field &divergence, Field &velocity, Field &pressure) {
   const Int3 n = box.cells();
   const ConstView q = increment[0];
   for (int k = part.k_begin; k < part.k_end; ++k)
@@ -32,8 +31,7 @@ EULASTIC_CLONES void correct_rows(const Box &box, const RowPart &part, double dt
 
 // The increments below a part that is not the first, before p changes.
 EULASTIC_CLONES void find_increments_below(const Box &box, const RowPart &part, kernels::AcmIncrement formula,
-                                           const FieldBlock &divergence, const FieldBlock &pressure,
-                                           RowScratch &increments) {
+                                           const Field &divergence, const Field &pressure, RowScratch &increments) {
   const int n = box.cells()[0];
   const bool flat = box.dimension() == 2;
   for (int j = flat ? part.j_begin - 1 : part.j_begin; j < (flat ? part.j_begin : part.j_end); ++j) {
@@ -48,9 +46,8 @@ EULASTIC_CLONES void find_increments_below(const Box &box, const RowPart &part, 
 // `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane. x works its increments out by
 // itself: reading them across the vectors that were just written, it would wait for the caches.
 EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part, double dt_over_density,
-                                             double rotation, kernels::AcmIncrement formula,
-                                             const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure,
-                                             RowScratch &increments) {
+                                             double rotation, kernels::AcmIncrement formula, const Field &divergence,
+                                             Field &velocity, Field &pressure, RowScratch &increments) {
   const Int3 n = box.cells();
   const Real3 &h = box.spacing();
   const bool flat = box.dimension() == 2;
@@ -91,8 +88,8 @@ EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part
 
 }  // namespace
 
-PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const FieldBlock &increment,
-                                const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure) {
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const Field &increment,
+                                const Field &divergence, Field &velocity, Field &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
   in_row_parts(box, [&](const RowPart &part) {
@@ -110,8 +107,8 @@ PetscErrorCode correct_velocity(const Box &box, double density, double dt, doubl
 }
 
 PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation,
-                                const kernels::AcmIncrement &increment, const FieldBlock &divergence,
-                                FieldBlock &velocity, FieldBlock &pressure) {
+                                const kernels::AcmIncrement &increment, const Field &divergence, Field &velocity,
+                                Field &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
   const int parts = row_parts(box);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 
 namespace eulastic {
 
@@ -13,11 +13,11 @@ struct AcmIncrement;
 /// v* becomes v = v* - dt/rho grad(increment) (9) and p += increment - rotation D*, the latter in one ghost layer too
 /// (8). rotation = nu/2 is the rotational form of the second-order step, 0 the paper's. Rows of v are wrapped by three
 /// around a periodic x.
-PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const FieldBlock &increment,
-                                const FieldBlock &divergence, FieldBlock &velocity, FieldBlock &pressure);
+PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const Field &increment,
+                                const Field &divergence, Field &velocity, Field &pressure);
 /// The same with an increment that is stored nowhere; one ghost of D* and p.
 PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation,
-                                const kernels::AcmIncrement &increment, const FieldBlock &divergence,
-                                FieldBlock &velocity, FieldBlock &pressure);
+                                const kernels::AcmIncrement &increment, const Field &divergence, Field &velocity,
+                                Field &pressure);
 
 }  // namespace eulastic

@@ -17,7 +17,7 @@ struct Rows {
 // Asks for what the batches do not: beside the vectors of a segment two planes on, and phi up to its last cache line.
 void prefetch_beside(const Phase &phase, const Segment &s) {
   const ConstView phi = phase.fraction[0];
-  const FieldBlock &B = phase.tensor.field;
+  const Field &B = phase.tensor.field;
   const int i = s.i_begin - 1, length = s.size() + 2 + 7, k = s.k + 2;
   prefetch(phi.row(s.j, k) + i, length);
   for (int f = 0; f < B.count(); ++f)
@@ -31,7 +31,7 @@ void prefetch_beside(const Phase &phase, const Segment &s) {
 
 template <int Dim, bool WithSlope, class Law, class Viscosity>
 EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &law, const Viscosity &viscosity,
-                               const Rows &rows, FieldBlock &force, const ForceSlope &slope) {
+                               const Rows &rows, Field &force, const ForceSlope &slope) {
   const ConstView phi = phase.fraction[0];
   const Real3 &h = box.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
@@ -64,8 +64,8 @@ EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &la
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double scale, const Rows &rows,
-                                      FieldBlock &force, const ForceSlope &slope) {
+EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
+                                      const ForceSlope &slope) {
   with_law(phase.material, [&](const auto &law) EULASTIC_BODY {
     with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
       if (slope.field)
@@ -76,16 +76,16 @@ EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double
   });
 }
 
-EULASTIC_CLONES void add_force_2d(const Box &box, const Phase &phase, double scale, const Rows &rows, FieldBlock &force,
+EULASTIC_CLONES void add_force_2d(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
                                   const ForceSlope &slope) {
   add_force_of_law<2>(box, phase, scale, rows, force, slope);
 }
-EULASTIC_CLONES void add_force_3d(const Box &box, const Phase &phase, double scale, const Rows &rows, FieldBlock &force,
+EULASTIC_CLONES void add_force_3d(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
                                   const ForceSlope &slope) {
   add_force_of_law<3>(box, phase, scale, rows, force, slope);
 }
 
-void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale, const Rows &rows, FieldBlock &force,
+void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale, const Rows &rows, Field &force,
                  const ForceSlope &slope) {
   for (const Phase &phase : phases)
     if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
@@ -95,17 +95,16 @@ void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale,
 }  // namespace
 
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
-                       FieldBlock &force, const ForceSlope &slope) {
+                       Field &force, const ForceSlope &slope) {
   add_on_rows(box, phases, scale, {0, box.cells()[0], j_begin, j_end, k, 0, box.dimension()}, force, slope);
 }
 
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
-                       FieldBlock &force, const ForceSlope &slope) {
+                       Field &force, const ForceSlope &slope) {
   add_on_rows(box, phases, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, slope);
 }
 
-PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases,
-                                     FieldBlock &force) {
+PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, Field &force) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::momentum);
   const int dim = box.dimension(), n = box.cells()[0];

@@ -10,20 +10,20 @@ namespace eulastic {
 
 /// Where the elastic force per mass goes beside the rate, to say how it changes in time.
 struct ForceSlope {
-  FieldBlock *field = nullptr;  ///< factor times that force is added; null: nowhere
+  Field *field = nullptr;  ///< factor times that force is added; null: nowhere
   double factor = 0;
 };
 
 /// force += scale div(sigma) on rows j_begin <= j < j_end of plane k, where they feel any; with a factor also to
 /// `slope`. One ghost of phi and B.
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
-                       FieldBlock &force, const ForceSlope &slope = {});
+                       Field &force, const ForceSlope &slope = {});
 /// The same on faces of component a beyond the rows, those of open sides.
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
-                       FieldBlock &force, const ForceSlope &slope = {});
+                       Field &force, const ForceSlope &slope = {});
 
 /// force = scale div(sigma), 0 at owned faces that feel none.
-PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, FieldBlock &force);
+PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, Field &force);
 
 /// Of all owned faces.
 double elastic_flops(int dimension, const std::vector<Phase> &phases);

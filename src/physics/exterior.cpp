@@ -265,7 +265,7 @@ double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int lay
 }
 
 PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange &exchange,
-                                      FieldBlock &tensor) const {
+                                      Field &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
   const int parts = row_parts(box);
@@ -276,7 +276,7 @@ PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, Gho
     });
     for (const double some : flops) scope.flops(some);
     clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
-    if (linear_ && L < layers) PetscCall(exchange.update(tensor, 3));
+    if (linear_ && L < layers) PetscCall(exchange.update_ghosts(tensor, 3));
   }
   PetscFunctionReturn(0);
 }

@@ -37,7 +37,7 @@ public:
   PetscErrorCode build(const Box &box, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
   /// three points in, so that attached bodies exchange ghosts after every layer.
-  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange &exchange, FieldBlock &tensor) const;
+  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange &exchange, Field &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
 

@@ -39,6 +39,6 @@ struct InitialFlow {
 /// Writes u, v (, w) of `velocity` at all owned faces, those of open high sides too; index N of other directions and
 /// ghosts are left to fill_wall_ghosts_velocity and the exchange. The value at a face depends on its position alone, so
 /// the bits do not depend on the ranks. Solenoidal up to the truncation error of the grid: project it.
-void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, FieldBlock &velocity);
+void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, Field &velocity);
 
 }  // namespace eulastic

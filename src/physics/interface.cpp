@@ -125,8 +125,8 @@ std::array<Extent, 3> cells_of_sweeps(const Box &box, const Int3 &order) {
 
 }  // namespace
 
-PetscErrorCode InterfaceTransport::advance(double dt, const FieldBlock &velocity, long step, const OccupiedRows &rows,
-                                           FieldBlock &fraction) {
+PetscErrorCode InterfaceTransport::advance(double dt, const Field &velocity, long step, const OccupiedRows &rows,
+                                           Field &fraction) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const int dimension = box_->dimension();

@@ -24,8 +24,7 @@ public:
   /// Moves `fraction`, of which `rows` are occupied, over dt with face velocities. The order of directions follows from
   /// `step`: all of them in turn, each after its mirror image. Nothing is communicated: ghosts are moved along and are
   /// stale afterwards; those behind walls need not be set.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, long step, const OccupiedRows &rows,
-                         FieldBlock &fraction);
+  PetscErrorCode advance(double dt, const Field &velocity, long step, const OccupiedRows &rows, Field &fraction);
   /// Cells of the interface band in the last `advance`, ghosts included.
   double band_cells() const { return cells_.points(); }
   /// Planes that the last `advance` made, in all its directions.

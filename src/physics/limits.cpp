@@ -63,7 +63,7 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
 }
 
 // Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
-std::vector<double> extremes_of_part(const Box &box, int part, int parts, const FieldBlock &velocity,
+std::vector<double> extremes_of_part(const Box &box, int part, int parts, const Field &velocity,
                                      const std::vector<Phase> &phases) {
   const Int3 n = box.cells(), &N = box.domain_cells(), &begin = box.layout().begin;
   const RowPart rows = row_part(box, part, parts);
@@ -142,7 +142,7 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
   return with_law(material, [&](const auto &law) { return law.stiffness(bounds); });
 }
 
-PetscErrorCode measure_extremes(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes) {
   PetscFunctionBeginUser;
   const int parts = row_parts(domain);

@@ -19,7 +19,7 @@ struct FlowExtremes {
 };
 
 /// `least`: the solid fraction of each phase from which on B is evolved.
-PetscErrorCode measure_extremes(const Domain &domain, const FieldBlock &velocity, const std::vector<Phase> &phases,
+PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
                                 FlowExtremes *extremes);
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).

@@ -43,7 +43,7 @@ EULASTIC_INLINE double centre_velocity(const double *v, std::ptrdiff_t s) {
 }
 
 template <int Dim>
-EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const FieldBlock &velocity, std::ptrdiff_t at,
+EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const Field &velocity, std::ptrdiff_t at,
                                           const Vector<Dim> &n, double distance) {
   Flow<Dim> flow;
   std::ptrdiff_t step[Dim];
@@ -80,8 +80,7 @@ EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const FieldBl
 // -v.grad B + L B + B L^T. Linear differences: weights that follow the smoothness of each component, as those of WENO5,
 // would not keep the trace of a mean of planes.
 template <int Dim>
-EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const FieldBlock &B, std::ptrdiff_t at,
-                                    const Flow<Dim> &flow) {
+EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std::ptrdiff_t at, const Flow<Dim> &flow) {
   const Tensor<Dim> b = tensor_at<Dim>(B, at);
   Tensor<Dim> rate;
   for (int x = 0; x < Dim; ++x)
@@ -158,19 +157,19 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
 // First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same. Areas stay above half of
 // those at the start.
 template <int Dim>
-PetscErrorCode MembraneTransport::heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next) {
+PetscErrorCode MembraneTransport::heun(double dt, const Field &velocity, Phase *phase, Field &next) {
   PetscFunctionBeginUser;
   const double least = least_area_squared(*phase);
   std::vector<long> kept(row_parts(*domain_));
   const Local<Dim> local(*domain_, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
-  FieldBlock &tensor = phase->tensor.field;
+  Field &tensor = phase->tensor.field;
   const auto stage = [&](bool second, std::size_t c, long *lost) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) return;
     const Vector<Dim> n = normal_of<Dim>(cell.normal);
     if (!second) flows[c] = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
-    const FieldBlock &from = second ? next : tensor;
+    const Field &from = second ? next : tensor;
     const Tensor<Dim> rate = rate_of<Dim>(local, from, cell.at, flows[c]);
     Tensor<Dim> value = tensor_at<Dim>(from, cell.at);
     for (int a = 0; a < Dim; ++a)
@@ -209,13 +208,13 @@ double MembraneTransport::least_area_squared(const Phase &phase) {
 // does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
 // tell of something else altogether lie where a quadratic is not determined, or have been carried by a flow that the
 // grid does not resolve, as at an edge that is pressed to a wall.
-void MembraneTransport::recall(double dt, const FieldBlock &velocity,
-                               const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase) {
+void MembraneTransport::recall(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains,
+                               Phase *phase) {
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
       const SurfaceCells::Cell &cell = surface_.all()[strain.cell];
-      FieldBlock &tensor = phase->tensor.field;
+      Field &tensor = phase->tensor.field;
       Tensor<dim> found;
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b) found[a][b] = strain.B[kernels::position<dim>(a, b)];
@@ -246,7 +245,7 @@ void MembraneTransport::recall(double dt, const FieldBlock &velocity,
     each(std::integral_constant<int, 3>());
 }
 
-PetscErrorCode MembraneTransport::advance(double dt, const FieldBlock &velocity, Memory *memory,
+PetscErrorCode MembraneTransport::advance(double dt, const Field &velocity, Memory *memory,
                                           std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   unresolved_ = 0;
@@ -300,7 +299,7 @@ PetscErrorCode MembraneTransport::follow(std::vector<Phase> *phases, std::vector
   for (Phase &phase : *phases)
     if (phase.material.is_membrane() && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
   if (labels.empty()) PetscFunctionReturn(0);
-  PetscCall(exchange_->update(labels));
+  PetscCall(exchange_->update_ghosts(labels));
   markers_.follow(*phases, markers);
   PetscFunctionReturn(0);
 }

@@ -65,19 +65,19 @@ public:
   };
   /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `memory`: that
   /// of the state whose force add_force() adds; null: copies of its phases, without markers. Collective.
-  PetscErrorCode advance(double dt, const FieldBlock &velocity, Memory *memory, std::vector<Phase> *phases);
+  PetscErrorCode advance(double dt, const Field &velocity, Memory *memory, std::vector<Phase> *phases);
   /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
   /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
   /// divergence of a stress adds up to nothing.
-  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
+  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const ForceSlope &slope = {});
   /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
-  PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured,
+  PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured,
                          std::vector<SurfaceSample> *samples = nullptr);
 
 private:
   /// delta tau at centres, of the cells in surface_.
-  PetscErrorCode find_stress(const Phase &phase, FieldBlock &stress);
+  PetscErrorCode find_stress(const Phase &phase, Field &stress);
   /// Called with the part, whether it is of bending, component, j, k and the force on the owned faces of the row, which
   /// it may spoil.
   using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
@@ -88,12 +88,12 @@ private:
   PetscErrorCode gather_force(const Phase &phase, ConstView smooth, NetForce *net);
   PetscErrorCode end_force(NetForce *net);
   bool drives_all(const std::vector<Phase> &phases) const;
-  PetscErrorCode measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
+  PetscErrorCode measure_phase(const Phase &phase, const Field &velocity, SurfaceEnergy *measured,
                                std::vector<SurfaceSample> *samples);
   /// Leaves the layers to the caller.
   template <int Dim>
-  PetscErrorCode heun(double dt, const FieldBlock &velocity, Phase *phase, FieldBlock &next);
-  void recall(double dt, const FieldBlock &velocity, const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase);
+  PetscErrorCode heun(double dt, const Field &velocity, Phase *phase, Field &next);
+  void recall(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase);
   static double least_area_squared(const Phase &phase);
 
   const Domain *domain_;
@@ -106,7 +106,7 @@ private:
   WallFilm film_;
   bool drifts_;
   long unresolved_ = 0;
-  FieldBlock force_;   ///< at faces, if it is known
+  Field force_;        ///< at faces, if it is known
   Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
   bool force_known_ = false;
 };

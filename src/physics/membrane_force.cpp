@@ -20,8 +20,7 @@ EULASTIC_INLINE double between(const double *q, std::ptrdiff_t s) noexcept {
 // div T on faces of component a, of a row. Within the few cells of delta the terms have to cancel where the surface is
 // flat and its tension uniform, in whatever direction.
 template <int Dim>
-EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k,
-                                    double *out) {
+EULASTIC_INLINE void divergence_row(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
   const ConstView q = T[a];
   const double *aa = q.row(j, k);
   const std::ptrdiff_t sa = q.stride(a);
@@ -40,10 +39,10 @@ EULASTIC_INLINE void divergence_row(const FieldBlock &T, int a, const Real3 &inv
     }
   }
 }
-EULASTIC_CLONES void divergence_2d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+EULASTIC_CLONES void divergence_2d(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
   divergence_row<2>(T, a, inverse, n, j, k, out);
 }
-EULASTIC_CLONES void divergence_3d(const FieldBlock &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+EULASTIC_CLONES void divergence_3d(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
   divergence_row<3>(T, a, inverse, n, j, k, out);
 }
 
@@ -53,7 +52,7 @@ constexpr int force_reach = 2;
 }  // namespace
 
 // delta tau at centres, with the ghosts that the force takes; 0 elsewhere on rows that feel it.
-PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &stress) {
+PetscErrorCode MembraneTransport::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
   const int dim = domain_->dimension();
@@ -78,7 +77,7 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, FieldBlock &st
           stress, cell.at,
           set(cell, tensor_at<3>(phase.tensor.field, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
   }
-  PetscCall(exchange_->update(stress, force_reach, &phase.rows));
+  PetscCall(exchange_->update_ghosts(stress, force_reach, &phase.rows));
   fill_wall_ghosts_centred_tensor(*domain_, stress, force_reach, &phase.rows);
   PetscFunctionReturn(0);
 }
@@ -94,7 +93,7 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
     WorkSpace::Lease lease;
-    FieldBlock &fields = lease.fields();
+    Field &fields = lease.fields();
     PetscCall(work_->take(bending ? "bending" : "stress of a membrane",
                           bending ? MembraneBending::work_fields : phase.tensor.field.count(), &lease));
     if (bending)
@@ -158,8 +157,8 @@ PetscErrorCode MembraneTransport::end_force(NetForce *net) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
-                                            FieldBlock &force, const ForceSlope &slope) {
+PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
+                                            const ForceSlope &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
     NetForce net(*domain_, drives_all(phases));

@@ -33,7 +33,7 @@ double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
   return std::sqrt((g[0] * g[0] + g[1] * g[1]) + g[2] * g[2]);
 }
 
-Real3 centre_velocity(const FieldBlock &velocity, std::ptrdiff_t at) {
+Real3 centre_velocity(const Field &velocity, std::ptrdiff_t at) {
   Real3 v{};
   for (int d = 0; d < velocity.count(); ++d) {
     const double *face = velocity[d].origin + at;
@@ -44,7 +44,7 @@ Real3 centre_velocity(const FieldBlock &velocity, std::ptrdiff_t at) {
 
 }  // namespace
 
-PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldBlock &velocity, SurfaceEnergy *measured,
+PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const Field &velocity, SurfaceEnergy *measured,
                                                 std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   enum Sum { power, stored, sums };
@@ -87,7 +87,7 @@ PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const FieldB
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const Field &velocity,
                                           SurfaceEnergy *measured, std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   for (const Phase &phase : phases)

@@ -1,13 +1,13 @@
 // B_s of one cell out of its block, and back.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "kernels/membrane.hpp"
 
 namespace eulastic {
 
 template <int Dim>
-EULASTIC_INLINE kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff_t at) {
+EULASTIC_INLINE kernels::Tensor<Dim> tensor_at(const Field &B, std::ptrdiff_t at) {
   const auto value = [&](int f) { return B[f].origin[at]; };
   if constexpr (Dim == 2) {
     return {{{value(0), value(2)}, {value(2), value(1)}}};
@@ -17,7 +17,7 @@ EULASTIC_INLINE kernels::Tensor<Dim> tensor_at(const FieldBlock &B, std::ptrdiff
 }
 
 template <int Dim>
-EULASTIC_INLINE void set_tensor(FieldBlock &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
+EULASTIC_INLINE void set_tensor(Field &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
   for (int a = 0; a < Dim; ++a)
     for (int b = a; b < Dim; ++b) B[a == b ? a : Dim == 2 ? 2 : 6 - a - b].origin[at] = t[a][b];
 }

@@ -14,9 +14,9 @@ namespace {
 
 struct RateTerms {
   const Box &box;
-  const FieldBlock &velocity, &pressure;
+  const Field &velocity, &pressure;
   const std::vector<Phase> &phases;
-  FieldBlock *advection;  // null: not kept
+  Field *advection;  // null: not kept
   ForceSlope slope;
   bool inertia;
   double density, epsilon;
@@ -25,8 +25,8 @@ struct RateTerms {
   InverseSquares viscosity;   // nu/h^2
 };
 
-RateTerms rate_terms(const Box &box, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
-                     const FieldBlock &pressure, const std::vector<Phase> &phases) {
+RateTerms rate_terms(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                     const Field &pressure, const std::vector<Phase> &phases) {
   const Real3 &h = box.spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
   const double nu = fluid.kinematic_viscosity();
   const auto over_square = [&](int d) { return nu * (inverse[d] * inverse[d]); };
@@ -52,7 +52,7 @@ struct BlockRows {
 
 // What is asked for ahead of row j of component a: the rows of its stencil, at the block's sides too, of the result and
 // of what goes with it.
-RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, const FieldBlock &out) {
+RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, const Field &out) {
   constexpr int reach = Box::stencil_width;
   const RowAhead next(block.begin, block.end, j, block.k);
   const auto at = [&](ConstView q, int y, int z) { return q.row(next.j + y, next.k + z) - reach; };
@@ -80,8 +80,8 @@ EULASTIC_INLINE void combine_advection(const Segment &row, AdvectionWeights weig
 // All terms but the elastic force, of component a on a row. `advection`: a row of scratch.
 template <int Dim>
 EULASTIC_INLINE void rate_of_row(const RateTerms &t, const Segment &row, int a, const RowsAhead &ahead,
-                                 double *advection, FieldBlock &out) {
-  const FieldBlock &v = t.velocity;
+                                 double *advection, Field &out) {
+  const Field &v = t.velocity;
   const ConstView p = t.pressure[0];
   if (t.inertia) {
     face_advection_rate(row, v, a, t.inverse.data(), t.epsilon, ahead, advection);
@@ -95,7 +95,7 @@ EULASTIC_INLINE void rate_of_row(const RateTerms &t, const Segment &row, int a, 
 }
 
 template <int Dim>
-EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, double *advection, Field &out) {
   const int n = t.box.cells()[0];
   for (int j = block.begin; j < block.end; ++j) {
     const Segment row{0, n, j, block.k};
@@ -106,20 +106,18 @@ EULASTIC_INLINE void fluid_rate(const RateTerms &t, const BlockRows &block, doub
   }
 }
 
-EULASTIC_CLONES void fluid_rate_2d(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+EULASTIC_CLONES void fluid_rate_2d(const RateTerms &t, const BlockRows &block, double *advection, Field &out) {
   fluid_rate<2>(t, block, advection, out);
 }
-EULASTIC_CLONES void fluid_rate_3d(const RateTerms &t, const BlockRows &block, double *advection, FieldBlock &out) {
+EULASTIC_CLONES void fluid_rate_3d(const RateTerms &t, const BlockRows &block, double *advection, Field &out) {
   fluid_rate<3>(t, block, advection, out);
 }
 
 // On the high faces of open sides, which are no row's.
-EULASTIC_CLONES void open_face_rate_2d(const RateTerms &t, const Segment &row, int a, double *advection,
-                                       FieldBlock &out) {
+EULASTIC_CLONES void open_face_rate_2d(const RateTerms &t, const Segment &row, int a, double *advection, Field &out) {
   rate_of_row<2>(t, row, a, {}, advection, out);
 }
-EULASTIC_CLONES void open_face_rate_3d(const RateTerms &t, const Segment &row, int a, double *advection,
-                                       FieldBlock &out) {
+EULASTIC_CLONES void open_face_rate_3d(const RateTerms &t, const Segment &row, int a, double *advection, Field &out) {
   rate_of_row<3>(t, row, a, {}, advection, out);
 }
 
@@ -128,7 +126,7 @@ constexpr int rows_of_block = block_rows / 2;
 
 // The rate, and after(rows) while it is in the caches.
 template <class After>
-void compute_rate(const RateTerms &t, FieldBlock &out, const After &after) {
+void compute_rate(const RateTerms &t, Field &out, const After &after) {
   VerbScope scope(Verb::momentum);
   const int dim = t.box.dimension();
   in_row_parts(t.box, [&](const RowPart &part) {
@@ -161,7 +159,7 @@ EULASTIC_CLONES void advance_row(const Segment &row, double dt, ConstView veloci
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(dt, out[i], v[i]);
 }
-void advance_by_rate(const Box &box, const BlockRows &block, double dt, const FieldBlock &velocity, FieldBlock &rate) {
+void advance_by_rate(const Box &box, const BlockRows &block, double dt, const Field &velocity, Field &rate) {
   for (int a = 0; a < box.dimension(); ++a)
     for (int j = block.begin; j < block.end; ++j)
       advance_row({0, box.cells()[0], j, block.k}, dt, velocity[a], rate[a]);
@@ -169,9 +167,9 @@ void advance_by_rate(const Box &box, const BlockRows &block, double dt, const Fi
 
 }  // namespace
 
-PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
-                             const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
-                             FieldBlock &rate, const ForceSlope &slope) {
+PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                             const Field &pressure, const std::vector<Phase> &phases, Field &advection, Field &rate,
+                             const ForceSlope &slope) {
   PetscFunctionBeginUser;
   RateTerms terms = rate_terms(box, fluid, step, velocity, pressure, phases);
   terms.advection = advection ? &advection : nullptr;
@@ -180,9 +178,8 @@ PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumS
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step,
-                                const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star) {
+PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                                const Field &pressure, const std::vector<Phase> &phases, Field &velocity_star) {
   PetscFunctionBeginUser;
   compute_rate(rate_terms(box, fluid, step, velocity, pressure, phases), velocity_star,
                [&](const BlockRows &block) { advance_by_rate(box, block, step.dt, velocity, velocity_star); });

@@ -27,14 +27,13 @@ struct MomentumStep {
 /// dv/dt = -v.grad v + nu lap v - grad p/rho + div(sigma)/rho + f at all owned faces. Needs three ghosts of v, one of
 /// p, phi and B. `advection` holds -v.grad v of the last step (read when its weight is not 0) and gets that of this
 /// one; it may be empty when the weight is 0. Faces of open sides are owned ones.
-PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const FieldBlock &velocity,
-                             const FieldBlock &pressure, const std::vector<Phase> &phases, FieldBlock &advection,
-                             FieldBlock &rate, const ForceSlope &slope = {});
+PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                             const Field &pressure, const std::vector<Phase> &phases, Field &advection, Field &rate,
+                             const ForceSlope &slope = {});
 
 /// v* = v + dt dv/dt, (7). Faces on walls come out unset: fill the wall ghosts. Rows are wrapped by one around a
 /// periodic x.
-PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step,
-                                const FieldBlock &velocity, const FieldBlock &pressure,
-                                const std::vector<Phase> &phases, FieldBlock &velocity_star);
+PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                                const Field &pressure, const std::vector<Phase> &phases, Field &velocity_star);
 
 }  // namespace eulastic

@@ -17,7 +17,7 @@ EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, do
   for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
 }
 
-void take_off_mean(const Box &box, const Real3 &mean, FieldBlock &force) {
+void take_off_mean(const Box &box, const Real3 &mean, Field &force) {
   const int n = box.cells()[0];
   for (int d = 0; d < box.dimension(); ++d) {
     if (mean[d] == 0) continue;
@@ -41,7 +41,7 @@ PetscErrorCode NetForce::find_mean(Real3 *mean) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NetForce::take_off(FieldBlock &force) {
+PetscErrorCode NetForce::take_off(Field &force) {
   PetscFunctionBeginUser;
   Real3 mean;
   PetscCall(find_mean(&mean));

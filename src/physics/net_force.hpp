@@ -12,7 +12,7 @@ namespace eulastic {
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 
 /// force -= mean on all owned faces.
-void take_off_mean(const Box &box, const Real3 &mean, FieldBlock &force);
+void take_off_mean(const Box &box, const Real3 &mean, Field &force);
 
 /// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
 class NetForce {
@@ -26,7 +26,7 @@ public:
   /// Its mean in periodic directions, 0 in others. Collective.
   PetscErrorCode find_mean(Real3 *mean);
   /// Takes it off. Collective.
-  PetscErrorCode take_off(FieldBlock &force);
+  PetscErrorCode take_off(Field &force);
 
 private:
   const Domain *domain_;

@@ -32,7 +32,7 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
 
 }  // namespace
 
-PetscErrorCode limit_shear(const Box &box, const Phase &phase, FieldBlock &tensor) {
+PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   for (int f = 0; f < tensor.count(); ++f) {

@@ -10,6 +10,6 @@ namespace eulastic {
 /// B_ab^2 <= B_aa B_bb on the edges that evolve, with the means of the diagonal over the four centres around them. The
 /// diagonal itself is kept above 0 by transport_tensor(). Needs B at the centres in one ghost layer, where an edge
 /// beside them evolves; phi in one.
-PetscErrorCode limit_shear(const Box &box, const Phase &phase, FieldBlock &tensor);
+PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor);
 
 }  // namespace eulastic

@@ -9,7 +9,7 @@
 
 namespace eulastic {
 void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope) {
+                        double dt, const Field &velocity, Field &rate, Field *slope) {
   VerbScope scope(Verb::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
@@ -34,7 +34,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
 
 // By WENO5 a cut face in the wind of a body would take its difference from inside, across the kink of the velocity.
 void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
-                          const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate) {
+                          const Field &velocity, Field *advection, Field &rate) {
   VerbScope scope(Verb::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const Strides s = strides(velocity[a]);
@@ -62,7 +62,7 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
 }
 
 void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star) {
+                                double dt, const Field &velocity, Field &velocity_star) {
   VerbScope scope(Verb::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
@@ -77,7 +77,7 @@ void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double 
   scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + 7));
 }
 
-std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const FieldBlock &field) {
+std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const Field &field) {
   std::vector<double> values;
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
@@ -86,8 +86,7 @@ std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, con
   return values;
 }
 
-void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values,
-                         FieldBlock &field) {
+void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values, Field &field) {
   std::size_t at = 0;
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
@@ -95,7 +94,7 @@ void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vec
   });
 }
 
-void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, FieldBlock &velocity) {
+void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, Field &velocity) {
   VerbScope scope(Verb::rigid);
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = velocity[a].row(j, k);
@@ -111,7 +110,7 @@ void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, F
   });
 }
 
-void open_faces(const Box &box, const RigidFaces &faces, FieldBlock &field) {
+void open_faces(const Box &box, const RigidFaces &faces, Field &field) {
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
@@ -119,7 +118,7 @@ void open_faces(const Box &box, const RigidFaces &faces, FieldBlock &field) {
   clear_rigid_faces(box, faces, field);
 }
 
-void clear_rigid_faces(const Box &box, const RigidFaces &faces, FieldBlock &field) {
+void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field) {
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = field[a].row(j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -127,8 +126,8 @@ void clear_rigid_faces(const Box &box, const RigidFaces &faces, FieldBlock &fiel
   });
 }
 
-void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
-                       FieldBlock &velocity) {
+void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const Field &increment,
+                       Field &velocity) {
   VerbScope scope(Verb::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *q = increment[0].row(j, k), factor = dt_over_density / box.spacing()[a];

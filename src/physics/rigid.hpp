@@ -18,29 +18,29 @@ struct RklStage;
 /// ahead, in place of WENO5. To `advection`, -v.grad v of now (may be null), and `scale` times to `rate`, which have
 /// that of WENO5 (`epsilon`); before all below.
 void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
-                          const FieldBlock &velocity, FieldBlock *advection, FieldBlock &rate);
+                          const Field &velocity, Field *advection, Field &rate);
 /// rate: of faces in the fluid's momentum equation with `included` of the viscosity in it. Afterwards cut faces have
 /// the rate that sees the surface, scaled by their share, as is `slope` (may be null): beside bodies that travel in
 /// their frame, within a step of dt; faces inside 0.
 void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                        double dt, const FieldBlock &velocity, FieldBlock &rate, FieldBlock *slope);
+                        double dt, const Field &velocity, Field &rate, Field *slope);
 /// The same of v* = v + dt rate, (7).
 void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                                double dt, const FieldBlock &velocity, FieldBlock &velocity_star);
+                                double dt, const Field &velocity, Field &velocity_star);
 /// Values of all owned cut faces, and back: what is added to the field in between does not reach them.
-std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const FieldBlock &field);
-void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values, FieldBlock &field);
+std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const Field &field);
+void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values, Field &field);
 /// Owned faces inside bodies get the velocity of these at `time`.
-void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, FieldBlock &velocity);
+void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, Field &velocity);
 
 /// Cut faces, which correct_velocity() has given all of dt/rho grad(increment), get their part of it; one ghost of the
 /// increment.
-void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const FieldBlock &increment,
-                       FieldBlock &velocity);
+void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const Field &increment,
+                       Field &velocity);
 /// Scales owned cut faces by how far they are open to the increment; faces inside get 0.
-void open_faces(const Box &box, const RigidFaces &faces, FieldBlock &field);
+void open_faces(const Box &box, const RigidFaces &faces, Field &field);
 /// Owned faces inside bodies get 0.
-void clear_rigid_faces(const Box &box, const RigidFaces &faces, FieldBlock &field);
+void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field);
 /// What cut faces see within a step on average: their own velocity, and how fast the surfaces of every motion are.
 struct RigidMeans {
   std::array<std::vector<double>, 3> velocity;  ///< of every component, by the place among RigidFaces::cuts()
@@ -77,6 +77,6 @@ struct RigidLoad {
 /// differences between faces say: the sum of (u - V).(L - L_c) u, V the velocity of the body; less the friction of
 /// faces inside on sides of the box. Collective.
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
-                                         const FieldBlock &velocity, double *dissipation);
+                                         const Field &velocity, double *dissipation);
 
 }  // namespace eulastic

@@ -10,7 +10,7 @@
 namespace eulastic {
 
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
-                                         const FieldBlock &velocity, double *dissipation) {
+                                         const Field &velocity, double *dissipation) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const Real3 &h = domain.spacing();

@@ -59,7 +59,7 @@ std::size_t RigidImpulse::bytes() const {
   return sum;
 }
 
-void RigidImpulse::begin(double time, double dt, double force_time, const FieldBlock &velocity) {
+void RigidImpulse::begin(double time, double dt, double force_time, const Field &velocity) {
   if (faces_.travels) find_contacts();
   time_ = time;
   dt_ = dt;
@@ -106,8 +106,7 @@ void RigidImpulse::for_moving_faces(const Visit &visit) const {
 }
 
 // What advection of second order has more than (28a), which takes the slope half way to the face ahead.
-double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, int k,
-                                      const FieldBlock &velocity) const {
+double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const Field &velocity) const {
   const Strides s = strides(velocity[a]);
   const RigidMotion &motion = motion_of(cut.body);
   const double *u = velocity[a].row(j, k) + cut.i;
@@ -126,7 +125,7 @@ double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, 
 }
 
 // What cut faces lack because only a share of their rate moves them, in the frame of what travels.
-void RigidImpulse::add_prediction(const FieldBlock &velocity, const FieldBlock &velocity_star) {
+void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
@@ -144,12 +143,12 @@ void RigidImpulse::add_prediction(const FieldBlock &velocity, const FieldBlock &
   });
 }
 
-void RigidImpulse::set_pressure(const FieldBlock &pressure) {
+void RigidImpulse::set_pressure(const Field &pressure) {
   for (std::size_t n = 0; n < contacts_.size(); ++n)
     pressure_[n] = pressure[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
 }
 
-void RigidImpulse::add_increment(const FieldBlock &increment, bool partly) {
+void RigidImpulse::add_increment(const Field &increment, bool partly) {
   for (std::size_t n = 0; n < contacts_.size(); ++n)
     pressure_[n] += increment[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
   if (!partly) return;

@@ -20,15 +20,15 @@ public:
 
   /// Begins a step of dt (0: there is none, loads are those of a state): the velocity is that of `time`, body forces
   /// are those of `force_time`, the faces are those of the end of the step.
-  void begin(double time, double dt, double force_time, const FieldBlock &velocity);
+  void begin(double time, double dt, double force_time, const Field &velocity);
   /// Where viscous stages add what they change.
   RigidMeans *means() { return &means_; }
   /// After the stages: what cut faces lack because only a share of their rate moves them.
-  void add_prediction(const FieldBlock &velocity, const FieldBlock &velocity_star);
+  void add_prediction(const Field &velocity, const Field &velocity_star);
   /// The pressure that acts in the step, less what increments add to it; owned cells are read.
-  void set_pressure(const FieldBlock &pressure);
+  void set_pressure(const Field &pressure);
   /// An increment that corrects the velocity; one ghost layer. `partly`: cut faces as far as they are open.
-  void add_increment(const FieldBlock &increment, bool partly);
+  void add_increment(const Field &increment, bool partly);
   /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. Exact sums: the same
   /// bits on any ranks. Collective.
   PetscErrorCode measure(std::vector<RigidLoad> *loads) const;
@@ -44,7 +44,7 @@ private:
   void find_contacts();
   const RigidMotion &motion_of(int image) const { return faces_.motions[faces_.bodies[image].motion]; }
   double velocity_before(int a, int image, const Int3 &face) const;
-  double curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const FieldBlock &velocity) const;
+  double curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const Field &velocity) const;
   template <class Visit>
   void for_moving_faces(const Visit &visit) const;
   void add_cut(int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const;

@@ -1,7 +1,7 @@
 // What verbs of rigid bodies in the momentum equation share: rows with faces inside or cut, and what cut faces see.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "field/rigid_faces.hpp"
 #include "kernels/momentum.hpp"
 
@@ -19,7 +19,7 @@ inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut
 }
 
 // Component d of the velocity at a face of component a.
-inline double carrying_velocity(const FieldBlock &velocity, int a, int d, int i, int j, int k) {
+inline double carrying_velocity(const Field &velocity, int a, int d, int i, int j, int k) {
   const double *v = velocity[d].row(j, k) + i;
   const std::ptrdiff_t next = velocity[d].stride(d), back = velocity[d].stride(a);
   return d == a ? v[0] : 0.25 * ((v[0] + v[next]) + (v[-back] + v[next - back]));

@@ -1,7 +1,7 @@
 // The smoothed solid fraction that surfaces of membranes are found from; docs/method.md, section 18.
 #pragma once
 
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/occupied_rows.hpp"
 
 namespace eulastic {

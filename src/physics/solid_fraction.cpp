@@ -18,18 +18,18 @@ constexpr double epsilon = 1e-6;  // WENO5: phi is of order 1
 struct Move {
   const Box *box;
   double dt;
-  const FieldBlock *velocity;
+  const Field *velocity;
   Real3 inverse;
 };
 
 template <int Dim>
 EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                                 FieldBlock &out, RowScratch &scratch) {
+                                 Field &out, RowScratch &scratch) {
   const Int3 n = t.box->cells();
   const ConstView phi = phase.fraction[0];
   const double dt = t.dt;
   const int ghosts = t.box->layout().ghosts[0];
-  const FieldBlock &v = *t.velocity;
+  const Field &v = *t.velocity;
   double *rate = scratch.row(0);
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const OccupiedRows::Span span = phase.rows.span(j, k), old = next_rows.span(j, k);
@@ -55,18 +55,18 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
 }
 
 EULASTIC_CLONES void advect_2d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                               FieldBlock &out, RowScratch &s) {
+                               Field &out, RowScratch &s) {
   advect_rows<2>(t, part, phase, next_rows, out, s);
 }
 EULASTIC_CLONES void advect_3d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                               FieldBlock &out, RowScratch &s) {
+                               Field &out, RowScratch &s) {
   advect_rows<3>(t, part, phase, next_rows, out, s);
 }
 
 }  // namespace
 
-PetscErrorCode advect_fraction(const Box &box, double dt, const FieldBlock &velocity, const Phase &phase,
-                               const OccupiedRows &next_rows, FieldBlock &next) {
+PetscErrorCode advect_fraction(const Box &box, double dt, const Field &velocity, const Phase &phase,
+                               const OccupiedRows &next_rows, Field &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const Real3 &h = box.spacing();

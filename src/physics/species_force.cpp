@@ -30,7 +30,7 @@ bool species_are_forced(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.body_force.acts(); });
 }
 
-void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, FieldBlock &out) {
+void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, Field &out) {
   for_forces(box, phases, time, [&](const Phase &phase, double force, int a) {
     const ConstView phi = phase.fraction[0];
     const auto add = [&](const Segment &row) {
@@ -45,7 +45,7 @@ void add_species_forces(const Box &box, const std::vector<Phase> &phases, double
 }
 
 PetscErrorCode species_force_power(const Domain &domain, const std::vector<Phase> &phases, double time, double density,
-                                   const FieldBlock &velocity, double *power) {
+                                   const Field &velocity, double *power) {
   PetscFunctionBeginUser;
   *power = 0;
   if (!species_are_forced(phases)) PetscFunctionReturn(0);

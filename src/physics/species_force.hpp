@@ -11,9 +11,9 @@ namespace eulastic {
 /// Whether any phase has one.
 bool species_are_forced(const std::vector<Phase> &phases);
 /// out += scale phi f(time) at owned faces; one ghost of phi.
-void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, FieldBlock &out);
+void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, Field &out);
 /// What they do on the flow: sum of density phi f . v. Collective.
 PetscErrorCode species_force_power(const Domain &domain, const std::vector<Phase> &phases, double time, double density,
-                                   const FieldBlock &velocity, double *power);
+                                   const Field &velocity, double *power);
 
 }  // namespace eulastic

@@ -26,12 +26,12 @@ std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases
 }
 
 struct StageFields {
-  FieldBlock *rate;  // M_0, with the first stage M_0 - dt/2 M_1
-  const FieldBlock *slope;
+  Field *rate;  // M_0, with the first stage M_0 - dt/2 M_1
+  const Field *slope;
   const std::vector<char> *stressed;  // owned rows; in the others slope is 0. Null: no slope at all
-  FieldBlock *now, *before;
-  const FieldBlock *velocity;
-  FieldBlock *velocity_star;
+  Field *now, *before;
+  const Field *velocity;
+  Field *velocity_star;
   const RigidFaces *rigid;
   std::vector<RigidStage> *rigid_stages;  // of the pass
 
@@ -196,7 +196,7 @@ EULASTIC_INLINE void stages_of_task(const Box &box, const Pass &pass, const Inve
     for (; row.j < j_end; ++row.j) {
       if (Dim == 3) {
         const RowAhead next(first, j_end, row.j, row.k);
-        const auto prefetch_row = [&](const FieldBlock *field, int k) { prefetch((*field)[a].row(next.j, k), n[0]); };
+        const auto prefetch_row = [&](const Field *field, int k) { prefetch((*field)[a].row(next.j, k), n[0]); };
         if (stage == 0) {
           prefetch_row(f.now, s < 0 ? next.k : next.k + 1);
           prefetch_row(f.rate, next.k);
@@ -235,7 +235,7 @@ EULASTIC_CLONES void stages_3d(const Box &box, const Pass &pass, const InverseSq
 }
 
 // No flow through sides, but what stages find on open ones.
-void close_walls(const Box &box, FieldBlock &velocity) {
+void close_walls(const Box &box, Field &velocity) {
   for (int d = 0; d < box.dimension(); ++d)
     if (box.is_wall(d)) close_wall_faces(box, velocity[d], d);
 }
@@ -266,20 +266,20 @@ void set_sides(const BoxSides &box_sides, double start, double now, int s, Pass 
 
 PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, const BoxSides &box_sides,
                                double kinematic_viscosity, double time, double dt, int stages,
-                               const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star, const RigidFaces *rigid, RigidMeans *means) {
+                               const std::vector<Phase> &phases, const Field &velocity, SuperTimeStepping &work,
+                               Field &velocity_star, const RigidFaces *rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = domain.inverse_squares();
   const StageSides sides(domain, box_sides);
   const int depth = StagePass::depth(domain, sides, 2, deepest);
   std::vector<char> stressed;
-  for (FieldBlock *field : {&work.rate, &work.slope, &work.now, &work.before})
+  for (Field *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(domain, *field);
   std::vector<WantedGhosts> forces{{&work.rate, depth, nullptr, false}};
   if (work.slope) forces.push_back({&work.slope, depth, nullptr, false});
   if (work.slope) stressed = stressed_rows(domain, phases);
-  PetscCall(exchange.update(forces));
+  PetscCall(exchange.update_ghosts(forces));
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;
   for (int d = 0; d < 3; ++d)
@@ -305,7 +305,7 @@ PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, co
     if (!pass.starts) {
       std::vector<WantedGhosts> read{{&work.now, pass.depth, nullptr, false}};
       if (pass.depth > 2) read.push_back({&work.before, pass.depth - 1, nullptr, false});
-      PetscCall(exchange.update(read));
+      PetscCall(exchange.update_ghosts(read));
     }
     const StageFields fields{&work.rate,     &work.slope,  work.slope ? &stressed : nullptr,
                              &work.now,      &work.before, &velocity,

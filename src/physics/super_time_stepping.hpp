@@ -19,9 +19,9 @@ int rkl_stages(double dt, double dt_explicit);
 
 /// Input and work space of super_time_step, velocity blocks.
 struct SuperTimeStepping {
-  FieldBlock rate;         ///< M_0: dv/dt with the viscous term of the start and all else of the middle of the step
-  FieldBlock slope;        ///< M_1: how the elastic force per mass changes in time; empty = not at all
-  FieldBlock now, before;  ///< increments W_j-1 and W_j-2
+  Field rate;         ///< M_0: dv/dt with the viscous term of the start and all else of the middle of the step
+  Field slope;        ///< M_1: how the elastic force per mass changes in time; empty = not at all
+  Field now, before;  ///< increments W_j-1 and W_j-2
 };
 
 /// v* = v + W_s, where W' = nu lap W + M_0 + (t - dt/2) M_1 over dt, W = 0 at the start and U(t) - U(time) on moving
@@ -31,8 +31,7 @@ struct SuperTimeStepping {
 /// with what is at `time` and become those that the viscous term has acted with.
 PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, const BoxSides &box_sides,
                                double kinematic_viscosity, double time, double dt, int stages,
-                               const std::vector<Phase> &phases, const FieldBlock &velocity, SuperTimeStepping &work,
-                               FieldBlock &velocity_star, const RigidFaces *rigid = nullptr,
-                               RigidMeans *means = nullptr);
+                               const std::vector<Phase> &phases, const Field &velocity, SuperTimeStepping &work,
+                               Field &velocity_star, const RigidFaces *rigid = nullptr, RigidMeans *means = nullptr);
 
 }  // namespace eulastic

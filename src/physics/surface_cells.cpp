@@ -58,7 +58,7 @@ EULASTIC_CLONES void steps_row(const double *level, int begin, int end, double *
 
 // Differences of the steps add up to 1 across a surface. Those of the sharp one are too small by
 // (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which turns normals towards the axes.
-void SurfaceCells::describe(const FieldBlock &fields, Cell *described) const {
+void SurfaceCells::describe(const Field &fields, Cell *described) const {
   Cell &cell = *described;
   const Real3 &h = box_->spacing();
   Real3 sharp_step{}, spread_step{};
@@ -95,7 +95,7 @@ void SurfaceCells::describe(const FieldBlock &fields, Cell *described) const {
 }
 
 // Levels are nearly linear: a quadratic through three along each direction.
-double SurfaceCells::distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const {
+double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const {
   const ConstView levels = fields[level];
   double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0;
   for (int d = 0; d < box_->dimension(); ++d) {
@@ -149,7 +149,7 @@ bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
 
 // psi, levels and steps. A body ends at a solid side, where phi goes on as if it did not: its surface is seen there
 // too.
-PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) {
+PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   const int dim = box_->dimension(), ghosts = box_->layout().ghosts[0], deep = dim == 3 ? ghosts : 0;
   const Int3 &n = box_->cells();
@@ -175,8 +175,8 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, FieldBlock &fields) 
           if (begin < end) row(j, k, begin, end, scratch);
         }
     });
-    FieldBlock filled = fields.part(field, 1);
-    PetscCall(exchange_->update(filled, ghosts, &phase.rows));
+    Field filled = fields.part(field, 1);
+    PetscCall(exchange_->update_ghosts(filled, ghosts, &phase.rows));
     fill_wall_ghosts_even(*box_, at_centre, fields[field], ghosts, &phase.rows);
     clear_solid_ghosts(*box_, *sides_, fields[field], ghosts, &phase.rows);
     PetscFunctionReturn(0);
@@ -221,7 +221,7 @@ void SurfaceCells::find_nearest(const Phase &phase, ConstView levels) {
     }
 }
 
-PetscErrorCode SurfaceCells::find(const Phase &phase, FieldBlock &fields) {
+PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
   PetscCall(find_level(phase, fields));
@@ -309,12 +309,12 @@ void SurfaceCells::find_layers(const Phase &phase) {
   }
 }
 
-PetscErrorCode SurfaceCells::find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const {
+PetscErrorCode SurfaceCells::find_labels(const Phase &phase, Field &scratch, std::vector<int> *labels) const {
   PetscFunctionBeginUser;
   const View all = scratch[0];
   for (std::size_t c = 0; c < nearest(); ++c)
     if (cells_[c].owned) all.origin[cells_[c].at] = phase.label[0].origin[cells_[c].at];
-  PetscCall(exchange_->update(scratch, layers, &phase.rows));
+  PetscCall(exchange_->update_ghosts(scratch, layers, &phase.rows));
   const Layout &layout = box_->layout();
   const int *number = number_.data() + layout.origin;
   labels->assign(cells_.size(), 0);

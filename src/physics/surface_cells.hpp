@@ -31,32 +31,32 @@ public:
   /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
   /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
-  enum Field { smoothed, level, sharp, spread };
+  enum Scratch { smoothed, level, sharp, spread };
   /// Five ghosts of phi.
-  PetscErrorCode find(const Phase &phase, FieldBlock &fields);
+  PetscErrorCode find(const Phase &phase, Field &fields);
   /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
   /// every layer.
   const std::vector<Cell> &all() const { return cells_; }
   std::size_t nearest() const { return first_[1]; }  ///< how many
   /// Of a point so many cells from the centre of one of all(), a cell at most; `fields` as find() left them.
-  double distance_at(const FieldBlock &fields, const Cell &cell, const Real3 &offset) const;
+  double distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const;
   /// Which of all() lies at an offset from the origin; -1: none.
   int number(std::ptrdiff_t at) const { return number_[box_->layout().origin + at]; }
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
-  PetscErrorCode extend(const Phase &phase, FieldBlock &tensor) const;
+  PetscErrorCode extend(const Phase &phase, Field &tensor) const;
   /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one
   /// before. `scratch`: a field of work space.
-  PetscErrorCode find_labels(const Phase &phase, FieldBlock &scratch, std::vector<int> *labels) const;
+  PetscErrorCode find_labels(const Phase &phase, Field &scratch, std::vector<int> *labels) const;
 
 private:
   Box::Range near_box(const Phase &phase, int d, int ghosts) const;
   bool is_beside_solid_side(const Phase &phase) const;
-  PetscErrorCode find_level(const Phase &phase, FieldBlock &fields);
+  PetscErrorCode find_level(const Phase &phase, Field &fields);
   void find_nearest(const Phase &phase, ConstView levels);
   void find_layers(const Phase &phase);
-  void describe(const FieldBlock &fields, Cell *cell) const;
+  void describe(const Field &fields, Cell *cell) const;
   double width(const Real3 &normal) const;
-  PetscErrorCode exchange(const Phase &phase, FieldBlock &tensor, int width) const;
+  PetscErrorCode exchange(const Phase &phase, Field &tensor, int width) const;
 
   const Box *box_;
   GhostExchange *exchange_;

@@ -22,7 +22,7 @@ struct Terms {
   const double *B[6], *phi, *gradient[3], *rate;
   double G, stiffening, mu, more, wave, kink, fading;  // 1/k = (mu + more (1 - phi))/G + wave/sqrt(G)
 
-  Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured) {
+  Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured) {
     const int dimension = box.dimension();
     const Layout &layout = box.layout();
     const Real3 &h = box.spacing();
@@ -240,7 +240,7 @@ struct FullPoints {
 }  // namespace
 
 template <int Dim>
-void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured,
+void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured,
                                 Piece piece, Location *location) const {
   const Terms terms(box, step, phase, measured);
   const bool centre = location->a == location->b;
@@ -289,8 +289,8 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
   work();
 }
 
-PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step, const FieldBlock &velocity,
-                                        Phase &phase, FieldBlock &work) {
+PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step, const Field &velocity, Phase &phase,
+                                        Field &work) {
   PetscFunctionBeginUser;
   if (!phase.material.elastic()) PetscFunctionReturn(0);
   VerbScope scope(Verb::left_cauchy_green);

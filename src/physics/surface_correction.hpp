@@ -23,8 +23,7 @@ public:
   /// Corrects B of the phase at owned points that evolve and are not full. Reads no point that does not evolve, nor
   /// behind walls; behind a plane of symmetry lies the mirror image. Four ghosts of B, five of phi, two of the
   /// velocity, those behind walls too; `work` is a block like B, of any values.
-  PetscErrorCode apply(const Box &box, const SurfaceStep &step, const FieldBlock &velocity, Phase &phase,
-                       FieldBlock &work);
+  PetscErrorCode apply(const Box &box, const SurfaceStep &step, const Field &velocity, Phase &phase, Field &work);
 
   /// How far full points are heard, in steps from face to face, and the layers that are read.
   static constexpr int reach = 3, ghosts = 4;
@@ -42,9 +41,9 @@ private:
   };
   void find_points(const Box &box, const BoxSides &sides, const Phase &phase, Location *location) const;
   /// At the centres of the band: the gradient of phi, up to a factor, and the strain rate, behind each other.
-  void measure_centres(const Box &box, const FieldBlock &velocity, ConstView phi, FieldBlock &measured) const;
+  void measure_centres(const Box &box, const Field &velocity, ConstView phi, Field &measured) const;
   template <int Dim>
-  void correct(const Box &box, const SurfaceStep &step, const Phase &phase, const FieldBlock &measured, Piece piece,
+  void correct(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured, Piece piece,
                Location *location) const;
 
   ActiveSegments band_;              ///< cells that are neither full nor empty with all their neighbours

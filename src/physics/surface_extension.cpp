@@ -67,7 +67,7 @@ struct Source {
 // towards it, and turned into its plane.
 template <int Dim>
 EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around, const SurfaceCells::Cell &cell,
-                                FieldBlock &tensor) {
+                                Field &tensor) {
   constexpr int count = Around<Dim>::count, fields = Dim == 3 ? 6 : 3;
   int from[count];
   for (int r = 0; r < count / 3; ++r)
@@ -118,24 +118,24 @@ EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around,
 }
 
 EULASTIC_CLONES void fill_2d(const Source &source, const Around<2> &around, std::size_t begin, std::size_t end,
-                             FieldBlock &tensor) {
+                             Field &tensor) {
   for (std::size_t c = begin; c < end; ++c) fill_point<2>(source, around, (*source.cells)[c], tensor);
 }
 EULASTIC_CLONES void fill_3d(const Source &source, const Around<3> &around, std::size_t begin, std::size_t end,
-                             FieldBlock &tensor) {
+                             Field &tensor) {
   for (std::size_t c = begin; c < end; ++c) fill_point<3>(source, around, (*source.cells)[c], tensor);
 }
 
 }  // namespace
 
-PetscErrorCode SurfaceCells::exchange(const Phase &phase, FieldBlock &tensor, int width) const {
+PetscErrorCode SurfaceCells::exchange(const Phase &phase, Field &tensor, int width) const {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, width, &phase.rows));
+  PetscCall(exchange_->update_ghosts(tensor, width, &phase.rows));
   fill_wall_ghosts_centred_tensor(*box_, tensor, width, &phase.rows);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceCells::extend(const Phase &phase, FieldBlock &tensor) const {
+PetscErrorCode SurfaceCells::extend(const Phase &phase, Field &tensor) const {
   PetscFunctionBeginUser;
   PetscCall(exchange(phase, tensor, layers + 1));
   VerbScope scope(Verb::membrane);

@@ -63,7 +63,7 @@ double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
 }
 
 template <int Dim>
-void move_marker(const Box &box, double dt, const FieldBlock &velocity, SurfaceMarker *marker) {
+void move_marker(const Box &box, double dt, const Field &velocity, SurfaceMarker *marker) {
   const Int3 cell = local_cell(box, *marker);
   Real3 half = marker->offset, end = half;
   for (int d = 0; d < Dim; ++d)
@@ -91,7 +91,7 @@ std::array<double, 6> metric_of(const kernels::Tensor<Dim> &B, const kernels::Ve
 
 }  // namespace
 
-bool SurfaceMarkers::approach(const SurfaceCells &surface, const FieldBlock &fields, double part,
+bool SurfaceMarkers::approach(const SurfaceCells &surface, const Field &fields, double part,
                               SurfaceMarker *marker) const {
   const int number = surface.number(offset_of(domain_->layout(), local_cell(*domain_, *marker)));
   if (number < 0) return false;
@@ -101,8 +101,8 @@ bool SurfaceMarkers::approach(const SurfaceCells &surface, const FieldBlock &fie
   return true;
 }
 
-void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields, const Phase &phase, int number,
-                           int label, std::vector<SurfaceMarker> *markers) const {
+void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, const Phase &phase, int number, int label,
+                           std::vector<SurfaceMarker> *markers) const {
   constexpr int approaches = 3;
   const Int3 &begin = domain_->layout().begin, &cells = domain_->domain_cells();
   for (std::size_t c = 0; c < surface.nearest(); ++c) {
@@ -126,7 +126,7 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const FieldBlock &fields
   }
 }
 
-PetscErrorCode SurfaceMarkers::move(double dt, const FieldBlock &velocity, std::vector<SurfaceMarker> *markers) {
+PetscErrorCode SurfaceMarkers::move(double dt, const Field &velocity, std::vector<SurfaceMarker> *markers) {
   PetscFunctionBeginUser;
   {
     VerbScope scope(Verb::membrane);
@@ -191,7 +191,7 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   PetscFunctionReturn(0);
 }
 
-void SurfaceMarkers::settle(const SurfaceCells &surface, const FieldBlock &fields, int phase,
+void SurfaceMarkers::settle(const SurfaceCells &surface, const Field &fields, int phase,
                             std::vector<SurfaceMarker> *markers) const {
   const auto far = [&](SurfaceMarker &marker) {
     return marker.phase == phase && !approach(surface, fields, settling, &marker);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "field/surface_marker.hpp"
 #include "grid/domain.hpp"
 #include "physics/surface_cells.hpp"
@@ -22,11 +22,11 @@ public:
 
   /// One more at the surface beside each of the owned cells nearest to it, of the body `label`, or of all: the strain
   /// of the phase is now that against their rest. `number`: of the phase; `fields` as SurfaceCells left them.
-  void place(const SurfaceCells &surface, const FieldBlock &fields, const Phase &phase, int number, int label,
+  void place(const SurfaceCells &surface, const Field &fields, const Phase &phase, int number, int label,
              std::vector<SurfaceMarker> *markers) const;
   /// Over dt, by the midpoint rule in a flow that stays. Collective: each goes to the rank that owns its cell, copies
   /// to those nearby.
-  PetscErrorCode move(double dt, const FieldBlock &velocity, std::vector<SurfaceMarker> *markers);
+  PetscErrorCode move(double dt, const Field &velocity, std::vector<SurfaceMarker> *markers);
   struct Strain {
     std::size_t cell;  ///< position among those of the surface
     std::array<double, 6> B;
@@ -34,8 +34,7 @@ public:
   /// After move(): of the owned nearest cells where markers tell.
   void find_strain(const SurfaceCells &surface, int phase, std::vector<Strain> *strains);
   /// Takes those of a phase nearer to its surface, and out what is far from it. `fields` as SurfaceCells left them.
-  void settle(const SurfaceCells &surface, const FieldBlock &fields, int phase,
-              std::vector<SurfaceMarker> *markers) const;
+  void settle(const SurfaceCells &surface, const Field &fields, int phase, std::vector<SurfaceMarker> *markers) const;
   /// Each to the phase that its body is in now, those of bodies that are gone away; labels with one layer of ghosts.
   void follow(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const;
   /// Collective: each to the rank that owns its cell.
@@ -48,7 +47,7 @@ private:
   };
   PetscErrorCode exchange(std::vector<SurfaceMarker> *markers);
   /// By a part of its distance from the surface; whether that is known.
-  bool approach(const SurfaceCells &surface, const FieldBlock &fields, double part, SurfaceMarker *marker) const;
+  bool approach(const SurfaceCells &surface, const Field &fields, double part, SurfaceMarker *marker) const;
   void sort(const SurfaceCells &surface, int phase);
 
   const Domain *domain_;

@@ -116,8 +116,7 @@ void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const
   location->next.resize(location->points.size() * (centre ? box.dimension() : 1));
 }
 
-void SurfaceCorrection::measure_centres(const Box &box, const FieldBlock &velocity, ConstView phi,
-                                        FieldBlock &measured) const {
+void SurfaceCorrection::measure_centres(const Box &box, const Field &velocity, ConstView phi, Field &measured) const {
   const int dimension = box.dimension();
   const double *v[3] = {};
   double *out[4] = {}, inverse[3];

@@ -15,7 +15,7 @@ namespace {
 
 // Fields of the work space: weight times curvature, and the weight of a cell, phi (1 - phi) and something where a full
 // cell meets an empty one. 0: there is no curvature.
-enum Field { weighted, weight };
+enum Scratch { weighted, weight };
 constexpr double least_weight = 1e-16;
 
 // Cells whose curvature is looked for, in loops as long as the list.
@@ -29,11 +29,11 @@ struct SurfaceCells {
 struct Curvature {
   const Box &box;
   ConstView phi;
-  View sum, weight;  // by Field
+  View sum, weight;  // by Scratch
   std::ptrdiff_t stride[3];
 
-  Curvature(const Box &g, const Phase &phase, FieldBlock &fields)
-      : box(g), phi(phase.fraction[0]), sum(fields[weighted]), weight(fields[Field::weight]) {
+  Curvature(const Box &g, const Phase &phase, Field &fields)
+      : box(g), phi(phase.fraction[0]), sum(fields[weighted]), weight(fields[Scratch::weight]) {
     for (int d = 0; d < 3; ++d) stride[d] = phi.stride(d);
   }
 
@@ -174,7 +174,7 @@ bool SurfaceTension::exists(const std::vector<Phase> &phases) {
 }
 
 // In the cells of the band and a layer of ghosts.
-PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fields) {
+PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::surface_tension);
   const bool flat = domain_->dimension() == 2;
@@ -196,7 +196,7 @@ PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fi
     counted[part] =
         (flat ? from_heights_2d : from_heights_3d)(curvature, band.data() + piece.begin, band.data() + piece.end);
   });
-  PetscCall(exchange_->update(fields, 2, &phase.rows));
+  PetscCall(exchange_->update_ghosts(fields, 2, &phase.rows));
   for (int f = 0; f < work_fields; ++f) fill_wall_ghosts_even(*domain_, at_centre, fields[f], 2, &phase.rows);
   std::vector<std::vector<Mended>> mended(parts);
   in_parallel(parts, parts, [&](int part) {
@@ -214,8 +214,8 @@ PetscErrorCode SurfaceTension::find_curvature(const Phase &phase, FieldBlock &fi
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced,
-                                         FieldBlock &force, const ForceSlope &slope) {
+PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
+                                         const ForceSlope &slope) {
   PetscFunctionBeginUser;
   const int dim = domain_->dimension(), n = domain_->cells()[0];
   NetForce net(*domain_, balanced && drifts_);
@@ -247,7 +247,7 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const FieldBlock &velocity,
+PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const Field &velocity,
                                        SurfaceEnergy *measured) {
   PetscFunctionBeginUser;
   *measured = {};

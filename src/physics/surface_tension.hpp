@@ -29,12 +29,12 @@ public:
   /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
   /// `balanced`: less the mean over the box of what is added to `force`, in periodic directions where all drifts:
   /// surfaces exert no net force, their discretisation does.
-  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, FieldBlock &force,
+  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const ForceSlope &slope = {});
-  PetscErrorCode measure(const std::vector<Phase> &phases, const FieldBlock &velocity, SurfaceEnergy *measured);
+  PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured);
 
 private:
-  PetscErrorCode find_curvature(const Phase &phase, FieldBlock &curvature);
+  PetscErrorCode find_curvature(const Phase &phase, Field &curvature);
 
   const Domain *domain_;
   GhostExchange *exchange_;

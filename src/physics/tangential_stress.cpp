@@ -11,8 +11,8 @@ namespace eulastic {
 namespace {
 
 template <int Dim>
-EULASTIC_INLINE void tangential_row(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                    FieldBlock &out, const Segment &row) {
+EULASTIC_INLINE void tangential_row(const Box &box, const Field &viscosity, const Field &velocity, Field &out,
+                                    const Segment &row) {
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, row.j, row.k);
   const auto component = [&](int x, int y) { return out[kernels::position<Dim>(x, y)].row(row.j, row.k); };
   constexpr int z = Dim - 1;
@@ -38,18 +38,18 @@ EULASTIC_INLINE void tangential_row(const Box &box, const FieldBlock &viscosity,
   }
 }
 
-EULASTIC_CLONES void tangential_row_2d(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                       FieldBlock &out, const Segment &row) {
+EULASTIC_CLONES void tangential_row_2d(const Box &box, const Field &viscosity, const Field &velocity, Field &out,
+                                       const Segment &row) {
   tangential_row<2>(box, viscosity, velocity, out, row);
 }
-EULASTIC_CLONES void tangential_row_3d(const Box &box, const FieldBlock &viscosity, const FieldBlock &velocity,
-                                       FieldBlock &out, const Segment &row) {
+EULASTIC_CLONES void tangential_row_3d(const Box &box, const Field &viscosity, const Field &velocity, Field &out,
+                                       const Segment &row) {
   tangential_row<3>(box, viscosity, velocity, out, row);
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_tangential_force(const Box &box, const FieldBlock &stress, double scale, int a,
-                                          const Segment &row, double *out) {
+EULASTIC_INLINE void add_tangential_force(const Box &box, const Field &stress, double scale, int a, const Segment &row,
+                                          double *out) {
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
   const auto component = [&](int x, int y) { return stress[kernels::position<Dim>(x, y)].row(row.j, row.k); };
   const ConstView q = stress[0];
@@ -61,17 +61,17 @@ EULASTIC_INLINE void add_tangential_force(const Box &box, const FieldBlock &stre
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(scale, force.at(i), out[i]);
 }
 
-EULASTIC_CLONES void add_tangential_force_2d(const Box &box, const FieldBlock &stress, double scale, int a,
+EULASTIC_CLONES void add_tangential_force_2d(const Box &box, const Field &stress, double scale, int a,
                                              const Segment &row, double *out) {
   add_tangential_force<2>(box, stress, scale, a, row, out);
 }
-EULASTIC_CLONES void add_tangential_force_3d(const Box &box, const FieldBlock &stress, double scale, int a,
+EULASTIC_CLONES void add_tangential_force_3d(const Box &box, const Field &stress, double scale, int a,
                                              const Segment &row, double *out) {
   add_tangential_force<3>(box, stress, scale, a, row, out);
 }
 
 // What a piece that comes later reads and writes that the ones before it did not.
-void prefetch_ahead(const LocalViscosity &viscosity, const FieldBlock &velocity, const Segment &cells) {
+void prefetch_ahead(const LocalViscosity &viscosity, const Field &velocity, const Segment &cells) {
   const auto ask = [&cells](const double *row) { prefetch(row + cells.i_begin, cells.size()); };
   for (int d = 0; d < 3; ++d) ask(velocity[d].row(cells.j, cells.k + 1));
   for (int f = viscosity_along_surface(3); f < viscosity_fields(3); ++f) ask(viscosity.fields[f].row(cells.j, cells.k));
@@ -80,7 +80,7 @@ void prefetch_ahead(const LocalViscosity &viscosity, const FieldBlock &velocity,
 
 }  // namespace
 
-void find_tangential_stress(const Box &box, const FieldBlock &velocity, LocalViscosity *viscosity) {
+void find_tangential_stress(const Box &box, const Field &velocity, LocalViscosity *viscosity) {
   constexpr std::ptrdiff_t ahead = 8;
   const bool flat = box.dimension() == 2;
   in_parts_of(viscosity->stressed.all(), box, [&](const Segment *begin, const Segment *end) {

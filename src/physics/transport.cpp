@@ -10,8 +10,8 @@ using transport::Evolved;
 using transport::fraction_at;
 using transport::TransportTerms;
 
-PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const FieldBlock &velocity,
-                                const Phase &phase, const FieldBlock &tensor, FieldBlock &next) {
+PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const Field &velocity, const Phase &phase,
+                                const Field &tensor, Field &next) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::left_cauchy_green);
   const Real3 &h = box.spacing();
@@ -48,7 +48,7 @@ PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase 
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < box.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // FieldBlock::at_rest
+            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // Field::at_rest
       }
   }
   PetscFunctionReturn(0);

@@ -15,8 +15,8 @@ inline constexpr double negligible_fraction = 1e-16;
 
 /// next = phi - dt v.grad phi at centres; idle rows are set to 0, where `next_rows` does not know that they are.
 /// Three ghosts of both.
-PetscErrorCode advect_fraction(const Box &box, double dt, const FieldBlock &velocity, const Phase &phase,
-                               const OccupiedRows &next_rows, FieldBlock &next);
+PetscErrorCode advect_fraction(const Box &box, double dt, const Field &velocity, const Phase &phase,
+                               const OccupiedRows &next_rows, Field &next);
 
 /// Lists where B may evolve, where it may differ from I, and which faces feel the stress. Two ghosts of
 /// phi, or one more than there are layers.
@@ -32,8 +32,8 @@ struct TensorStage {
 /// Advances B of the phase by the rate L.B + B.L^T - v.grad B where it evolves, sets I elsewhere; into `next`, which
 /// holds B at the start of the step in Heun's second stage. Includes the edges on walls. Three ghosts of v and B,
 /// one of phi.
-PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const FieldBlock &velocity,
-                                const Phase &phase, const FieldBlock &tensor, FieldBlock &next);
+PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const Field &velocity, const Phase &phase,
+                                const Field &tensor, Field &next);
 
 /// B = I where it does not evolve, without transport, on rows that were or are occupied. One ghost of phi.
 PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase &phase);

@@ -3,8 +3,8 @@
 namespace eulastic::transport {
 namespace {
 
-EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
-                                  FieldBlock &out) {
+EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B,
+                                  Field &out) {
   return with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
     return advance_tensor<3>(t, viscosity, part, phase, B, out);
   });
@@ -12,8 +12,8 @@ EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, 
 
 }  // namespace
 
-Evolved advance_tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
-                          FieldBlock &out) {
+Evolved advance_tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B,
+                          Field &out) {
   return tensor_3d(t, part, phase, B, out);
 }
 

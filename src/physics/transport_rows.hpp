@@ -18,7 +18,7 @@ inline constexpr double epsilon = 1e-6;  // WENO5: B is of order 1
 struct TransportTerms {
   const Box *box;
   double dt;
-  const FieldBlock *velocity;
+  const Field *velocity;
   Real3 inverse;
   EvolveRule rule;
   bool second_of_heun;
@@ -41,8 +41,8 @@ constexpr int position(int x, int y) {
 // registers than there are: a fifth slower.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
-                                       const FieldBlock &B, int a, int b, kernels::Batch &batch,
-                                       const double *const *carried, double *rate, FieldBlock &out) {
+                                       const Field &B, int a, int b, kernels::Batch &batch,
+                                       const double *const *carried, double *rate, Field &out) {
   const int f = position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
   const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
@@ -114,8 +114,7 @@ struct Location {
 // All components of one location at the points of a batch.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
-                                   const FieldBlock &B, const Location &location, kernels::Batch &batch,
-                                   FieldBlock &out) {
+                                   const Field &B, const Location &location, kernels::Batch &batch, Field &out) {
   alignas(64) double rate[kernels::Batch::points], velocity[Dim][kernels::Batch::points];
   const double *carried[3] = {velocity[0], velocity[1], velocity[Dim - 1]};
   for (int e = 0; e < Dim; ++e) {
@@ -133,8 +132,8 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &vis
 // that evolve to `evolved`.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
-                                  const FieldBlock &B, const Location &location, int j_begin, int j_end, int k,
-                                  FieldBlock &out, kernels::Batch &left, std::ptrdiff_t &evolved) {
+                                  const Field &B, const Location &location, int j_begin, int j_end, int k, Field &out,
+                                  kernels::Batch &left, std::ptrdiff_t &evolved) {
   constexpr int reach = Box::stencil_width;
   const int a = location.a, b = location.b;
   const bool centre = location.centre();
@@ -208,7 +207,7 @@ struct Evolved {
 
 template <int Dim, class Viscosity>
 EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Viscosity &viscosity, const RowPart &part,
-                                       const Phase &phase, const FieldBlock &B, FieldBlock &out) {
+                                       const Phase &phase, const Field &B, Field &out) {
   constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
   const Location locations[4] = {{0, 0}, {0, 1}, {0, Dim - 1}, {1, Dim - 1}};
   kernels::Batch left[count];  // filled through all planes
@@ -226,9 +225,7 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Viscosity 
 }
 
 /// Advances the tensor in the rows of `part`; returns how many points were advanced.
-Evolved advance_tensor_2d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
-                          FieldBlock &out);
-Evolved advance_tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const FieldBlock &B,
-                          FieldBlock &out);
+Evolved advance_tensor_2d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B, Field &out);
+Evolved advance_tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B, Field &out);
 
 }  // namespace eulastic::transport

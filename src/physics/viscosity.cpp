@@ -53,10 +53,10 @@ EULASTIC_CLONES void centre_row(int begin, int end, double *values) {
 // harmonic one.
 struct Mixture {
   double fluid, most = 0;
-  const FieldBlock &fluidity, &difference;
+  const Field &fluidity, &difference;
   std::vector<double> excess, share;  // of every phase
 
-  Mixture(const Fluid &of, const std::vector<Phase> &phases, const FieldBlock &f, const FieldBlock &d)
+  Mixture(const Fluid &of, const std::vector<Phase> &phases, const Field &f, const Field &d)
       : fluid(of.kinematic_viscosity()), fluidity(f), difference(d) {
     for (const Phase &phase : phases) share.push_back(viscosity_of(phase.material, of) / of.density - fluid);
     for (const double s : share) most = std::fabs(s) > std::fabs(most) ? s : most;
@@ -203,8 +203,8 @@ PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSi
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const int dim = box.dimension(), end = box.cells()[0] + 1;
-  FieldBlock &fields = viscosity->fields;
-  const FieldBlock fluidity = fields.part(0, 1), difference = viscosity->stress.part(0, 1);
+  Field &fields = viscosity->fields;
+  const Field fluidity = fields.part(0, 1), difference = viscosity->stress.part(0, 1);
   const Mixture mixture(fluid, phases, fluidity, difference);
   const View centre = fields[0], mixed = viscosity->stress[0];
   const int along = viscosity_along_surface(dim);

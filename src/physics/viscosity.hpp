@@ -38,11 +38,11 @@ struct ViscosityContrast {
 
 /// Viscosity where it varies, of the phases of some moment.
 struct LocalViscosity {
-  FieldBlock fields;        ///< field/local_viscosity.hpp
+  Field fields;             ///< field/local_viscosity.hpp
   ActiveSegments cut;       ///< cells around surfaces, a layer of ghosts included
   ActiveSegments stressed;  ///< those of them that have a viscosity along the surface, and some more
   ActiveSegments beside;    ///< points whose faces feel them
-  FieldBlock stress;        ///< symmetric, at centres: work space of the force; 0 but for `stressed`
+  Field stress;             ///< symmetric, at centres: work space of the force; 0 but for `stressed`
 
   LocalViscosity() = default;
   explicit LocalViscosity(const Box &box);

@@ -19,10 +19,10 @@ struct Faces : Segment {
 };
 
 template <int Dim>
-EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, const FieldBlock &viscosity,
-                                                             const FieldBlock &v, int a, int j, int k) {
+EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, const Field &viscosity, const Field &v,
+                                                             int a, int j, int k) {
   const int b = (a + 1) % Dim, c = Dim == 3 ? (a + 2) % 3 : b;
-  const auto row = [=](const FieldBlock &block, int f) { return block[f].row(j, k); };
+  const auto row = [=](const Field &block, int f) { return block[f].row(j, k); };
   const ConstView q = v[0];
   const Real3 &h = box.spacing();
   return {row(v, a),
@@ -40,8 +40,8 @@ EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, con
 }
 
 template <int Dim>
-EULASTIC_INLINE void add_force(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
-                               FieldBlock &out, int a, const Faces &row) {
+EULASTIC_INLINE void add_force(const Box &box, const Field &viscosity, double scale, const Field &velocity, Field &out,
+                               int a, const Faces &row) {
   const kernels::DeviatoricStress<Dim> stress = stress_on_row<Dim>(box, viscosity, velocity, a, row.j, row.k);
   double *sum = out[a].row(row.j, row.k);
   if (row.side != 0) {
@@ -53,19 +53,19 @@ EULASTIC_INLINE void add_force(const Box &box, const FieldBlock &viscosity, doub
   for (int i = row.i_begin; i < row.i_end; ++i) sum[i] = kernels::fma(scale, stress.force(i), sum[i]);
 }
 
-EULASTIC_CLONES void add_force_2d(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
-                                  FieldBlock &out, int a, const Faces &row) {
+EULASTIC_CLONES void add_force_2d(const Box &box, const Field &viscosity, double scale, const Field &velocity,
+                                  Field &out, int a, const Faces &row) {
   add_force<2>(box, viscosity, scale, velocity, out, a, row);
 }
-EULASTIC_CLONES void add_force_3d(const Box &box, const FieldBlock &viscosity, double scale, const FieldBlock &velocity,
-                                  FieldBlock &out, int a, const Faces &row) {
+EULASTIC_CLONES void add_force_3d(const Box &box, const Field &viscosity, double scale, const Field &velocity,
+                                  Field &out, int a, const Faces &row) {
   add_force<3>(box, viscosity, scale, velocity, out, a, row);
 }
 
 struct StageTerms {
-  const FieldBlock *viscosity, *rate, *slope;  // the latter: null without
-  const FieldBlock *now;                       // W_j-1
-  FieldBlock *before;                          // W_j-2, which gets W_j
+  const Field *viscosity, *rate, *slope;  // the latter: null without
+  const Field *now;                       // W_j-1
+  Field *before;                          // W_j-2, which gets W_j
   kernels::RklStage c;
   bool second;  // W_0 = 0
 };
@@ -165,7 +165,7 @@ BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
   return sides;
 }
 
-void close_walls(const Box &box, FieldBlock &velocity) {
+void close_walls(const Box &box, Field &velocity) {
   for (int d = 0; d < box.dimension(); ++d)
     if (box.is_wall(d)) close_wall_faces(box, velocity[d], d);
 }
@@ -181,8 +181,8 @@ EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, c
 
 }  // namespace
 
-PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const FieldBlock &velocity,
-                                 FieldBlock &out) {
+PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const Field &velocity,
+                                 Field &out) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   find_tangential_stress(box, velocity, &viscosity);
@@ -195,13 +195,13 @@ PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, doub
 }
 
 PetscErrorCode super_time_step(const Box &box, GhostExchange &exchange, const BoxSides &box_sides,
-                               LocalViscosity &viscosity, double time, double dt, int stages,
-                               const FieldBlock &velocity, SuperTimeStepping &work, FieldBlock &velocity_star,
-                               const RigidFaces *rigid, double viscosity_beside_rigid, RigidMeans *means) {
+                               LocalViscosity &viscosity, double time, double dt, int stages, const Field &velocity,
+                               SuperTimeStepping &work, Field &velocity_star, const RigidFaces *rigid,
+                               double viscosity_beside_rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const double first = rkl_first_step(stages, dt);
-  const FieldBlock *slope = work.slope ? &work.slope : nullptr;
+  const Field *slope = work.slope ? &work.slope : nullptr;
   for (int d = 0; slope && d < box.dimension(); ++d)  // bodies do not come to open sides
     for (const Segment &face : box.open_high_faces(d)) {
       double *row = work.slope[d].row(face.j, face.k);
@@ -213,7 +213,7 @@ PetscErrorCode super_time_step(const Box &box, GhostExchange &exchange, const Bo
   });
   const std::vector<double> weights = rigid ? rkl_mean_weights(stages) : std::vector<double>();
   for (int j = 2; j <= stages; ++j) {
-    PetscCall(exchange.update(work.now, 2));
+    PetscCall(exchange.update_ghosts(work.now, 2));
     const double reached = time + rkl_stage_time(j - 1, stages) * dt;
     fill_wall_ghosts_velocity(box, sides_of_increment(box_sides, time, reached), 0, work.now, 2);
     find_tangential_stress(box, work.now, &viscosity);
@@ -254,8 +254,8 @@ PetscErrorCode super_time_step(const Box &box, GhostExchange &exchange, const Bo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode rotate_pressure(const Box &box, const FieldBlock &viscosity, double factor, const FieldBlock &divergence,
-                               FieldBlock &pressure) {
+PetscErrorCode rotate_pressure(const Box &box, const Field &viscosity, double factor, const Field &divergence,
+                               Field &pressure) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::correction);
   in_row_parts(box, [&](const RowPart &owned) {

@@ -24,7 +24,7 @@ double nearness(double smoothed) { return std::clamp(4 * smoothed - 0.25, 0.0, 1
 
 }  // namespace
 
-void WallFilm::find(const BoxSides &sides, const std::vector<const Phase *> &rigid, FieldBlock &scratch) {
+void WallFilm::find(const BoxSides &sides, const std::vector<const Phase *> &rigid, Field &scratch) {
   const Layout &layout = box_->layout();
   const int dim = box_->dimension(), reach = 1 + smooth_reach, deep = dim == 3 ? 1 : 0;
   const View solid = scratch[0], near = scratch[1];
@@ -76,14 +76,13 @@ double WallFilm::pressure_of(const Phase &phase) const {
   return phase.material.membrane.largest_modulus() / *std::max_element(h.begin(), h.begin() + box_->dimension());
 }
 
-void WallFilm::add_force(const Phase &phase, FieldBlock &force) const {
+void WallFilm::add_force(const Phase &phase, Field &force) const {
   const double *phi = phase.fraction[0].origin, pressure = pressure_of(phase);
   for (const Face &face : faces_)
     if (phi[face.near] > 0) force[face.component].origin[face.at] += force_on(face, pressure, phi);
 }
 
-void WallFilm::add_energy(const Phase &phase, const FieldBlock &velocity, int power, int stored,
-                          ExactSums *sums) const {
+void WallFilm::add_energy(const Phase &phase, const Field &velocity, int power, int stored, ExactSums *sums) const {
   const double *phi = phase.fraction[0].origin, pressure = pressure_of(phase);
   for (const Face &face : faces_)
     if (phi[face.near] > 0) sums->add(power, -velocity[face.component].origin[face.at] * force_on(face, pressure, phi));

@@ -16,11 +16,11 @@ public:
   explicit WallFilm(const Box &box) : box_(&box) {}
   /// Finds the cells and faces beside walls: solid sides of the box, and rigid bodies of `phases` that do not travel.
   /// Three ghosts of phi; `scratch`: work_fields fields.
-  void find(const BoxSides &sides, const std::vector<const Phase *> &rigid, FieldBlock &scratch);
+  void find(const BoxSides &sides, const std::vector<const Phase *> &rigid, Field &scratch);
   /// Adds the force of the walls on the bodies of a membrane's phase; one ghost of phi.
-  void add_force(const Phase &phase, FieldBlock &force) const;
+  void add_force(const Phase &phase, Field &force) const;
   /// Adds, per cell volume, minus the power of that force and the energy that is stored in it.
-  void add_energy(const Phase &phase, const FieldBlock &velocity, int power, int stored, ExactSums *sums) const;
+  void add_energy(const Phase &phase, const Field &velocity, int power, int stored, ExactSums *sums) const;
 
 private:
   struct Face {

@@ -46,8 +46,8 @@ EULASTIC_CLONES void add_sums_3d(const Box &box, const RowPart &part, ConstView 
 }
 
 // What the formula says, ghosts included.
-void increment_everywhere(const Box &box, const kernels::AcmIncrement &formula, const FieldBlock &divergence,
-                          const FieldBlock &pressure, FieldBlock &increment) {
+void increment_everywhere(const Box &box, const kernels::AcmIncrement &formula, const Field &divergence,
+                          const Field &pressure, Field &increment) {
   in_row_parts(box, [&](const RowPart &owned) {
     const RowPart part = owned.with_ghosts(box);
     for (int k = part.k_begin; k < part.k_end; ++k)
@@ -74,7 +74,7 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
   return {s.A1 / s.A2, 0};
 }
 
-PetscErrorCode AcmSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) {
+PetscErrorCode AcmSolver::solve(double dt, const Field &divergence, Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   const int dim = domain_->dimension();

@@ -32,7 +32,7 @@ public:
   explicit AcmSolver(const Domain &domain) : domain_(&domain) {}
   /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and
   /// ghosts of the pressure behind sides are lost.
-  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   const AcmCoefficients &last() const { return last_; }
   const kernels::AcmIncrement *formula() const override { return domain_->any_open() ? nullptr : &formula_; }
   double sound_speed() const override { return sound_speed_; }

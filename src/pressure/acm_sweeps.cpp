@@ -24,7 +24,7 @@ PetscErrorCode AcmSweepSolver::create(const Domain &domain, GhostExchange &excha
   work_ = &work;
   PetscCall(work.reserve(work_fields));
   memory_ = IncrementMemory(domain, options.memory);
-  if (options.memory == 0 && options.multigrid) own_scratch_ = FieldBlock(domain, 1);
+  if (options.memory == 0 && options.multigrid) own_scratch_ = Field(domain, 1);
   PetscFunctionReturn(0);
 }
 
@@ -35,14 +35,14 @@ std::size_t AcmSweepSolver::bytes() const {
 /// How far a solve has come.
 struct AcmSweepSolver::SolveState {
   double dt;
-  FieldBlock &increment;
+  Field &increment;
   ConstView residual, before{};        // D of now and of a step earlier
   bool recurs = false;                 // there is a d, and a D before
   bool first = true, pending = false;  // nothing has set the increment; the last d is not in it yet
   bool done = false;
 };
 
-PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
+PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::acm);
   WorkSpace::Lease lease;
@@ -61,17 +61,17 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const FieldBlock &divergence, Fi
   } else {
     for (const Segment &s : domain_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
-    PetscCall(exchange_->update(residual_, Multigrid::halo));
+    PetscCall(exchange_->update_ghosts(residual_, Multigrid::halo));
     fill_ghosts_of_increment(*domain_, residual_[0], 1);
     if (!multigrid_) sums_.start(*domain_, 1);
   }
-  FieldBlock correction = lease.part(3, 1), scratch;  // multigrid may swap them
+  Field correction = lease.part(3, 1), scratch;  // multigrid may swap them
   if (multigrid_) scratch = memory_ ? memory_.increment(0) : own_scratch_.part(0, 1);
   for (int s = 1; s <= options_.sweeps_max && !state.done; ++s) {
     if (multigrid_) {
       const SweepTask next{domain_, nullptr, 1, state.recurs, state.residual, state.before};
       sums_.start(*domain_, next.directions());
-      for (FieldBlock *field : {&residual_, &correction, &scratch})
+      for (Field *field : {&residual_, &correction, &scratch})
         clear_open_ghosts(*domain_, (*field)[0], Multigrid::halo);
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
@@ -133,7 +133,7 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
   state.before = task.residual;
   state.residual = D;
   state.recurs = true;
-  PetscCall(exchange_->update(residual_, Multigrid::halo));
+  PetscCall(exchange_->update_ghosts(residual_, Multigrid::halo));
   fill_ghosts_of_increment(*domain_, residual_[0], 1);
   PetscFunctionReturn(0);
 }

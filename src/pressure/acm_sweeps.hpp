@@ -28,11 +28,11 @@ public:
   PetscErrorCode create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
 
   /// The increment has zero mean where no side is open. It is NaN where D is not finite anywhere.
-  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   void set_target(double rms) override { target_ = rms; }
   long sweeps() const override { return sweeps_; }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
-  FieldBlock *memory() override { return memory_.saved(); }
+  Field *memory() override { return memory_.saved(); }
   void clear_memory() override { memory_.clear(); }
   /// rms of D that the last solve left, by its own account.
   double residual_rms() const { return residual_rms_; }
@@ -48,8 +48,8 @@ private:
   AcmSweepOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
   WorkSpace *work_ = nullptr;
-  FieldBlock residual_, before_, direction_;  ///< of the work space, during a solve
-  FieldBlock own_scratch_;                    ///< without memory
+  Field residual_, before_, direction_;  ///< of the work space, during a solve
+  Field own_scratch_;                    ///< without memory
   IncrementMemory memory_;
   std::vector<ConstView> directions_;  ///< of this sweep, but for d
   RowSums sums_;                       ///< of this sweep or, once it is done, of the next

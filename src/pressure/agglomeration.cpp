@@ -15,14 +15,14 @@ void each_row(const CellBlock &box, const Int3 &field_begin, const F &copy) {
       copy(box.cells[0] * (j + std::ptrdiff_t(box.cells[1]) * k), first[0], first[1] + j, first[2] + k, box.cells[0]);
 }
 
-CellBlock owned(const FieldBlock &block) { return {block.layout().begin, block.layout().cells}; }
+CellBlock owned(const Field &block) { return {block.layout().begin, block.layout().cells}; }
 
-void pack(const FieldBlock &block, const CellBlock &box, double *values) {
+void pack(const Field &block, const CellBlock &box, double *values) {
   each_row(box, block.layout().begin,
            [&](std::ptrdiff_t at, int i, int j, int k, int n) { std::copy_n(block[0].row(j, k) + i, n, values + at); });
 }
 
-void unpack(const double *values, const CellBlock &box, FieldBlock &block) {
+void unpack(const double *values, const CellBlock &box, Field &block) {
   each_row(box, block.layout().begin,
            [&](std::ptrdiff_t at, int i, int j, int k, int n) { std::copy_n(values + at, n, block[0].row(j, k) + i); });
 }
@@ -51,7 +51,7 @@ PetscErrorCode Agglomeration::create(const Domain &from, const Domain &to) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Agglomeration::forward(const FieldBlock &from, FieldBlock &to) {
+PetscErrorCode Agglomeration::forward(const Field &from, Field &to) {
   PetscFunctionBeginUser;
   pack(from, owned(from), values_.data());
   if (everywhere()) {
@@ -69,7 +69,7 @@ PetscErrorCode Agglomeration::forward(const FieldBlock &from, FieldBlock &to) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Agglomeration::backward(const FieldBlock &to, FieldBlock &from) {
+PetscErrorCode Agglomeration::backward(const Field &to, Field &from) {
   PetscFunctionBeginUser;
   const CellBlock mine = owned(from);
   pack(to, everywhere() ? mine : owned(to), values_.data());

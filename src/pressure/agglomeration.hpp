@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "pressure/redistribute.hpp"
 
@@ -14,8 +14,8 @@ public:
   /// Collective. `to` is one of the same cells: Box::joined, or with all of them on every rank. Both must stay.
   PetscErrorCode create(const Domain &from, const Domain &to);
   /// Owned values of one field; ghosts are not touched. Collective.
-  PetscErrorCode forward(const FieldBlock &from, FieldBlock &to);
-  PetscErrorCode backward(const FieldBlock &to, FieldBlock &from);
+  PetscErrorCode forward(const Field &from, Field &to);
+  PetscErrorCode backward(const Field &to, Field &from);
 
 private:
   bool everywhere() const { return to_->ranks() < from_->ranks(); }

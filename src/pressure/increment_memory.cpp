@@ -8,10 +8,10 @@
 namespace eulastic {
 
 IncrementMemory::IncrementMemory(const Box &box, int count) {
-  if (count > 0) block_ = FieldBlock(box, count);
+  if (count > 0) block_ = Field(box, count);
 }
 
-FieldBlock *IncrementMemory::saved() {
+Field *IncrementMemory::saved() {
   if (!block_) return nullptr;
   const std::size_t size = block_.layout().size;
   double *data = block_.data();
@@ -28,7 +28,7 @@ void IncrementMemory::clear() {
 PetscErrorCode IncrementMemory::update_ghosts(const Box &box, GhostExchange &exchange) {
   PetscFunctionBeginUser;
   if (std::exchange(ghosts_valid_, true)) PetscFunctionReturn(0);
-  PetscCall(exchange.update(block_, 1));
+  PetscCall(exchange.update_ghosts(block_, 1));
   for (int f = 0; f < count(); ++f) fill_ghosts_of_increment(box, block_[f], 1);
   PetscFunctionReturn(0);
 }

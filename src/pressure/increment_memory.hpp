@@ -15,18 +15,18 @@ public:
   int count() const { return block_.count(); }
   std::size_t bytes() const { return block_.bytes(); }
   /// Of n + 1 steps ago, 0 <= n < count, or this one's after turn().
-  FieldBlock increment(int n) { return block_.part((newest_ + n) % count(), 1); }
+  Field increment(int n) { return block_.part((newest_ + n) % count(), 1); }
   /// The place of the oldest becomes that of the newest; until that is set its values are anything.
   void turn() { newest_ = (newest_ + count() - 1) % count(); }
   /// All, the newest first, or null.
-  FieldBlock *saved();
+  Field *saved();
   /// All become 0; owned cells may be written then, through saved().
   void clear();
   /// One ghost layer of all, if anybody may have written.
   PetscErrorCode update_ghosts(const Box &box, GhostExchange &exchange);
 
 private:
-  FieldBlock block_;
+  Field block_;
   int newest_ = 0;  ///< then those after it, around the block
   bool ghosts_valid_ = true;
 };

@@ -163,7 +163,7 @@ PetscErrorCode KspSolver::set_preset() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
+PetscErrorCode KspSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
   const double factor = -shortest(*domain_) * shortest(*domain_) / dt;
   ExactSums sum(1);
   double mean, rest;
@@ -172,7 +172,7 @@ PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBl
     sum.add_row(0, divergence[0].row(s.j, s.k), s.size(), domain_->layout().begin[0]);
   PetscCall(sum.reduce(domain_->comm(), &mean));
   mean = domain_->any_open() ? 0 : mean / domain_->domain_cell_count();
-  PetscCall(to_global_vector(*domain_, divergence[0], rhs_.get()));
+  PetscCall(to_global(*domain_, divergence[0], rhs_.get()));
   PetscCall(VecShift(rhs_.get(), -mean));
   PetscCall(VecScale(rhs_.get(), factor));
   PetscCall(VecNorm(rhs_.get(), NORM_2, &rest));
@@ -183,8 +183,8 @@ PetscErrorCode KspSolver::solve(double dt, const FieldBlock &divergence, FieldBl
     PetscCall(VecSet(solution_.get(), NAN));
   else
     PetscCall(iterate());
-  PetscCall(from_global_vector(*domain_, solution_.get(), increment[0]));
-  PetscCall(exchange_->update(increment, 1));
+  PetscCall(from_global(*domain_, solution_.get(), increment[0]));
+  PetscCall(exchange_->update_ghosts(increment, 1));
   fill_ghosts_of_increment(*domain_, increment[0], 1);
   PetscFunctionReturn(0);
 }

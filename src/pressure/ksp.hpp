@@ -24,7 +24,7 @@ public:
   /// The increment with lap(increment) = (divergence - its mean) / dt, up to the tolerance of the KSP on rms(D); its
   /// mean is 0 to round-off. All NaN if D is not finite. Fails if the KSP does not converge. Leaves `pressure` alone.
   /// Sums are MPI's: the bits depend on the ranks.
-  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   long sweeps() const override { return iterations_; }
   KSP ksp() const { return ksp_.get(); }
 

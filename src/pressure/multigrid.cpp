@@ -199,9 +199,9 @@ PetscErrorCode Multigrid::create(const Domain &domain) {
     if (dim == 3)
       fine.depth =
           StagePass::depth(fine.domain(), Sides(fine.domain()), least, 1 + int(relaxations(fine).after.size()));
-    next.rhs = FieldBlock(next.domain(), 1);
-    next.solution = FieldBlock(next.domain(), 1);
-    next.scratch = FieldBlock(next.domain(), 1);
+    next.rhs = Field(next.domain(), 1);
+    next.solution = Field(next.domain(), 1);
+    next.scratch = Field(next.domain(), 1);
   }
   PetscFunctionReturn(0);
 }
@@ -212,12 +212,11 @@ std::size_t Multigrid::bytes() const {
   return sum;
 }
 
-PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                                const RowsDone &rows_done) {
+PetscErrorCode Multigrid::apply(const Field &rhs, Field &solution, Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch,
                   levels_[0]->domain().wraps_x() && levels_[0]->domain().dimension() == 3 ? rows_done : RowsDone()));
-  PetscCall(levels_[0]->exchange().update(solution, 1));
+  PetscCall(levels_[0]->exchange().update_ghosts(solution, 1));
   PetscFunctionReturn(0);
 }
 
@@ -225,7 +224,7 @@ PetscErrorCode Multigrid::apply(const FieldBlock &rhs, FieldBlock &solution, Fie
 int Multigrid::halo_of(const MultigridLevel &level) { return std::max(halo, level.depth - 1); }
 
 // Leaves the ghosts of the solution to the caller.
-PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
+PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution, Field &scratch,
                                 const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
@@ -238,7 +237,7 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
     PetscCall(level.agglomeration->forward(rhs, next.rhs));
   else
     restrict_residual(level, rhs, next);
-  PetscCall(next.exchange().update(next.rhs, halo_of(next)));
+  PetscCall(next.exchange().update_ghosts(next.rhs, halo_of(next)));
   PetscCall(cycle(l + 1, next.rhs, next.solution, next.scratch, {}));
   if (level.agglomeration)
     PetscCall(level.agglomeration->backward(next.solution, solution));
@@ -248,8 +247,8 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const FieldBlock &rhs, FieldBlock
 }
 
 // solution = the coarse one, interpolated, + one relaxation of `rhs`; then it is relaxed.
-PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs,
-                                 FieldBlock &solution, FieldBlock &scratch, const RowsDone &rows_done) {
+PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const Field &rhs, Field &solution,
+                                 Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   const Sides sides(fine.domain());
   const Relaxations &relax = relaxations(fine);
@@ -260,9 +259,9 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
     const int passes = (stages - done + fine.depth - 1) / fine.depth;  // that are left, of equal depth
     depth = (stages - done + passes - 1) / passes;
     if (done == 0)
-      PetscCall(coarse.exchange().update(coarse.solution, 1 + depth / 2));
+      PetscCall(coarse.exchange().update_ghosts(coarse.solution, 1 + depth / 2));
     else
-      PetscCall(fine.exchange().update(solution, depth));
+      PetscCall(fine.exchange().update_ghosts(solution, depth));
     const bool reports = rows_done && done + depth == stages;
     const Pass pass{&sides,
                     &fine,
@@ -283,7 +282,7 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
   PetscFunctionReturn(0);
 }
 
-void Multigrid::restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse) {
+void Multigrid::restrict_residual(const MultigridLevel &fine, const Field &rhs, MultigridLevel &coarse) {
   if (!coarse.has_cells()) return;
   const double factor = relaxations(fine).before * fine.step();
   const int parts = row_parts(fine.domain()), n = coarse.domain().cells()[0];

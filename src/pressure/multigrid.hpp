@@ -29,8 +29,7 @@ public:
   /// finite) nor set; behind open sides they must be 0, of all three, as many as are exchanged, and stay so.
   /// In 3-D, where x wraps around, rows_done(solution, thread, j_begin, j_end, k), if given, is called for rows as soon
   /// as all owned ones around them have their last values, but for those at the ends of y and z.
-  PetscErrorCode apply(const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                       const RowsDone &rows_done = {});
+  PetscErrorCode apply(const Field &rhs, Field &solution, Field &scratch, const RowsDone &rows_done = {});
   /// Floating-point operations of one cycle on this rank.
   double flops() const { return flops_; }
   std::size_t bytes() const;
@@ -44,13 +43,12 @@ public:
 
 private:
   using Level = std::unique_ptr<MultigridLevel>;
-  PetscErrorCode cycle(std::size_t l, const FieldBlock &rhs, FieldBlock &solution, FieldBlock &scratch,
-                       const RowsDone &rows_done);
+  PetscErrorCode cycle(std::size_t l, const Field &rhs, Field &solution, Field &scratch, const RowsDone &rows_done);
   const Relaxations &relaxations(const MultigridLevel &level) const;
   static int halo_of(const MultigridLevel &level);
-  void restrict_residual(const MultigridLevel &fine, const FieldBlock &rhs, MultigridLevel &coarse);
-  PetscErrorCode smooth(MultigridLevel &fine, MultigridLevel &coarse, const FieldBlock &rhs, FieldBlock &solution,
-                        FieldBlock &scratch, const RowsDone &rows_done);
+  void restrict_residual(const MultigridLevel &fine, const Field &rhs, MultigridLevel &coarse);
+  PetscErrorCode smooth(MultigridLevel &fine, MultigridLevel &coarse, const Field &rhs, Field &solution, Field &scratch,
+                        const RowsDone &rows_done);
 
   std::vector<Level> levels_;  ///< the finest first
   double flops_ = 0;

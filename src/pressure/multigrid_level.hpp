@@ -67,7 +67,7 @@ public:
   /// The transfer to `coarse` along direction d.
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 
-  FieldBlock rhs, solution, scratch;             ///< empty until allocated: the finest level works on its caller's
+  Field rhs, solution, scratch;                  ///< empty until allocated: the finest level works on its caller's
   int depth = 1;                                 ///< stages of a pass of smoothing
   std::array<LineTransfer, 3> lines;             ///< to the next level, if that has fewer cells
   std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if that has the same cells on other ranks

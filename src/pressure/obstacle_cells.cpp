@@ -13,13 +13,13 @@ constexpr double least_open = 0.03;  // that D* is divided by
 
 }  // namespace
 
-PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
+PetscErrorCode ObstacleSolver::extend(Field &pressure) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   WorkSpace::Lease taken;
   PetscCall(work_->take("known pressure", 2, &taken));
-  FieldBlock known = taken.part(0, 1), next = taken.part(1, 1);
-  for (FieldBlock *block : {&known, &next}) block->fill(0, 1);
+  Field known = taken.part(0, 1), next = taken.part(1, 1);
+  for (Field *block : {&known, &next}) block->fill(0, 1);
   for_closed_cells(
       [&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = next[0](cell[0], cell[1], cell[2]) = 0; });
   PetscCall(extend_layer(known, next, pressure));
@@ -27,10 +27,10 @@ PetscErrorCode ObstacleSolver::extend(FieldBlock &pressure) const {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const {
+PetscErrorCode ObstacleSolver::extend_layer(Field &known, Field &next, Field &pressure) const {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(known, 1));
-  PetscCall(exchange_->update(pressure, 1));
+  PetscCall(exchange_->update_ghosts(known, 1));
+  PetscCall(exchange_->update_ghosts(pressure, 1));
   std::size_t at = 0;
   const View p = pressure[0];
   for (const Segment &row : domain_->rows()) {
@@ -61,11 +61,11 @@ PetscErrorCode ObstacleSolver::extend_layer(FieldBlock &known, FieldBlock &next,
   PetscFunctionReturn(0);
 }
 
-void ObstacleSolver::copy_closed(const FieldBlock &from, FieldBlock *to) const {
+void ObstacleSolver::copy_closed(const Field &from, Field *to) const {
   for_closed_cells([&](const Int3 &cell) { (*to)[0](cell[0], cell[1], cell[2]) = from[0](cell[0], cell[1], cell[2]); });
 }
 
-PetscErrorCode ObstacleSolver::spread(double part, FieldBlock &divergence) const {
+PetscErrorCode ObstacleSolver::spread(double part, Field &divergence) const {
   PetscFunctionBeginUser;
   const int faces = 2 * domain_->dimension();
   std::size_t at = 0;
@@ -77,7 +77,7 @@ PetscErrorCode ObstacleSolver::spread(double part, FieldBlock &divergence) const
     }
     ++at;
   }
-  PetscCall(exchange_->update(divergence, 1));
+  PetscCall(exchange_->update_ghosts(divergence, 1));
   fill_ghosts_of_increment(*domain_, divergence[0], 1);
   PetscFunctionReturn(0);
 }

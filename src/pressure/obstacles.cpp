@@ -15,8 +15,7 @@ constexpr double round_off = 1e-12;  // of the first residual: further on direct
 constexpr int patience = 12;         // iterations without progress: round-off
 
 template <int Dim>
-EULASTIC_INLINE void laplacian_rows(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
-                                    FieldBlock &out) {
+EULASTIC_INLINE void laplacian_rows(const Box &box, const RowPart &part, double dt, const Field &q, Field &out) {
   const InverseSquares h = box.inverse_squares();
   const ConstView from = q[0];
   const std::ptrdiff_t sy = from.sy, sz = from.sz;
@@ -27,12 +26,10 @@ EULASTIC_INLINE void laplacian_rows(const Box &box, const RowPart &part, double 
     for (int i = s.i_begin; i < s.i_end; ++i) to[i] = dt * kernels::laplacian<Dim>(u + i, sy, sz, h);
   }
 }
-EULASTIC_CLONES void laplacian_2d(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
-                                  FieldBlock &out) {
+EULASTIC_CLONES void laplacian_2d(const Box &box, const RowPart &part, double dt, const Field &q, Field &out) {
   laplacian_rows<2>(box, part, dt, q, out);
 }
-EULASTIC_CLONES void laplacian_3d(const Box &box, const RowPart &part, double dt, const FieldBlock &q,
-                                  FieldBlock &out) {
+EULASTIC_CLONES void laplacian_3d(const Box &box, const RowPart &part, double dt, const Field &q, Field &out) {
   laplacian_rows<3>(box, part, dt, q, out);
 }
 
@@ -57,8 +54,8 @@ void add_values(const Box &box, const RowPart &part, ConstView a, ExactSums &sum
 }
 
 // to = scale to + factor from, with a layer of ghosts.
-EULASTIC_CLONES void combine(const Box &box, const RowPart &owned, double scale, double factor, const FieldBlock &from,
-                             FieldBlock &to) {
+EULASTIC_CLONES void combine(const Box &box, const RowPart &owned, double scale, double factor, const Field &from,
+                             Field &to) {
   const RowPart part = owned.with_ghosts(box);
   const int n = box.cells()[0];
   for (int k = part.k_begin; k < part.k_end; ++k)
@@ -70,7 +67,7 @@ EULASTIC_CLONES void combine(const Box &box, const RowPart &owned, double scale,
     }
 }
 
-void combine_all(const Box &box, double scale, double factor, const FieldBlock &from, FieldBlock &to) {
+void combine_all(const Box &box, double scale, double factor, const Field &from, Field &to) {
   in_row_parts(box, [&](const RowPart &part) { combine(box, part, scale, factor, from, to); });
   (void)PetscLogFlops(box.cell_count() * 3);
 }
@@ -139,7 +136,7 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
 }
 
 // dt div(open grad q); q has a layer of ghosts.
-void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) const {
+void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
   in_row_parts(*domain_, [&](const RowPart &part) {
     (domain_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*domain_, part, dt, q, out);
   });
@@ -167,7 +164,7 @@ void ObstacleSolver::apply(double dt, const FieldBlock &q, FieldBlock &out) cons
 
 // What the other solver, to which all faces are open, lacks in cells that are nearly closed. Where bodies rest they are
 // served by what earlier increments were.
-PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const {
+PetscErrorCode ObstacleSolver::add_local(double dt, const Field &residual, Field &correction) const {
   PetscFunctionBeginUser;
   const Real3 &h = domain_->spacing();
   std::size_t at = 0;
@@ -184,7 +181,7 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, 
     }
     ++at;
   }
-  PetscCall(exchange_->update(correction, 1));
+  PetscCall(exchange_->update_ghosts(correction, 1));
   fill_ghosts_of_increment(*domain_, correction[0], 1);
   PetscFunctionReturn(0);
 }
@@ -192,7 +189,7 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const FieldBlock &residual, 
 // The equation says nothing of cells whose faces are all closed, where what the other solver leaves would add up over
 // the steps: they get 0. Where no side is open, the mean of the increment over the other cells becomes 0; where bodies
 // travel, which cells these are changes with the steps, and the mean of the pressure over them becomes 0.
-PetscErrorCode ObstacleSolver::normalise(const FieldBlock &pressure, FieldBlock &increment) {
+PetscErrorCode ObstacleSolver::normalise(const Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
   const View q = increment[0];
   for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
@@ -216,13 +213,13 @@ PetscErrorCode ObstacleSolver::normalise(const FieldBlock &pressure, FieldBlock 
       for (int i = row.i_begin; i < row.i_end; ++i) q(i, row.j, row.k) -= mean;
     for_closed_cells([&](const Int3 &cell) { q(cell[0], cell[1], cell[2]) = 0; });
   }
-  PetscCall(exchange_->update(increment, 1));
+  PetscCall(exchange_->update_ghosts(increment, 1));
   fill_ghosts_of_increment(*domain_, q, 1);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c,
-                                        const FieldBlock &d, double *ab, double *cd) const {
+PetscErrorCode ObstacleSolver::products(const Field &a, const Field &b, const Field &c, const Field &d, double *ab,
+                                        double *cd) const {
   PetscFunctionBeginUser;
   double total[2];
   PetscCall(sum_row_parts(
@@ -235,13 +232,12 @@ PetscErrorCode ObstacleSolver::products(const FieldBlock &a, const FieldBlock &b
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
-                                     FieldBlock &increment) {
+PetscErrorCode ObstacleSolver::solve(double dt, const Field &divergence, Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
   WorkSpace::Lease lease;
   PetscCall(work_->take("pressure around rigid bodies", work_fields, &lease));
-  FieldBlock residual = lease.part(0, 1), direction = lease.part(1, 1), image = lease.part(2, 1),
-             correction = lease.part(3, 1);
+  Field residual = lease.part(0, 1), direction = lease.part(1, 1), image = lease.part(2, 1),
+        correction = lease.part(3, 1);
   residual.copy_from(divergence);
   increment.clear();
   double square, ignored, last = 0;
@@ -278,7 +274,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const FieldBlock &divergence, Fi
     const double step = projection / curvature;
     combine_all(*domain_, 1, step, direction, increment);
     combine_all(*domain_, 1, -step, image, residual);
-    PetscCall(exchange_->update(residual, 1));
+    PetscCall(exchange_->update_ghosts(residual, 1));
     fill_ghosts_of_increment(*domain_, residual[0], 1);
     PetscCall(products(residual, residual, residual, residual, &square, &ignored));
     if (square < 0.5 * best) {

@@ -29,18 +29,18 @@ public:
   void follow(const RigidFaces &faces);
   /// Cells whose faces are all closed get what the pressure around them is, two layers deep: nothing corrects it there,
   /// and where a body moves away it is what the fluid begins with. All of a ghost layer. Collective.
-  PetscErrorCode extend(FieldBlock &pressure) const;
+  PetscErrorCode extend(Field &pressure) const;
   /// D* of cells beside bodies becomes that of a whole cell, for the rotational update of p, which takes `part` of what
   /// is wrong in a step (docs/method.md, section 19). All of a ghost layer. Collective.
-  PetscErrorCode spread(double part, FieldBlock &divergence) const;
+  PetscErrorCode spread(double part, Field &divergence) const;
   /// Owned cells whose faces are all closed get the values of another field.
-  void copy_closed(const FieldBlock &from, FieldBlock *to) const;
-  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  void copy_closed(const Field &from, Field *to) const;
+  PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   void set_target(double rms) override { target_ = accuracy_ * rms; }
   long sweeps() const override { return iterations_; }
   double sound_speed() const override { return other_->sound_speed(); }
   /// The last increments, the newest first, or null. Whoever asks may write its owned cells.
-  FieldBlock *memory() override { return memory_.saved(); }
+  Field *memory() override { return memory_.saved(); }
   void clear_memory() override { memory_.clear(); }
   std::size_t bytes() const override;
 
@@ -52,15 +52,14 @@ private:
     double response = 0;  ///< r of docs/method.md, section 19
     bool closed() const;
   };
-  PetscErrorCode extend_layer(FieldBlock &known, FieldBlock &next, FieldBlock &pressure) const;
-  void apply(double dt, const FieldBlock &q, FieldBlock &out) const;
+  PetscErrorCode extend_layer(Field &known, Field &next, Field &pressure) const;
+  void apply(double dt, const Field &q, Field &out) const;
   /// Calls work(cell) for every owned cell whose faces are all closed.
   template <class Work>
   void for_closed_cells(const Work &work) const;
-  PetscErrorCode normalise(const FieldBlock &pressure, FieldBlock &increment);
-  PetscErrorCode add_local(double dt, const FieldBlock &residual, FieldBlock &correction) const;
-  PetscErrorCode products(const FieldBlock &a, const FieldBlock &b, const FieldBlock &c, const FieldBlock &d,
-                          double *ab, double *cd) const;
+  PetscErrorCode normalise(const Field &pressure, Field &increment);
+  PetscErrorCode add_local(double dt, const Field &residual, Field &correction) const;
+  PetscErrorCode products(const Field &a, const Field &b, const Field &c, const Field &d, double *ab, double *cd) const;
 
   const Domain *domain_;
   GhostExchange *exchange_;

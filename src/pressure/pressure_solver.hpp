@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 
 namespace eulastic {
 
@@ -18,8 +18,7 @@ public:
   /// 0 on open ones. `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer
   /// valid; a solver may remove its mean where no side is open. `increment`: out, one ghost layer valid; unused where
   /// formula() is not null.
-  virtual PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure,
-                               FieldBlock &increment) = 0;
+  virtual PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) = 0;
 
   /// The last increment as a function of D* and p^N, which is stored nowhere, or null.
   virtual const kernels::AcmIncrement *formula() const { return nullptr; }
@@ -30,7 +29,7 @@ public:
   /// beta of the last solve() by artificial compressibility; 0 where there is no such speed.
   virtual double sound_speed() const { return 0; }
   /// Fields that must survive a restart for the same bits, or null.
-  virtual FieldBlock *memory() { return nullptr; }
+  virtual Field *memory() { return nullptr; }
   /// These become 0; until the next solve() owned cells may be written then.
   virtual void clear_memory() {}
   /// Bytes of the solver's own fields on this rank.

@@ -57,7 +57,7 @@ PetscErrorCode SmacSolver::set_up() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SmacSolver::solve(double dt, const FieldBlock &divergence, FieldBlock &, FieldBlock &increment) {
+PetscErrorCode SmacSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
   PetscFunctionBeginUser;
   {
     VerbScope scope(Verb::smac);
@@ -84,7 +84,7 @@ PetscErrorCode SmacSolver::solve(double dt, const FieldBlock &divergence, FieldB
     PetscCall(to_x_.backward(values_, other_));
     for (const Segment &s : domain_->rows()) std::copy_n(packed(s.j, s.k), owned[0], increment[0].row(s.j, s.k));
   }
-  PetscCall(exchange_->update(increment, 1));
+  PetscCall(exchange_->update_ghosts(increment, 1));
   fill_ghosts_of_increment(*domain_, increment[0], 1);
   PetscFunctionReturn(0);
 }

@@ -20,7 +20,7 @@ public:
   static PetscErrorCode create(const Domain &domain, GhostExchange &exchange, std::unique_ptr<PressureSolver> *solver);
 
   /// The zero-mean increment with lap(increment) = (divergence - its mean) / dt. Leaves `pressure` alone.
-  PetscErrorCode solve(double dt, const FieldBlock &divergence, FieldBlock &pressure, FieldBlock &increment) override;
+  PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
 
 private:
   SmacSolver(const Domain &domain, GhostExchange &exchange) : domain_(&domain), exchange_(&exchange) {}

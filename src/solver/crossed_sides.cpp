@@ -150,21 +150,21 @@ Fluid Solver::driven_fluid() const {
 }
 
 // v -= grad q and p += q for the q that makes v solenoidal, a velocity or how it changes in time; ghosts of v as given.
-PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBlock &pressure) {
+PetscErrorCode Solver::project_start(bool is_rate, Field &velocity, Field &pressure) {
   const double density = spec_.fluid.density;
   constexpr double dt = 1;
   const int times = spec_.pressure == PressureKind::acm && spec_.acm_of_the_paper() ? 200 : 1;
   WorkSpace::Lease of_velocity, increment;
-  FieldBlock none(*domain_, 1);  // without a pressure its relaxation has nothing to do
+  Field none(*domain_, 1);  // without a pressure its relaxation has nothing to do
   PetscFunctionBeginUser;
   PetscCall(work_->take("divergence", 1, &of_velocity));
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
-  FieldBlock &divergence = of_velocity.fields();
+  Field &divergence = of_velocity.fields();
   pressure_solver_->set_target(0);
   for (int n = 0; n < times; ++n) {
-    PetscCall(exchange_->update(velocity, 1));
+    PetscCall(exchange_->update_ghosts(velocity, 1));
     PetscCall(compute_divergence(*domain_, density, velocity, divergence));
-    PetscCall(exchange_->update(divergence, 1));
+    PetscCall(exchange_->update_ghosts(divergence, 1));
     fill_ghosts_of_increment(*domain_, divergence[0], 1);
     PetscCall(pressure_solver_->solve(dt, divergence, none, increment.fields()));
     if (const kernels::AcmIncrement *formula = pressure_solver_->formula())
@@ -187,7 +187,7 @@ PetscErrorCode Solver::project_start(bool is_rate, FieldBlock &velocity, FieldBl
 PetscErrorCode Solver::start_flow() {
   const int dim = domain_->dimension();
   double largest = 0;
-  FieldBlock unused(*domain_, 1), rate(*domain_, dim), no_advection;
+  Field unused(*domain_, 1), rate(*domain_, dim), no_advection;
   PetscFunctionBeginUser;
   PetscCall(project_start(false, now_.velocity, unused));
   PetscCall(update_velocity_ghosts(now_.velocity, now_.time, Box::stencil_width));

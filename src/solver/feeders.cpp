@@ -71,7 +71,7 @@ PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::strin
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::feed_velocity(double time, const FieldBlock &velocity, BoxSides *sides) const {
+PetscErrorCode Feeders::feed_velocity(double time, const Field &velocity, BoxSides *sides) const {
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d, N = domain_->domain_cells()[d];
@@ -98,7 +98,7 @@ PetscErrorCode Feeders::feed_velocity(double time, const FieldBlock &velocity, B
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::recall_velocity(const FieldBlock &velocity, BoxSides *sides) const {
+PetscErrorCode Feeders::recall_velocity(const Field &velocity, BoxSides *sides) const {
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d;

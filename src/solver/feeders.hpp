@@ -30,9 +30,9 @@ public:
 
   /// Normal velocities on the sides at `time`: those at the ends of the stretches, and what the flow rate lacks with
   /// the profile of the side. Three ghosts of `velocity` along the planes.
-  PetscErrorCode feed_velocity(double time, const FieldBlock &velocity, BoxSides *sides) const;
+  PetscErrorCode feed_velocity(double time, const Field &velocity, BoxSides *sides) const;
   /// The same from what is on the sides already.
-  PetscErrorCode recall_velocity(const FieldBlock &velocity, BoxSides *sides) const;
+  PetscErrorCode recall_velocity(const Field &velocity, BoxSides *sides) const;
 
   /// Finds out which bodies are in which stretch.
   PetscErrorCode start(const std::vector<Phase> &phases);

@@ -34,12 +34,12 @@ PetscErrorCode Solver::find_rows(Phase &phase) {
   constexpr double much = 0.25;
   const int ghosts = domain_->spec().ghosts;
   PetscCall(phase.rows.find(*domain_, phase.fraction[0]));
-  PetscCall(exchange_->update(phase.fraction, ghosts, &phase.rows));
+  PetscCall(exchange_->update_ghosts(phase.fraction, ghosts, &phase.rows));
   PetscCall(phase.rows.find(*domain_, phase.fraction[0]));  // with what others have
   fill_wall_ghosts_even(*domain_, at_centre, phase.fraction[0], ghosts, &phase.rows);
   const Int3 &n = domain_->cells();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
-    for (FieldBlock *block : {&phase.fraction, &phase.tensor.field, &next_fraction_, &next_tensor_})
+    for (Field *block : {&phase.fraction, &phase.tensor.field, &next_fraction_, &next_tensor_})
       if (block != &phase.tensor.field || phase.material.carries_tensor()) block->leave_rest();
   PetscFunctionReturn(0);
 }
@@ -57,7 +57,7 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
 }
 
 // The next velocity and the slope beside it.
-FieldBlock Solver::idle_tensor(int components) {
+Field Solver::idle_tensor(int components) {
   return flow_.part(velocity_star_.data() == flow_.data() ? 0 : domain_->dimension(), components);
 }
 
@@ -119,12 +119,12 @@ PetscErrorCode Solver::look_behind(const Look &look) {
 PetscErrorCode Solver::look_back(const std::vector<double> &times, const Look &look) {
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
-  FieldBlock begin, end;
+  Field begin, end;
   begin.copy_from(velocity_star_);  // project() has swapped them
   end.copy_from(now_.velocity);
   struct Restore {
     Solver *solver;
-    const FieldBlock &velocity;
+    const Field &velocity;
     double time;
     ~Restore() {
       solver->now_.velocity.copy_from(velocity);

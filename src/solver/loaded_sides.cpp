@@ -19,7 +19,7 @@ void raise_ghosts(const Box &box, int d, bool high, View pressure) {
 
 }  // namespace
 
-PetscErrorCode Solver::measure_loads(const FieldBlock &velocity, std::vector<double> *flow) {
+PetscErrorCode Solver::measure_loads(const Field &velocity, std::vector<double> *flow) {
   ExactSums sums(loads_->count());
   PetscFunctionBeginUser;
   for (int n = 0; n < loads_->count(); ++n) {
@@ -39,13 +39,13 @@ PetscErrorCode Solver::find_responses() {
   PetscFunctionBeginUser;
   for (int n = 0; n < loads_->count(); ++n) {
     const auto [d, high] = loads_->side(n);
-    FieldBlock pressure(*domain_, 1), velocity(*domain_, domain_->dimension());
+    Field pressure(*domain_, 1), velocity(*domain_, domain_->dimension());
     const double push = (high ? -2 : 2) / (spec_.fluid.density * domain_->spacing()[d]);
     View v = velocity[d];
     for_points(domain_->faces_on(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
     if (rigid_) open_faces(*domain_, rigid_->faces(), velocity);
     PetscCall(project_start(true, velocity, pressure));
-    PetscCall(exchange_->update(pressure, 1));
+    PetscCall(exchange_->update_ghosts(pressure, 1));
     fill_ghosts_of_increment(*domain_, pressure[0], 1);
     raise_ghosts(*domain_, d, high, pressure[0]);
     std::vector<double> flow;
@@ -63,7 +63,7 @@ PetscErrorCode Solver::begin_loads(double dt) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::settle_loads(double dt, const FieldBlock &divergence, FieldBlock &increment) {
+PetscErrorCode Solver::settle_loads(double dt, const Field &divergence, Field &increment) {
   std::vector<double> flow;
   PetscFunctionBeginUser;
   PetscCall(measure_loads(velocity_star_, &flow));

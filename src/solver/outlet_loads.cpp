@@ -34,7 +34,7 @@ std::size_t OutletLoads::bytes() const {
   return sum;
 }
 
-void OutletLoads::set_response(int n, FieldBlock &&pressure, const std::vector<double> &flow) {
+void OutletLoads::set_response(int n, Field &&pressure, const std::vector<double> &flow) {
   loads_[n].response = std::move(pressure);
   loads_[n].flow = flow;
 }
@@ -90,7 +90,7 @@ std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &fl
   return changes;
 }
 
-void OutletLoads::add_up(const Box &box, const std::vector<double> &changes, FieldBlock &increment) const {
+void OutletLoads::add_up(const Box &box, const std::vector<double> &changes, Field &increment) const {
   const Int3 n = box.cells();
   const int last = box.dimension() == 3 ? 1 : 0;
   for (int k = -last; k < n[2] + last; ++k)

@@ -17,7 +17,7 @@ public:
   /// The side of a load: direction, high.
   std::array<int, 2> side(int n) const { return {loads_[n].direction, loads_[n].high}; }
   /// What a pressure of 1 on that side alone means: p, and the flow out of each loaded side per time of it.
-  void set_response(int n, FieldBlock &&pressure, const std::vector<double> &flow);
+  void set_response(int n, Field &&pressure, const std::vector<double> &flow);
 
   /// Begins a step of length dt. `middle`: the time at which the pressure on the sides is that of the step; `flow`:
   /// volume that leaves through each side per time at the start of the step. Sets the pressures that are expected.
@@ -26,7 +26,7 @@ public:
   /// change.
   std::vector<double> settle(double dt, const std::vector<double> &flow);
   /// increment = sum of changes times responses, ghosts included.
-  void add_up(const Box &box, const std::vector<double> &changes, FieldBlock &increment) const;
+  void add_up(const Box &box, const std::vector<double> &changes, Field &increment) const;
 
   /// `sides` with the present pressures on those that are loaded.
   BoxSides with_pressures(const BoxSides &sides) const;
@@ -42,7 +42,7 @@ private:
     double pressure = 0;  ///< on the side, of the last step
     /// Of the present step: pressure = base + share x flow at its end; capacity = kept + gain x that flow.
     double base = 0, share = 0, kept = 0, gain = 0;
-    FieldBlock response;
+    Field response;
     std::vector<double> flow;
   };
   std::vector<Load> loads_;

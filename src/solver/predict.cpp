@@ -29,7 +29,7 @@ PetscErrorCode Solver::predict(double dt) {
 }
 
 // The stress of a viscosity that varies. Cut faces of rigid bodies have had theirs.
-PetscErrorCode Solver::add_local_viscous_force(double scale, FieldBlock &to) {
+PetscErrorCode Solver::add_local_viscous_force(double scale, Field &to) {
   std::vector<double> cut;
   PetscFunctionBeginUser;
   if (!viscosity_) PetscFunctionReturn(0);

@@ -45,7 +45,7 @@ PetscErrorCode Solver::fill_rigid(double time, std::vector<Phase> *phases) {
   PetscFunctionReturn(0);
 }
 
-void Solver::respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const {
+void Solver::respect_rigid(double time, double dt, const Field &increment, Field &velocity) const {
   if (!rigid_) return;
   if (!spec_.acm_of_the_paper())
     correct_cut_faces(*domain_, rigid_->faces(), dt / spec_.fluid.density, increment, velocity);

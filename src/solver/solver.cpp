@@ -49,23 +49,23 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
     PetscCall(sweeps->create(domain, *exchange_, {spec.acm_sweeps_max, spec.acm_memory, spec.acm_coarse}, *work_));
     pressure_solver_ = std::move(sweeps);
   }
-  now_.velocity = FieldBlock(domain, dim);
-  now_.pressure = FieldBlock(domain, 1);
-  velocity_star_ = FieldBlock(domain, dim);
+  now_.velocity = Field(domain, dim);
+  now_.pressure = Field(domain, 1);
+  velocity_star_ = Field(domain, dim);
   PetscCall(work_->reserve(work_fields(spec, dim, {domain.any_open()})));
   if (!OutletLoads::none(spec.sides)) loads_ = std::make_unique<OutletLoads>(spec.sides);
   if (Feeders::exist(spec.sides)) {
     feeders_ = std::make_unique<Feeders>();
     PetscCall(feeders_->create(domain, spec.sides));
   }
-  if (spec.staggered() && spec.fluid.inertia) now_.advection = FieldBlock(domain, dim);
+  if (spec.staggered() && spec.fluid.inertia) now_.advection = Field(domain, dim);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::prepare() {
   PetscFunctionBeginUser;
   if (rigid_) impose_rigid_motion(*domain_, rigid_->faces(), now_.time, now_.velocity);
-  PetscCall(exchange_->update(now_.velocity, Box::stencil_width));
+  PetscCall(exchange_->update_ghosts(now_.velocity, Box::stencil_width));
   fill_wall_ghosts_velocity(*domain_, spec_.sides, now_.time, now_.velocity, Box::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (volume_crosses(spec_.sides)) PetscCall(start_flow());
@@ -76,7 +76,7 @@ PetscErrorCode Solver::prepare() {
   if (spec_.linear_force()) {
     const int dim = domain_->dimension();
     velocity_star_ = {};
-    FieldBlock flow(*domain_, 3 * dim);
+    Field flow(*domain_, 3 * dim);
     std::copy_n(now_.velocity.data(), domain_->layout().size * dim, flow.data());
     now_.velocity = flow.part(0, dim);
     slope_ = flow.part(dim, dim);
@@ -91,14 +91,14 @@ PetscErrorCode Solver::prepare() {
       work_fields(spec_, domain_->dimension(),
                   {domain_->any_open(), true, surface_tension_ != nullptr, membranes_ != nullptr, rigid_ != nullptr})));
   if (contrast({}).exists()) viscosity_ = LocalViscosity(*domain_);
-  if (expects_pressure()) now_.pressure_before = FieldBlock(*domain_, 1);
+  if (expects_pressure()) now_.pressure_before = Field(*domain_, 1);
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
     next_tensor_ = tensor_at_rest(*domain_);
   if (spec_.interface == InterfaceScheme::plic)
     interface_ = std::make_unique<InterfaceTransport>(*domain_, *work_);
   else
-    next_fraction_ = FieldBlock::at_rest(*domain_, 1);
+    next_fraction_ = Field::at_rest(*domain_, 1);
   for (Phase &phase : now_.phases) {
     phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
@@ -142,7 +142,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(move_rigid(now_.time, now_.dt));
   stages_ = stages;
   sweeps_before_ = sweeps - pressure_solver_->sweeps();
-  PetscCall(exchange_->update(now_.velocity, Box::stencil_width));
+  PetscCall(exchange_->update_ghosts(now_.velocity, Box::stencil_width));
   if (feeders_) PetscCall(feeders_->recall_velocity(now_.velocity, &spec_.sides));
   fill_wall_ghosts_velocity(*domain_, spec_.sides, now_.time, now_.velocity, Box::stencil_width);
   PetscCall(update_centre_ghosts(now_.pressure, 1));
@@ -216,7 +216,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
   PetscCall(move_rigid(now_.time + dt, dt));
   PetscCall(predict(dt));  // (7)
   if (feeders_) {
-    PetscCall(exchange_->update(velocity_star_, Box::stencil_width));
+    PetscCall(exchange_->update_ghosts(velocity_star_, Box::stencil_width));
     PetscCall(feeders_->feed_velocity(now_.time + dt, velocity_star_, &spec_.sides));
   }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
@@ -267,9 +267,9 @@ PetscErrorCode Solver::project(double dt) {
   WorkSpace::Lease of_velocity, increment;
   PetscCall(work_->take("divergence", 1, &of_velocity));
   if (!pressure_solver_->formula()) PetscCall(work_->take("pressure increment", 1, &increment));
-  FieldBlock &divergence = of_velocity.fields();
+  Field &divergence = of_velocity.fields();
   PetscCall(compute_divergence(*domain_, density, velocity_star_, divergence));
-  PetscCall(exchange_->update(divergence, 1));
+  PetscCall(exchange_->update_ghosts(divergence, 1));
   fill_ghosts_of_increment(*domain_, divergence[0], 1);
   pressure_solver_->set_target(spec_.acm_tolerance * density * speed_scale(dt) / shortest);
   PetscCall(pressure_solver_->solve(dt, divergence, now_.pressure, increment.fields()));  // (10) or (11)
@@ -292,23 +292,23 @@ PetscErrorCode Solver::project(double dt) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_velocity_ghosts(FieldBlock &velocity, double time, int width) {
+PetscErrorCode Solver::update_velocity_ghosts(Field &velocity, double time, int width) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(velocity, width));
+  PetscCall(exchange_->update_ghosts(velocity, width));
   fill_wall_ghosts_velocity(*domain_, spec_.sides, time, velocity, width);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_centre_ghosts(FieldBlock &field, int width) {
+PetscErrorCode Solver::update_centre_ghosts(Field &field, int width) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(field, width));
+  PetscCall(exchange_->update_ghosts(field, width));
   fill_wall_ghosts_even(*domain_, at_centre, field[0], width);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows) {
+PetscErrorCode Solver::update_tensor_ghosts(Field &tensor, int width, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update(tensor, width, rows));
+  PetscCall(exchange_->update_ghosts(tensor, width, rows));
   fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }

@@ -71,7 +71,7 @@ public:
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
-  PetscErrorCode viscosity_now(const FieldBlock **viscosity);
+  PetscErrorCode viscosity_now(const Field **viscosity);
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and
   /// membranes. `bodies`: what is known of the surface of every body, if there are labels and membranes.
   PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
@@ -121,7 +121,7 @@ public:
   long sweeps() const { return sweeps_before_ + pressure_solver_->sweeps(); }
   double sound_speed() const { return pressure_solver_->sound_speed(); }
   /// What the pressure solver remembers of earlier steps, or null.
-  FieldBlock *pressure_memory() { return pressure_solver_->memory(); }
+  Field *pressure_memory() { return pressure_solver_->memory(); }
   void clear_pressure_memory() { pressure_solver_->clear_memory(); }
   /// The sides with the pressures that loads have now.
   BoxSides sides_now() const { return loads_ ? loads_->with_pressures(spec_.sides) : spec_.sides; }
@@ -131,16 +131,16 @@ public:
   OutletLoads *loads() { return loads_.get(); }
 
 private:
-  PetscErrorCode update_velocity_ghosts(FieldBlock &velocity, double time, int width);
-  PetscErrorCode update_centre_ghosts(FieldBlock &field, int width);
-  PetscErrorCode update_tensor_ghosts(FieldBlock &tensor, int width, const OccupiedRows *rows);
+  PetscErrorCode update_velocity_ghosts(Field &velocity, double time, int width);
+  PetscErrorCode update_centre_ghosts(Field &field, int width);
+  PetscErrorCode update_tensor_ghosts(Field &tensor, int width, const OccupiedRows *rows);
   double speed_scale(double dt) const;
   /// With the force that differences of given pressures are to a fluid at rest.
   Fluid driven_fluid() const;
   /// Makes the flow at the start pass through the sides as it is given there and, if there is no pressure yet, finds
   /// the one that goes with it, but for forces of bodies.
   PetscErrorCode start_flow();
-  PetscErrorCode project_start(bool is_rate, FieldBlock &velocity, FieldBlock &pressure);
+  PetscErrorCode project_start(bool is_rate, Field &velocity, Field &pressure);
   /// Viscosities, and with the largest tr B of every phase what they mean for the time step.
   ViscosityContrast contrast(const std::vector<double> &trace) const;
   /// Of the rotational update of p: the factor of D*, and that of the place's viscosity times D*.
@@ -156,8 +156,8 @@ private:
   PetscErrorCode predict(double dt);
   PetscErrorCode predict_explicitly(const Fluid &fluid, const MomentumStep &step);
   PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step);
-  PetscErrorCode add_local_viscous_force(double scale, FieldBlock &to);
-  PetscErrorCode add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate);
+  PetscErrorCode add_local_viscous_force(double scale, Field &to);
+  PetscErrorCode add_stretch_forces(Field &&scratch, Field &rate);
   PetscErrorCode project(double dt);
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
   /// middle.
@@ -166,25 +166,25 @@ private:
   /// phi and labels of phases of rigid bodies that travel.
   PetscErrorCode fill_rigid(double time, std::vector<Phase> *phases);
   /// After correct_velocity(): cut faces have their part of the increment, those inside rigid bodies their velocity.
-  void respect_rigid(double time, double dt, const FieldBlock &increment, FieldBlock &velocity) const;
+  void respect_rigid(double time, double dt, const Field &increment, Field &velocity) const;
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                              const OccupiedRows *rows);
-  PetscErrorCode extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows);
+  PetscErrorCode extend_exterior(const Phase &phase, Field &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies(bool whole);
   PetscErrorCode feed_bodies();
   PetscErrorCode find_responses();
   /// Volume that leaves through loaded sides per time.
-  PetscErrorCode measure_loads(const FieldBlock &velocity, std::vector<double> *flow);
+  PetscErrorCode measure_loads(const Field &velocity, std::vector<double> *flow);
   /// Pressures on loaded sides for a step, and after it with what the flow has become.
   PetscErrorCode begin_loads(double dt);
-  PetscErrorCode settle_loads(double dt, const FieldBlock &divergence, FieldBlock &increment);
+  PetscErrorCode settle_loads(double dt, const Field &divergence, Field &increment);
   PetscErrorCode separate_bodies();
   PetscErrorCode settle(Phase &phase);
   PetscErrorCode find_rows(Phase &phase);
-  FieldBlock idle_tensor(int components);  ///< work space between the steps
+  Field idle_tensor(int components);  ///< work space between the steps
 
   const Domain *domain_ = nullptr;
   SolverSpec spec_;
@@ -193,13 +193,13 @@ private:
   State now_;
   BodyTracker bodies_;
   std::string crowded_;
-  FieldBlock velocity_star_, next_fraction_;
-  FieldBlock next_tensor_;  ///< Euler
+  Field velocity_star_, next_fraction_;
+  Field next_tensor_;       ///< Euler
   OccupiedRows next_rows_;  ///< of the phase that next_fraction_ and next_tensor_ were swapped out of
   ActiveSegments stale_;    ///< Euler: where next_tensor_ may differ from I
   std::unique_ptr<WorkSpace> work_;
-  FieldBlock flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
-  FieldBlock slope_;  ///< of the elastic force in time
+  Field flow_;   ///< with linear_force(): this velocity, the slope, the next velocity; or the other way round
+  Field slope_;  ///< of the elastic force in time
   std::unique_ptr<Feeders> feeders_;    ///< null where no side has one
   std::unique_ptr<OutletLoads> loads_;  ///< null where no side has one
   LocalViscosity viscosity_;            ///< of the step, where bodies have their own; else empty

@@ -5,7 +5,7 @@
 namespace eulastic {
 
 // On the phases as they are, with labels and references of the last step.
-PetscErrorCode Solver::add_stretch_forces(FieldBlock &&scratch, FieldBlock &rate) {
+PetscErrorCode Solver::add_stretch_forces(Field &&scratch, Field &rate) {
   PetscFunctionBeginUser;
   if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
   BodyOwners owners;

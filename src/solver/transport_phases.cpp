@@ -53,7 +53,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
       fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
     }
-  PetscCall(exchange_->update(fractions));
+  PetscCall(exchange_->update_ghosts(fractions));
   PetscCall(OccupiedRows::follow(*domain_, moved));  // sees what has come into ghosts, even of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
@@ -73,8 +73,8 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     PetscCall(membranes_->advance(dt, now_.velocity, &phases == &now_.phases ? &memory : nullptr, &phases));
     now_.forgotten += memory.unresolved;
   }
-  PetscCall(exchange_->update(tensors));
-  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*domain_, spec_.sides, *B.block, B.width, B.rows);
+  PetscCall(exchange_->update_ghosts(tensors));
+  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(*domain_, spec_.sides, *B.field, B.width, B.rows);
   PetscFunctionReturn(0);
 }
 
@@ -90,7 +90,7 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
     const ActiveSegments *first = identity ? nullptr : &phase.tensor.strained;
     WorkSpace::Lease stage;
     PetscCall(work_->take("first stage of B", phase.tensor.field.count(), &stage));
-    FieldBlock &next = stage.fields();
+    Field &next = stage.fields();
     PetscCall(transport_tensor(*domain_, {dt, false, first}, now_.velocity, phase, phase.tensor.field, next));
     PetscCall(extend_exterior(phase, next, rows));
     PetscCall(update_tensor_ghosts(next, Box::stencil_width, rows));
@@ -110,10 +110,10 @@ PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSeg
 }
 
 // B outside the body, where it is extended there. Its ghosts are stale afterwards.
-PetscErrorCode Solver::extend_exterior(const Phase &phase, FieldBlock &tensor, const OccupiedRows *rows) {
+PetscErrorCode Solver::extend_exterior(const Phase &phase, Field &tensor, const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
-  PetscCall(exchange_->update(tensor, ExteriorLayers::layers, rows));
+  PetscCall(exchange_->update_ghosts(tensor, ExteriorLayers::layers, rows));
   PetscCall(layers_.extend(*domain_, spec_.sides, *exchange_, tensor));
   fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
   PetscCall(limit_shear(*domain_, phase, tensor));

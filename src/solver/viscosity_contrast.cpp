@@ -21,7 +21,7 @@ TimeStepLimits Solver::limits(const FlowExtremes &extremes) const {
   return limits;
 }
 
-PetscErrorCode Solver::viscosity_now(const FieldBlock **viscosity) {
+PetscErrorCode Solver::viscosity_now(const Field **viscosity) {
   PetscFunctionBeginUser;
   *viscosity = nullptr;
   if (!viscosity_) PetscFunctionReturn(0);

@@ -17,7 +17,7 @@ constexpr Matrix identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 // A box full of solid in a velocity that nobody changes; ghosts included.
 struct Kinematics {
   Domain grid;
-  FieldBlock velocity, next;
+  Field velocity, next;
   Phase phase;
 
   template <class Velocity>
@@ -25,12 +25,12 @@ struct Kinematics {
     GridSpec spec;
     spec.cells = cells;
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    velocity = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
     const auto &components = tensor_components(grid.dimension());
-    phase.fraction = FieldBlock(grid, 1);
+    phase.fraction = Field(grid, 1);
     phase.tensor.rule = reset_below_one_per_cent;
     phase.fraction.fill(0, 1.0);
-    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+    phase.tensor.field = Field(grid, static_cast<int>(components.size()));
     for (int c = 0; c < phase.tensor.field.count(); ++c)
       phase.tensor.field.fill(c, B[components[c].a][components[c].b]);
     next.copy_from(phase.tensor.field);
@@ -49,9 +49,9 @@ struct Kinematics {
     const double dt = end / steps;
     for (int n = 0; n < steps; ++n) {
       ASSERT_EQ(transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next), 0);
-      ASSERT_EQ(exchange.update(next, Box::stencil_width), 0);
+      ASSERT_EQ(exchange.update_ghosts(next, Box::stencil_width), 0);
       ASSERT_EQ(transport_tensor(grid, {dt, true}, velocity, phase, next, phase.tensor.field), 0);
-      ASSERT_EQ(exchange.update(phase.tensor.field, Box::stencil_width), 0);
+      ASSERT_EQ(exchange.update_ghosts(phase.tensor.field, Box::stencil_width), 0);
     }
   }
 

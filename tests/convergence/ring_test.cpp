@@ -47,7 +47,7 @@ double slip_rate(int cells) {
   constexpr double stretch = 1.02;
   Scene scene;
   EXPECT_EQ(make(cells, stretch, membrane, 1e-3, &scene), 0);
-  FieldBlock &B = scene.solver.state().phases[0].tensor.field;
+  Field &B = scene.solver.state().phases[0].tensor.field;
   for (int c = 0; c < 2; ++c)
     set(scene.grid, B[c], at_centre,
         [=](double, double, double) { return c == 0 ? stretch * stretch : 1 / (stretch * stretch); });

@@ -128,12 +128,12 @@ ShearErrors shear_errors_across(double lambda, int cells) {
   });
   EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
   LocalViscosity viscosity(grid);
-  FieldBlock linear(grid, 2), v(grid, 2), star(grid, 2), pressure(grid, 1);
-  FieldBlock divergence(grid, 1), increment(grid, 1);
+  Field linear(grid, 2), v(grid, 2), star(grid, 2), pressure(grid, 1);
+  Field divergence(grid, 1), increment(grid, 1);
   EXPECT_EQ(compute_viscosity(grid, {}, {}, phases, &viscosity), 0);
   fill_everywhere(grid, linear[0], at_face[0], [=](const Point &x) { return 0.4 * (x[0] + 2 * x[1]); });
   fill_everywhere(grid, linear[1], at_face[1], [=](const Point &x) { return -0.2 * (x[0] + 2 * x[1]); });
-  SuperTimeStepping work{FieldBlock(grid, 2), {}, FieldBlock(grid, 2), FieldBlock(grid, 2)};
+  SuperTimeStepping work{Field(grid, 2), {}, Field(grid, 2), Field(grid, 2)};
   const double dt = 0.1, viscous = 1 / (4 * std::max(lambda, 1.0) / (h * h));
   for (int n = 0; n < 60; ++n) {
     const ConstView p = pressure[0];
@@ -146,14 +146,14 @@ ShearErrors shear_errors_across(double lambda, int cells) {
     EXPECT_EQ(add_viscous_force(grid, viscosity, 1, linear, work.rate), 0);
     EXPECT_EQ(add_viscous_force(grid, viscosity, 1, v, work.rate), 0);
     EXPECT_EQ(super_time_step(grid, exchange, {}, viscosity, 0, dt, rkl_stages(dt, viscous), v, work, star), 0);
-    EXPECT_EQ(exchange.update(star, 1), 0);
+    EXPECT_EQ(exchange.update_ghosts(star, 1), 0);
     EXPECT_EQ(compute_divergence(grid, 1, star, divergence), 0);
-    EXPECT_EQ(exchange.update(divergence, 1), 0);
+    EXPECT_EQ(exchange.update_ghosts(divergence, 1), 0);
     EXPECT_EQ(solver->solve(dt, divergence, pressure, increment), 0);
     EXPECT_EQ(correct_velocity(grid, 1, dt, 0, increment, divergence, star, pressure), 0);
     EXPECT_EQ(rotate_pressure(grid, viscosity.fields, 0.5, divergence, pressure), 0);
     v.swap(star);
-    EXPECT_EQ(exchange.update(v, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(v, 2), 0);
   }
   // In the layers the rate of shear is T/mu, T = 2/(1 + 1/lambda); departures from 1 add up to 0 in their middles.
   const double stress = 2 / (1 + 1 / lambda), length = 1 / root;

@@ -197,9 +197,9 @@ TEST(AcmSweeps, MemoryIsAllThatARestartNeeds) {
       on.set(at(step));
       on.solve(1e-3);
     }
-    const FieldBlock &from = *on.solver.memory();
+    const Field &from = *on.solver.memory();
     restarted.solver.clear_memory();
-    FieldBlock &to = *restarted.solver.memory();
+    Field &to = *restarted.solver.memory();
     for (int f = 0; f < from.count(); ++f)
       for (const Segment &s : on.grid.rows()) std::copy_n(from[f].row(s.j, s.k), s.size(), to[f].row(s.j, s.k));
     for (Sweeper *s : {&on, &restarted}) {

@@ -122,7 +122,7 @@ TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
       BodyScene scene(run_communicator(), box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
       scene.add(spec, {{{.1, .5, .5}, turned}});
       GhostExchange exchange(scene.grid);
-      ASSERT_EQ(exchange.update(scene.phases[0].tensor.field, 1), 0);
+      ASSERT_EQ(exchange.update_ghosts(scene.phases[0].tensor.field, 1), 0);
       const BodyMeasure body = scene.measure()[0];
       EXPECT_GT(body.taylor_deformation, .3);
       EXPECT_NEAR(body.rest_deformation, (longer - 1) / (longer + 1), 1e-3);

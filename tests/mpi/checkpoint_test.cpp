@@ -41,7 +41,7 @@ PetscErrorCode build(MPI_Comm comm, const Case &c, Scene *scene) {
   Phase &phase = scene->add_phase(0.7, [&](double x, double y, double) {
     return std::hypot(x - 0.85 * L[0], y - 0.8 * L[1]) < 0.9 ? 1.0 : 0.0;  // over the corner of the high walls
   });
-  phase.label = FieldBlock(scene->grid, 1);
+  phase.label = Field(scene->grid, 1);
   for (const Segment &row : scene->grid.rows())
     for (int i = row.i_begin; i < row.i_end; ++i)
       phase.label[0](i, row.j, row.k) = phase.fraction[0](i, row.j, row.k) > 0 ? 1 : 0;

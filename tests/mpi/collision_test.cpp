@@ -162,7 +162,7 @@ TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
       // Moves bead 2 by hand, in the middle of the run.
       std::vector<Phase> &phases = solver.state().phases;
       GhostExchange exchange(grid);
-      ASSERT_EQ(exchange.update(phases[0].label, contact_reach), 0);
+      ASSERT_EQ(exchange.update_ghosts(phases[0].label, contact_reach), 0);
       add_colour(grid, 0, &phases);
       move_bodies(grid, {{2, 0, 1}}, &phases);
       ASSERT_EQ(solver.prepare(), 0);

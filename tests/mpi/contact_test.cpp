@@ -88,8 +88,8 @@ struct Marks {
   }
   std::vector<NearBodies> near() {
     GhostExchange exchange(grid);
-    EXPECT_EQ(exchange.update(phases[0].label, contact_reach), 0);
-    EXPECT_EQ(exchange.update(phases[0].fraction, contact_reach), 0);
+    EXPECT_EQ(exchange.update_ghosts(phases[0].label, contact_reach), 0);
+    EXPECT_EQ(exchange.update_ghosts(phases[0].fraction, contact_reach), 0);
     std::vector<NearBodies> pairs;
     find_near_in_phase(grid, {phases[0].label[0], phases[0].fraction[0]}, 0, contact_reach, &pairs);
     return of_all(grid.comm(), pairs);

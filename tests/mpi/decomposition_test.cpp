@@ -1,6 +1,6 @@
 // Every rank's view of the decomposition: complete, disjoint, the same everywhere and the same as the DMDA's.
 #include "base/rank_zero.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "field/global_vector.hpp"
 
 #include <gtest/gtest.h>
@@ -120,7 +120,7 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       if (!Domain::why_not(spec, world_size()).empty()) continue;
       Domain grid;
       ASSERT_EQ(grid.create(run_communicator(), spec), 0);
-      FieldBlock before(grid, 1), after(grid, 1);
+      Field before(grid, 1), after(grid, 1);
       const Int3 &begin = grid.layout().begin;
       const auto truth = [&](int i, int j, int k) {
         return begin[0] + i + double(cells[0]) * (begin[1] + j + double(cells[1]) * (begin[2] + k));
@@ -132,7 +132,7 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       VecHandle global, natural;
       ASSERT_EQ(DMCreateGlobalVector(cell_dm.get(), global.put()), 0);
       ASSERT_EQ(DMDACreateNaturalVector(cell_dm.get(), natural.put()), 0);
-      ASSERT_EQ(to_global_vector(grid, before[0], global.get()), 0);
+      ASSERT_EQ(to_global(grid, before[0], global.get()), 0);
       ASSERT_EQ(DMDAGlobalToNaturalBegin(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
       ASSERT_EQ(DMDAGlobalToNaturalEnd(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
       PetscInt first, end;
@@ -141,7 +141,7 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       ASSERT_EQ(VecGetArrayRead(natural.get(), &values), 0);
       for (PetscInt n = first; n < end; ++n) EXPECT_EQ(values[n - first], n);
       ASSERT_EQ(VecRestoreArrayRead(natural.get(), &values), 0);
-      ASSERT_EQ(from_global_vector(grid, global.get(), after[0]), 0);
+      ASSERT_EQ(from_global(grid, global.get(), after[0]), 0);
       for (const Segment &s : grid.rows())
         for (int i = 0; i < s.size(); ++i) EXPECT_EQ(after[0](i, s.j, s.k), truth(i, s.j, s.k));
       ++tried;

@@ -22,7 +22,7 @@ Function wild(double a) {
 struct CellBlock {
   Domain grid;
   BoxSides walls{};
-  FieldBlock velocity;
+  Field velocity;
   std::vector<Phase> phases;
 
   CellBlock(MPI_Comm comm, bool flat, const std::array<bool, 3> &has_walls) {
@@ -31,7 +31,7 @@ struct CellBlock {
     spec.length = {1, 2, 1.5};
     for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = has_walls[d] ? Boundary::wall : Boundary::periodic;
     EXPECT_EQ(grid.create(comm, spec), 0);
-    velocity = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
     for (int c = 0; c < grid.dimension(); ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
   }
 
@@ -46,8 +46,8 @@ struct CellBlock {
     const auto &components = tensor_components(grid.dimension());
     Phase &phase = phases.emplace_back();
     phase.material = material;
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+    phase.fraction = Field(grid, 1);
+    phase.tensor.field = Field(grid, static_cast<int>(components.size()));
     phase.tensor.rule.centre = 0.5;
     phase.tensor.evolving.build_all(grid);
     phase.tensor.stressed.build_all(grid);
@@ -62,11 +62,11 @@ struct CellBlock {
 
   void fill_ghosts() {
     GhostExchange exchange(grid);
-    EXPECT_EQ(exchange.update(velocity, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(velocity, 2), 0);
     fill_wall_ghosts_velocity(grid, walls, 0, velocity, 2);
     for (Phase &phase : phases) {
-      EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
-      EXPECT_EQ(exchange.update(phase.tensor.field, 2), 0);
+      EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);
+      EXPECT_EQ(exchange.update_ghosts(phase.tensor.field, 2), 0);
       fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
       fill_wall_ghosts_tensor(grid, walls, phase.tensor.field, 2);
     }
@@ -74,7 +74,7 @@ struct CellBlock {
 
   // Sum of v . (mu lap v + div sigma_e) over all faces but those on walls, where v = 0.
   double power_of_forces(double viscosity) {
-    FieldBlock force(grid, grid.dimension());
+    Field force(grid, grid.dimension());
     EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
     double power = 0;
     for (int c = 0; c < grid.dimension(); ++c)

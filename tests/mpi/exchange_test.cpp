@@ -63,7 +63,7 @@ bool is_owned(const Domain &grid, const Int3 &local) {
   return true;
 }
 
-void prepare(const Domain &grid, FieldBlock &block) {
+void prepare(const Domain &grid, Field &block) {
   const Layout &own = grid.layout();
   for (std::ptrdiff_t n = 0; n < own.size * block.count(); ++n) block.data()[n] = sentinel(n);
   for_each_point(own, block.count(), [&](int f, const Int3 &p) {
@@ -83,7 +83,7 @@ bool comes_whole(const Domain &grid, int width, int j, int k) {
 }
 
 // Wrong values anywhere in the memory of the block. A rank without cells gets no ghosts.
-int count_errors(const Domain &grid, const FieldBlock &block, int width) {
+int count_errors(const Domain &grid, const Field &block, int width) {
   const Layout &own = grid.layout();
   std::vector<double> expected(own.size * block.count());
   for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = sentinel(n);
@@ -115,9 +115,9 @@ TEST(GhostExchange, FillsTheGhostsAndNothingElse) {
     GhostExchange exchange(grid);
     for (const int fields : {1, 3, 7})
       for (const int width : {1, 2, 3, 4, 5}) {
-        FieldBlock block(grid, fields);
+        Field block(grid, fields);
         prepare(grid, block);
-        ASSERT_EQ(exchange.update(block, width), 0);
+        ASSERT_EQ(exchange.update_ghosts(block, width), 0);
         EXPECT_EQ(count_errors(grid, block, width), 0) << fields << " fields, width " << width;
       }
   });
@@ -134,9 +134,9 @@ TEST(GhostExchange, FillsThoseOfLargeBoxes) {
         Domain grid;
         ASSERT_EQ(grid.create(run_communicator(), spec), 0);
         GhostExchange exchange(grid);
-        FieldBlock block(grid, 3);
+        Field block(grid, 3);
         prepare(grid, block);
-        ASSERT_EQ(exchange.update(block, 3), 0);
+        ASSERT_EQ(exchange.update_ghosts(block, 3), 0);
         EXPECT_EQ(count_errors(grid, block, 3), 0) << cells[0] << " cells in a row";
       }
 }
@@ -152,9 +152,9 @@ TEST(GhostExchange, FillsThoseOfCoarseGrids) {
       level = std::make_unique<MultigridLevel>((level ? level->domain() : grid).coarse(cells, false), widths,
                                                grid.spacing());
       for (const int width : {1, 3}) {
-        FieldBlock block(level->domain(), 1);
+        Field block(level->domain(), 1);
         prepare(level->domain(), block);
-        ASSERT_EQ(level->exchange().update(block, width), 0);
+        ASSERT_EQ(level->exchange().update_ghosts(block, width), 0);
         EXPECT_EQ(count_errors(level->domain(), block, width), 0) << halvings << " halvings, width " << width;
       }
       for (int &n : cells) n = (n + 1) / 2;
@@ -165,12 +165,14 @@ TEST(GhostExchange, FillsThoseOfCoarseGrids) {
 TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
   for_each_grid([](const Domain &grid) {
     GhostExchange exchange(grid);
-    FieldBlock a(grid, 3), b(grid, 3), c(grid, 1), d(grid, 3);
-    for (FieldBlock *block : {&a, &b, &c, &d}) prepare(grid, *block);
+    Field a(grid, 3), b(grid, 3), c(grid, 1), d(grid, 3);
+    for (Field *block : {&a, &b, &c, &d}) prepare(grid, *block);
     for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] *= 2;  // the twin of a must not get a's
-    for (const WantedGhosts &wanted : {WantedGhosts{&a, 3}, WantedGhosts{&b, 3}}) ASSERT_EQ(exchange.begin(wanted), 0);
-    ASSERT_EQ(exchange.update({{&c, 1}, {&d, 1}}), 0);
-    for (const WantedGhosts &wanted : {WantedGhosts{&b, 3}, WantedGhosts{&a, 3}}) ASSERT_EQ(exchange.end(wanted), 0);
+    for (const WantedGhosts &wanted : {WantedGhosts{&a, 3}, WantedGhosts{&b, 3}})
+      ASSERT_EQ(exchange.begin_update(wanted), 0);
+    ASSERT_EQ(exchange.update_ghosts({{&c, 1}, {&d, 1}}), 0);
+    for (const WantedGhosts &wanted : {WantedGhosts{&b, 3}, WantedGhosts{&a, 3}})
+      ASSERT_EQ(exchange.end_update(wanted), 0);
     for (std::ptrdiff_t n = 0; n < grid.layout().size * 3; ++n) b.data()[n] /= 2;
     EXPECT_EQ(count_errors(grid, a, 3), 0);
     EXPECT_EQ(count_errors(grid, b, 3), 0);
@@ -187,7 +189,7 @@ TEST(GhostExchange, LeavesRestAlone) {
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   GhostExchange exchange(grid);
-  FieldBlock phi(grid, 1), block(grid, 2);
+  Field phi(grid, 1), block(grid, 2);
   const Layout &own = grid.layout();
   OccupiedRows rows;
   const auto expect_ghosts = [&](int i, int j, bool filled) {
@@ -202,7 +204,7 @@ TEST(GhostExchange, LeavesRestAlone) {
     ASSERT_EQ(rows.inside(), inside);
     ASSERT_TRUE(rows.idle(2, 0) && !rows.idle(12, 0) && !rows.idle(27, 0));
     prepare(grid, block);
-    ASSERT_EQ(exchange.update(block, 3, &rows), 0);
+    ASSERT_EQ(exchange.update_ghosts(block, 3, &rows), 0);
     for (const int i : {-3, -1, 40, 42}) {
       expect_ghosts(i, 2, false);
       expect_ghosts(i, 12, false);
@@ -217,10 +219,10 @@ TEST(GhostExchange, LeavesRestAlone) {
 TEST(GhostExchange, CanBeRepeatedAfterSwap) {
   for_each_grid([](const Domain &grid) {
     GhostExchange exchange(grid);
-    FieldBlock now(grid, 3), next(grid, 3);
+    Field now(grid, 3), next(grid, 3);
     for (int round = 0; round < 3; ++round) {
       prepare(grid, next);
-      ASSERT_EQ(exchange.update(next, 3), 0);
+      ASSERT_EQ(exchange.update_ghosts(next, 3), 0);
       now.swap(next);
       EXPECT_EQ(count_errors(grid, now, 3), 0);
     }
@@ -240,9 +242,9 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
     const int dimension = grid.dimension();
     const int components = static_cast<int>(tensor_components(dimension).size());
     for (const int width : {1, 3}) {
-      const auto fill = [&](const Domain &g, FieldBlock &velocity, FieldBlock &tensor) {
+      const auto fill = [&](const Domain &g, Field &velocity, Field &tensor) {
         const Layout &own = g.layout();
-        for (FieldBlock *block : {&velocity, &tensor}) {
+        for (Field *block : {&velocity, &tensor}) {
           for (int f = 0; f < block->count(); ++f) block->fill(f, poison);
           for_each_point(own, block->count(), [&](int f, const Int3 &p) {
             if (is_owned(g, p))
@@ -251,13 +253,13 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
           });
         }
         GhostExchange exchange(g);
-        ASSERT_EQ(exchange.update(velocity, width), 0);
-        ASSERT_EQ(exchange.update(tensor, width), 0);
+        ASSERT_EQ(exchange.update_ghosts(velocity, width), 0);
+        ASSERT_EQ(exchange.update_ghosts(tensor, width), 0);
         fill_wall_ghosts_velocity(g, walls, .7, velocity, width);
         fill_wall_ghosts_tensor(g, walls, tensor, width);
       };
-      FieldBlock velocity(grid, dimension), tensor(grid, components);
-      FieldBlock whole_velocity(whole, dimension), whole_tensor(whole, components);
+      Field velocity(grid, dimension), tensor(grid, components);
+      Field whole_velocity(whole, dimension), whole_tensor(whole, components);
       fill(grid, velocity, tensor);
       fill(whole, whole_velocity, whole_tensor);
       int errors = 0, gaps = 0;
@@ -270,7 +272,7 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
           g[d] = own.begin[d] + p[d];
           if (!grid.is_wall(d)) g[d] = (g[d] + grid.domain_cells()[d]) % grid.domain_cells()[d];
         }
-        const auto compare = [&](const FieldBlock &part, const FieldBlock &all) {
+        const auto compare = [&](const Field &part, const Field &all) {
           const double x = part[f](p[0], p[1], p[2]), y = all[f](g[0], g[1], g[2]);
           errors += std::memcmp(&x, &y, sizeof x) != 0;
           gaps += !std::isfinite(x);

@@ -13,7 +13,7 @@
 namespace eulastic {
 namespace {
 
-using Field = std::function<double(double x, double y, double z)>;
+using Function = std::function<double(double x, double y, double z)>;
 
 struct Flow {
   Flow(MPI_Comm comm, const Int3 &cells, const Real3 &length, const std::array<bool, 3> &has_walls) {
@@ -22,32 +22,32 @@ struct Flow {
     spec.length = length;
     for (int d = 0; d < 3; ++d) spec.boundary[d] = has_walls[d] ? Boundary::wall : Boundary::periodic;
     grid.create(comm, spec);
-    velocity = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
   }
 
-  void set(View q, const Staggering &s, const Field &field) const {
+  void set(View q, const Staggering &s, const Function &field) const {
     const Real3 &h = grid.spacing();
     const auto at = [&](int d, int index) { return (grid.layout().begin[d] + index + (s[d] ? 0.0 : 0.5)) * h[d]; };
     for (const Segment &row : grid.rows())
       for (int i = 0; i < row.i_end; ++i) q(i, row.j, row.k) = field(at(0, i), at(1, row.j), at(2, row.k));
   }
 
-  void add_phase(double shear_modulus, const Field &fraction, const std::array<double, 3> &diagonal) {
+  void add_phase(double shear_modulus, const Function &fraction, const std::array<double, 3> &diagonal) {
     const int components = static_cast<int>(tensor_components(grid.dimension()).size());
     Phase phase;
     phase.material.shear_modulus = shear_modulus;
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor.field = FieldBlock(grid, components);
+    phase.fraction = Field(grid, 1);
+    phase.tensor.field = Field(grid, components);
     set(phase.fraction[0], at_centre, fraction);
     for (int c = 0; c < grid.dimension(); ++c) phase.tensor.field.fill(c, diagonal[c]);
     for (int c = grid.dimension(); c < components; ++c) phase.tensor.field.fill(c, 7.0);  // off-diagonal: no energy
     phases.push_back(std::move(phase));
   }
 
-  FlowMeasures measure(const std::array<Field, 3> &field, const FlowNumbers &numbers) {
+  FlowMeasures measure(const std::array<Function, 3> &field, const FlowNumbers &numbers) {
     for (int c = 0; c < grid.dimension(); ++c) set(velocity[c], at_face[c], field[c]);
     GhostExchange exchange(grid);
-    exchange.update(velocity, 1);
+    exchange.update_ghosts(velocity, 1);
     fill_wall_ghosts_velocity(grid, walls, 0, velocity, 1);
     FlowMeasures measures;
     EXPECT_EQ(measure_flow(grid, velocity, numbers, &measures), 0);
@@ -57,11 +57,11 @@ struct Flow {
 
   Domain grid;
   BoxSides walls{};
-  FieldBlock velocity;
+  Field velocity;
   std::vector<Phase> phases;
 };
 
-const Field zero = [](double, double, double) { return 0.0; };
+const Function zero = [](double, double, double) { return 0.0; };
 
 // Sampled sines: means of squares are exact, and a central difference sees k as 2 sin(k h / 2) / h.
 TEST(FlowMeasures, TaylorGreen) {
@@ -69,8 +69,8 @@ TEST(FlowMeasures, TaylorGreen) {
   for (const int nz : {1, 9}) {
     SCOPED_TRACE(nz);
     Flow flow(run_communicator(), {20, 12, nz}, {2 * pi, 2 * pi, 1}, {});
-    const std::array<Field, 3> v{[](double x, double y, double) { return std::sin(x) * std::cos(y); },
-                                 [](double x, double y, double) { return -std::cos(x) * std::sin(y); }, zero};
+    const std::array<Function, 3> v{[](double x, double y, double) { return std::sin(x) * std::cos(y); },
+                                    [](double x, double y, double) { return -std::cos(x) * std::sin(y); }, zero};
     const FlowMeasures m = flow.measure(v, {rho, mu, 0, 0});
     EXPECT_NEAR(m.kinetic_energy, 0.5 * rho * 0.5 * 4 * pi * pi, 1e-12 * 30);
     const double kx = 2 * std::sin(pi / 20) / (2 * pi / 20), ky = 2 * std::sin(pi / 12) / (2 * pi / 12);
@@ -87,8 +87,9 @@ TEST(FlowMeasures, TaylorGreen) {
 
 TEST(FlowMeasures, UniformFlow) {
   Flow flow(run_communicator(), {5, 13, 7}, {1, 2, 3}, {});
-  const std::array<Field, 3> v{[](double, double, double) { return -3.0; }, [](double, double, double) { return 4.0; },
-                               [](double, double, double) { return -12.0; }};
+  const std::array<Function, 3> v{[](double, double, double) { return -3.0; },
+                                  [](double, double, double) { return 4.0; },
+                                  [](double, double, double) { return -12.0; }};
   const FlowMeasures m = flow.measure(v, {2.0, 1.0, 0, 0});
   EXPECT_NEAR(m.kinetic_energy, 169 * 6, 1e-11);
   EXPECT_EQ(m.bulk_velocity, (Real3{-3, 4, -12}));
@@ -111,7 +112,7 @@ TEST(FlowMeasures, LinearShear) {
       Flow flow(run_communicator(), {5, 13, 7}, length, walls);
       const double speed = 0.7, mu = 0.3;
       flow.walls[d][1].motion.velocity[c] = speed;
-      std::array<Field, 3> v{zero, zero, zero};
+      std::array<Function, 3> v{zero, zero, zero};
       v[c] = [&](double x, double y, double z) { return speed * Real3{x, y, z}[d] / length[d]; };
       const FlowMeasures m = flow.measure(v, {1, mu, 0, 0});
       EXPECT_NEAR(m.viscous_dissipation, mu * speed * speed / (length[d] * length[d]) * 6, 1e-13);
@@ -149,8 +150,8 @@ TEST(FlowMeasures, DivergenceIsInUnitsOfSpeedAndSpacing) {
   Flow flow(run_communicator(), {8, 9, 7}, {1, 9, 7}, {});
   // u alternates by +-1 from face to face: |div v| = 2/h_x everywhere; half as fast, the ratio is the same.
   for (const double amplitude : {1.0, 0.5}) {
-    const Field u = [=](double x, double, double) { return amplitude * (std::lround(x * 8) % 2 ? 1 : -1); };
-    const Field v = [=](double, double, double) { return amplitude; };
+    const Function u = [=](double x, double, double) { return amplitude * (std::lround(x * 8) % 2 ? 1 : -1); };
+    const Function v = [=](double, double, double) { return amplitude; };
     const FlowMeasures m = flow.measure({u, v, zero}, {1, 1, 0, 0});
     EXPECT_NEAR(m.speed_max, amplitude, 1e-15);
     EXPECT_NEAR(m.divergence_rms, 2, 1e-14);
@@ -181,7 +182,7 @@ TEST(FlowMeasures, ElasticEnergyAndVolumes) {
 
 TEST(FlowMeasures, NotANumberIsSeen) {
   Flow flow(run_communicator(), {5, 13, 7}, {1, 2, 3}, {});
-  const Field ill = [](double x, double y, double z) { return x + y + z < 0.5 ? std::nan("") : 1.0; };
+  const Function ill = [](double x, double y, double z) { return x + y + z < 0.5 ? std::nan("") : 1.0; };
   const FlowMeasures m = flow.measure({zero, ill, zero}, {});
   for (const double value : {m.kinetic_energy, m.bulk_velocity[1], m.velocity_max[1], m.speed_max, m.divergence_rms,
                              m.divergence_max, m.viscous_dissipation})

@@ -21,7 +21,7 @@ TEST_P(Fields, RoundTrip) {
   const Staggering places[] = {at_centre, at_face[0], at_face[1], {true, true, false}};
   for (const Staggering &place : places) {
     SCOPED_TRACE(location_name(place));
-    FieldBlock block(scene.grid, 2);
+    Field block(scene.grid, 2);
     scene.fill(block[0], place);
     const std::string path = directory / ("field_" + location_name(place) + ".h5");
     Hdf5File out;
@@ -70,7 +70,7 @@ TEST(Hdf5, ChecksumIsThatOfOneRank) {
   for (int alone = 0; alone < 2; ++alone) {
     if (alone && world_rank() > 0) continue;
     const NumberedFields scene({5, 13, 7}, true, alone ? PETSC_COMM_SELF : run_communicator());
-    FieldBlock block(scene.grid, 1);
+    Field block(scene.grid, 1);
     scene.fill(block[0], at_face[1]);
     Hdf5File out, in;
     const std::string path = directory / ("alone_" + std::to_string(alone) + ".h5");
@@ -89,7 +89,7 @@ TEST(Hdf5, DamageIsAnError) {
   const SharedDirectory directory;
   const std::string path = directory / "damaged.h5";
   const NumberedFields scene({5, 13, 7});
-  FieldBlock block(scene.grid, 1);
+  Field block(scene.grid, 1);
   scene.fill(block[0], at_centre);
   {
     Hdf5File out;
@@ -145,9 +145,9 @@ TEST(Hdf5, WrongInputIsNamed) {
   const SharedDirectory directory;
   const std::string path = directory / "small.h5";
   const NumberedFields scene({5, 13, 7}), other({5, 14, 7}), periodic({4, 13, 7}, false);
-  FieldBlock block(other.grid, 1), narrow(periodic.grid, 1);
+  Field block(other.grid, 1), narrow(periodic.grid, 1);
   {
-    FieldBlock source(scene.grid, 1);
+    Field source(scene.grid, 1);
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
     ASSERT_EQ(out.write_field(scene.grid, {"q"}, {source[0]}), 0);
@@ -157,7 +157,7 @@ TEST(Hdf5, WrongInputIsNamed) {
   }
   Hdf5File in;
   ASSERT_EQ(in.open(run_communicator(), path), 0);
-  const auto reading = [&](const Domain &grid, const char *name, const Staggering &s, FieldBlock &to) {
+  const auto reading = [&](const Domain &grid, const char *name, const Staggering &s, Field &to) {
     return error_of([&] { return in.read_field(grid, name, s, to[0]); });
   };
   EXPECT_EQ(reading(other.grid, "q", at_centre, block),
@@ -203,7 +203,7 @@ TEST(Hdf5, AFullDiskIsAnError) {
   const SharedDirectory directory;
   const std::string path = directory / "full.h5";
   const NumberedFields scene({13, 17, 19});
-  const FieldBlock block(scene.grid, 1);
+  const Field block(scene.grid, 1);
   {
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);

@@ -67,14 +67,14 @@ void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt)
   const Domain &grid = scene.grid;
   const Int3 n = grid.cells();
   const int dimension = grid.dimension(), margin = dimension == 3 ? 1 : 0;
-  FieldBlock work(grid, 2);
+  Field work(grid, 2);
   scene.each_owned([&](int i, int j, int k) { work[1](i, j, k) = scene.fraction[0](i, j, k) > 0.5; });
   for (const char *name = orders[dimension - 2][scene.step++ % 6]; *name; ++name) {
     const int d = *name - 'x';
     const double rate = dt / grid.spacing()[d];
     const View phi = scene.fraction[0], flux = work[0], solid = work[1];
     const ConstView velocity = scene.velocity[d];
-    ASSERT_EQ(exchange.update(scene.fraction, 2), 0);
+    ASSERT_EQ(exchange.update_ghosts(scene.fraction, 2), 0);
     fill_wall_ghosts_even(grid, at_centre, phi, 2);
     std::ptrdiff_t stride[3];
     for (int e = 0; e < 3; ++e) stride[e] = phi.stride((d + e) % dimension);

@@ -121,7 +121,7 @@ TEST(Ksp, EqualsSmacOnAllBoundariesAndDecompositions) {
           const bool geometric = cells[0] == 16 && sides[1] < 2 && s.grid.processors(2) < 4 && spec.starts[0].empty();
           EXPECT_EQ(s.preconditioner(), geometric ? PCMG : PCGAMG) << name(spec);
           std::unique_ptr<PressureSolver> smac;
-          FieldBlock exact(s.grid, 1);
+          Field exact(s.grid, 1);
           ASSERT_EQ(SmacSolver::create(s.grid, *s.exchange, &smac), 0);
           ASSERT_EQ(smac->solve(s.dt, s.divergence, s.pressure, exact), 0);
           const double bound = 1.01e-10 * s.rms_divergence() / (s.dt * smallest_eigenvalue(s.grid));

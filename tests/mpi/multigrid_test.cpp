@@ -13,13 +13,13 @@ namespace {
 
 // V D on the grid of `spec`.
 struct Cycle : PoissonScene {
-  FieldBlock solution, scratch;
+  Field solution, scratch;
 
   Cycle(MPI_Comm comm, const GridSpec &spec) : PoissonScene(comm, spec), solution(grid, 1), scratch(grid, 1) {
     Multigrid multigrid;
     EXPECT_EQ(multigrid.create(grid), 0);
     set(noise);
-    EXPECT_EQ(exchange->update(divergence, Multigrid::halo), 0);
+    EXPECT_EQ(exchange->update_ghosts(divergence, Multigrid::halo), 0);
     EXPECT_EQ(multigrid.apply(divergence, solution, scratch), 0);
   }
   int stages_of_a_pass() const { return StagePass::depth(grid, Sides(grid), 1, 3); }
@@ -91,7 +91,8 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         bool joined = false;
         const auto levels = Multigrid::plan(many.grid);
         for (std::size_t l = 1; l < levels.size(); ++l)
-          joined |= levels[l]->domain().domain_cells() == levels[l - 1]->domain().domain_cells() && levels[l]->domain().ranks() > 1;
+          joined |= levels[l]->domain().domain_cells() == levels[l - 1]->domain().domain_cells() &&
+                    levels[l]->domain().ranks() > 1;
         EXPECT_EQ(joined, ranks > 1);
       }
     }

@@ -30,14 +30,14 @@ struct Solution {
   Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   std::unique_ptr<PressureSolver> solver;
-  FieldBlock divergence, pressure, increment;
+  Field divergence, pressure, increment;
 
   Solution(MPI_Comm comm, const GridSpec &spec, const Function &f) {
     EXPECT_EQ(grid.create(comm, spec), 0);
     exchange = std::make_unique<GhostExchange>(grid);
-    divergence = FieldBlock(grid, 1);
-    pressure = FieldBlock(grid, 1);
-    increment = FieldBlock(grid, 1);
+    divergence = Field(grid, 1);
+    pressure = Field(grid, 1);
+    increment = Field(grid, 1);
     const Layout &own = grid.layout();
     for (int k = 0; k < own.cells[2]; ++k)
       for (int j = 0; j < own.cells[1]; ++j)

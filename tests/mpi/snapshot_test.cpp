@@ -19,9 +19,9 @@ Phase make_phase(const NumberedFields &scene, const std::string &name, double fr
   const auto &components = tensor_components(scene.grid.dimension());
   Phase phase;
   phase.species = name;
-  phase.fraction = FieldBlock(scene.grid, 1);
-  phase.tensor.field = FieldBlock(scene.grid, static_cast<int>(components.size()));
-  phase.label = FieldBlock(scene.grid, 1);
+  phase.fraction = Field(scene.grid, 1);
+  phase.tensor.field = Field(scene.grid, static_cast<int>(components.size()));
+  phase.label = Field(scene.grid, 1);
   phase.fraction.fill(0, fraction);
   phase.label.fill(0, label);
   for (int c = 0; c < phase.tensor.field.count(); ++c) scene.fill(phase.tensor.field[c], components[c].at, c);
@@ -92,11 +92,11 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   const SharedDirectory directory;
   const NumberedFields scene(cells);
   const int dimension = scene.grid.dimension();
-  FieldBlock velocity(scene.grid, dimension), pressure(scene.grid, 1), read(scene.grid, 1);
+  Field velocity(scene.grid, dimension), pressure(scene.grid, 1), read(scene.grid, 1);
   for (int c = 0; c < dimension; ++c) scene.fill(velocity[c], at_face[c], c);
   scene.fill(pressure[0], at_centre);
   GhostExchange exchange(scene.grid);
-  ASSERT_EQ(exchange.update(velocity, 1), 0);
+  ASSERT_EQ(exchange.update_ghosts(velocity, 1), 0);
   std::vector<Phase> phases;
   phases.push_back(make_phase(scene, "cell", 0.5, 3));
   if (phase_count > 1) phases.push_back(make_phase(scene, "vessel", 0.75, 4));
@@ -172,7 +172,7 @@ void check_snapshot(const Int3 &cells, int phase_count) {
 TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   const SharedDirectory directory;
   const NumberedFields scene({5, 13, 7});
-  const FieldBlock pressure(scene.grid, 1);
+  const Field pressure(scene.grid, 1);
   SnapshotField field;
   field.format.name = "pressure";
   field.components = {pressure[0]};
@@ -192,7 +192,7 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
 TEST(Snapshot, AColourIsPartOfItsSpecies) {
   const SharedDirectory directory;
   const NumberedFields scene({7, 13, 1});
-  const FieldBlock velocity(scene.grid, 2), pressure(scene.grid, 1);
+  const Field velocity(scene.grid, 2), pressure(scene.grid, 1);
   std::vector<Phase> phases;
   phases.push_back(make_phase(scene, "cell", 0.5, 3));
   phases.push_back(make_phase(scene, "cell", 0.75, 4));

@@ -47,8 +47,8 @@ void for_each_split(const Int3 &cells, int walls, const std::function<void(const
 }
 
 // Owned points of a field of this staggering, the high wall included; the rest is NaN.
-FieldBlock fields_on(const Domain &grid, const std::array<bool, 3> &staggering, int count) {
-  FieldBlock block(grid, count);
+Field fields_on(const Domain &grid, const std::array<bool, 3> &staggering, int count) {
+  Field block(grid, count);
   const Int3 &begin = grid.layout().begin;
   for (int f = 0; f < count; ++f) {
     block.fill(f, std::nan(""));
@@ -61,7 +61,7 @@ FieldBlock fields_on(const Domain &grid, const std::array<bool, 3> &staggering, 
 }
 
 std::array<double, 3> sums_on(const Domain &grid, std::uint64_t seed) {
-  const FieldBlock block = fields_on(grid, {}, 3);
+  const Field block = fields_on(grid, {}, 3);
   std::vector<Segment> rows = grid.rows();
   std::shuffle(rows.begin(), rows.end(), std::mt19937_64(seed + grid.rank()));
   ExactSums sums(3);
@@ -118,7 +118,7 @@ TEST(GlobalSums, ReduceStartsAnew) {
   }
 }
 
-std::uint64_t global_hash(const Domain &grid, const FieldBlock &block, const std::array<bool, 3> &staggering,
+std::uint64_t global_hash(const Domain &grid, const Field &block, const std::array<bool, 3> &staggering,
                           std::uint64_t salt = 3) {
   std::uint64_t hash = hash_points(grid, block[0], staggering, salt);
   MPI_Allreduce(MPI_IN_PLACE, &hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm());
@@ -154,7 +154,7 @@ constexpr std::array<bool, 3> on_z_edges{true, true, false};
 // The global hash is a sum over ranks, so that a change on one rank is a change of the whole.
 TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
   for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
-    FieldBlock block = fields_on(grid, on_z_edges, 1);
+    Field block = fields_on(grid, on_z_edges, 1);
     const View q = block[0];
     const std::uint64_t before = hash_points(grid, q, on_z_edges, 3);
     EXPECT_NE(hash_points(grid, q, on_z_edges, 4), before);
@@ -175,7 +175,7 @@ TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
     MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPI_INT, MPI_SUM, grid.comm());
     EXPECT_EQ(points, 6 * 10 * 7);  // the wall planes once
 
-    FieldBlock other(grid, 1);  // the same points, other ghosts and padding
+    Field other(grid, 1);  // the same points, other ghosts and padding
     for_each_point(grid, on_z_edges, [&](int i, int j, int k) { other[0](i, j, k) = q(i, j, k); });
     EXPECT_EQ(hash_points(grid, other[0], on_z_edges, 3), before);
   });
@@ -184,7 +184,7 @@ TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
 // Two points that exchange their values, wherever they live.
 TEST(StateHash, SeesASwap) {
   for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
-    FieldBlock block = fields_on(grid, on_z_edges, 1);
+    Field block = fields_on(grid, on_z_edges, 1);
     const Int3 &begin = grid.layout().begin;
     const std::uint64_t before = global_hash(grid, block, on_z_edges);
     const auto set = [&](const Int3 &at, const Int3 &from) {

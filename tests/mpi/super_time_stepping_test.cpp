@@ -57,8 +57,8 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   ASSERT_EQ(grid.create(run_communicator(), spec), 0);
   GhostExchange exchange(grid);
   const double viscosity = 0.7, dt = 0.02, first = 1.3, slope = -40, start = 0.25;
-  SuperTimeStepping work{FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3), FieldBlock(grid, 3)};
-  FieldBlock velocity(grid, 3), result(grid, 3);
+  SuperTimeStepping work{Field(grid, 3), Field(grid, 3), Field(grid, 3), Field(grid, 3)};
+  Field velocity(grid, 3), result(grid, 3);
   std::vector<Phase> phases(1);
   phases[0].tensor.stressed.build_all(grid);
   std::array<std::array<Wave, 3>, 3> waves;

@@ -27,7 +27,7 @@ struct CellBlock {
   BoxSides sides{};
   Fluid fluid;
   std::vector<Phase> phases{1};
-  FieldBlock velocity;
+  Field velocity;
   LocalViscosity viscosity;
 
   CellBlock(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
@@ -44,25 +44,25 @@ struct CellBlock {
     fluid.density = 1.3;
     fluid.viscosity = 0.2;
     phases[0].material.viscosity = contrast * fluid.viscosity;
-    velocity = FieldBlock(grid, dim);
+    velocity = Field(grid, dim);
     viscosity = LocalViscosity(grid);
     for (int c = 0; c < dim; ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
     GhostExchange exchange(grid);
-    EXPECT_EQ(exchange.update(velocity, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(velocity, 2), 0);
     fill_wall_ghosts_velocity(grid, sides, 0, velocity, 2);
     Phase &phase = phases[0];
-    phase.fraction = FieldBlock(grid, 1);
+    phase.fraction = Field(grid, 1);
     phase.tensor.field = tensor_at_rest(grid);
     set(grid, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
-    EXPECT_EQ(exchange.update(phase.fraction, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);
     fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
     EXPECT_EQ(compute_viscosity(grid, fluid, sides, phases, &viscosity), 0);
   }
 
   // Sum of v . div tau over all faces but those on sides, where v = 0.
   double power_of_force() {
-    FieldBlock force(grid, grid.dimension());
+    Field force(grid, grid.dimension());
     EXPECT_EQ(add_viscous_force(grid, viscosity, fluid.density, velocity, force), 0);
     double power = 0;
     for (int c = 0; c < grid.dimension(); ++c)

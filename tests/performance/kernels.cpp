@@ -16,7 +16,7 @@ namespace {
 
 struct Block {
   Domain grid;
-  FieldBlock fields;
+  Field fields;
   std::vector<Segment> rows;
   std::vector<double> rate, carried[3];
   double inverse[3]{64, 16, 16};
@@ -26,7 +26,7 @@ struct Block {
     GridSpec spec;
     spec.cells = {64, 16, 16};
     (void)grid.create(PETSC_COMM_SELF, spec);
-    fields = FieldBlock(grid, 10);
+    fields = Field(grid, 10);
     for (std::size_t i = 0; i < fields.bytes() / sizeof(double); ++i) fields.data()[i] = 1 + 0.1 * std::sin(0.37 * i);
     rows = grid.rows();
     rate.resize(64);

@@ -17,8 +17,8 @@ namespace {
 
 struct Fields {
   const Domain &grid;
-  const FieldBlock &velocity, &fraction, &tensor;
-  FieldBlock &next;  // ten
+  const Field &velocity, &fraction, &tensor;
+  Field &next;  // ten
   double dt;
   Real3 inverse;
 };
@@ -62,7 +62,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
 EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &scratch) {
   double *rate = scratch.row(0);
   const int n = t.grid.cells()[0];
-  const FieldBlock &v = t.velocity;
+  const Field &v = t.velocity;
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const Segment row{0, n, j, k};
     for (int a = 0; a < 3; ++a) {
@@ -129,7 +129,7 @@ void part(benchmark::State &state, double bytes, double flops, Task task) {
   if (!box) return state.SkipWithError("no scene");
   const Domain &grid = box->scene.grid;
   State &now = box->scene.solver.state();
-  FieldBlock next(grid, 10);
+  Field next(grid, 10);
   const Real3 &h = grid.spacing();
   const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor.field,
                       next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};

@@ -18,7 +18,7 @@ struct Scratch {
   const Domain &grid;
   State &now;
   GhostExchange &exchange;
-  FieldBlock velocity, tensor, scalar, increment;
+  Field velocity, tensor, scalar, increment;
 
   explicit Scratch(performance::FilledBox &b)
       : box(b),
@@ -96,8 +96,8 @@ double exchanged(const Domain &grid, int fields) {
   const Int3 n = grid.cells();
   return 24. * fields * ((n[0] + 6.) * (n[2] + 6.) / (double(n[0]) * n[2]) - 1);
 }
-EULASTIC_VERB(exchange_velocity, exchanged(s.grid, 3), s.exchange.update(s.velocity, 3));
-EULASTIC_VERB(exchange_tensor, exchanged(s.grid, 6), s.exchange.update(s.tensor, 3));
+EULASTIC_VERB(exchange_velocity, exchanged(s.grid, 3), s.exchange.update_ghosts(s.velocity, 3));
+EULASTIC_VERB(exchange_tensor, exchanged(s.grid, 6), s.exchange.update_ghosts(s.tensor, 3));
 
 // A stage of a velocity component by itself: W_j-1, W_j-2 in place, the rate. (Several share a pass, so that less goes
 // through memory.) Before: rate -> W_1 and W_0 = 0; after: v, W -> v*.
@@ -105,7 +105,7 @@ void rkl_stage(benchmark::State &state) {
   verb(state, Filling::all, [](Scratch &s, auto measure) {
     constexpr int stages = 41;
     constexpr double stage = 8 + 16 + 8, ends = (8 + 16) + 16 + (8 + 8 + 16);
-    SuperTimeStepping work{FieldBlock(s.grid, 3), {}, FieldBlock(s.grid, 3), FieldBlock(s.grid, 3)};
+    SuperTimeStepping work{Field(s.grid, 3), {}, Field(s.grid, 3), Field(s.grid, 3)};
     measure(3 * (stage + ends / (stages - 1)), stages - 1, [&] {
       return super_time_step(s.grid, s.exchange, s.box.scene.solver.spec().sides, 1, 0, 100 * s.box.dt, stages, {},
                              s.now.velocity, work, s.velocity);

@@ -66,7 +66,7 @@ class Candidates(unittest.TestCase):
         self.assertEqual(mutations("double g[1];"), set())
 
     def test_exchanges(self):
-        for line in ("PetscCall(exchange_->update(divergence, 1));", "fill_ghosts_of_increment(grid, q, 1);",
+        for line in ("PetscCall(exchange_->update_ghosts(divergence, 1));", "fill_ghosts_of_increment(grid, q, 1);",
                      "PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_INT, MPI_MAX, comm));"):
             self.assert_among(line, ("exchange", ";"))
         self.assert_among("if (open) wrap_rows(wanted);", ("exchange", "if (open) ;"))

@@ -78,7 +78,7 @@ class Structure(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_a_box_knows_neither_petsc_nor_ranks(self):
-        reached, todo = set(), ["grid/box.hpp", "grid/threads.hpp", "grid/row_scratch.hpp", "field/field_block.hpp"]
+        reached, todo = set(), ["grid/box.hpp", "grid/threads.hpp", "grid/row_scratch.hpp", "field/field.hpp"]
         while todo:
             target = todo.pop()
             if target not in reached and (ROOT / "src" / target).is_file():

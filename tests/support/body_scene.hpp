@@ -33,12 +33,12 @@ inline SpeciesSpec species(Shape shape, double radius, const Real3 &semi_axes = 
 struct BodyScene {
   Domain grid;
   std::vector<Phase> phases;
-  FieldBlock velocity;
+  Field velocity;
   BodyTracker tracker;
 
   BodyScene(MPI_Comm comm, const GridSpec &spec) {
     EXPECT_EQ(grid.create(comm, spec), 0);
-    velocity = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
   }
   void add(const SpeciesSpec &spec, const Places &places) {
     phases.emplace_back();

@@ -72,14 +72,14 @@ inline Position ellipsoid(const Real3 &centre, const Real3 &axes, int dimension)
 class InterfaceScene {
 public:
   Domain grid;
-  FieldBlock velocity, fraction;
+  Field velocity, fraction;
   long step = 0;
 
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec) {
     PetscFunctionBeginUser;
     PetscCall(grid.create(comm, spec));
-    velocity = FieldBlock(grid, grid.dimension());
-    fraction = FieldBlock(grid, 1);
+    velocity = Field(grid, grid.dimension());
+    fraction = Field(grid, 1);
     exchange_ = std::make_unique<GhostExchange>(grid);
     transport_ = std::make_unique<InterfaceTransport>(grid, work_);
     PetscCall(work_.reserve(InterfaceTransport::work_fields));
@@ -128,7 +128,7 @@ public:
 
   PetscErrorCode update_velocity_ghosts() {
     PetscFunctionBeginUser;
-    PetscCall(exchange_->update(velocity, 3));
+    PetscCall(exchange_->update_ghosts(velocity, 3));
     fill_wall_ghosts_velocity(grid, BoxSides{}, 0, velocity, 3);
     PetscFunctionReturn(0);
   }
@@ -140,7 +140,7 @@ public:
 
   PetscErrorCode advance(double dt) {
     PetscFunctionBeginUser;
-    PetscCall(exchange_->update(fraction, InterfaceTransport::ghosts));
+    PetscCall(exchange_->update_ghosts(fraction, InterfaceTransport::ghosts));
     PetscCall(transport_->advance(dt, velocity, step++, {}, fraction));
     PetscFunctionReturn(0);
   }

@@ -38,14 +38,14 @@ struct PoissonScene {
   static constexpr double dt = 0.37;
   Domain grid;
   std::unique_ptr<GhostExchange> exchange;
-  FieldBlock divergence, pressure, increment;
+  Field divergence, pressure, increment;
 
   PoissonScene(MPI_Comm comm, const GridSpec &spec) {
     EXPECT_EQ(grid.create(comm, spec), 0);
     exchange = std::make_unique<GhostExchange>(grid);
-    divergence = FieldBlock(grid, 1);
-    pressure = FieldBlock(grid, 1);
-    increment = FieldBlock(grid, 1);
+    divergence = Field(grid, 1);
+    pressure = Field(grid, 1);
+    increment = Field(grid, 1);
     increment.fill(0, std::nan(""));  // so that a ghost nobody filled shows
   }
   void set(const CellFunction &f, bool without_mean = true) {
@@ -57,7 +57,7 @@ struct PoissonScene {
     const double mean = without_mean ? global_sum(grid, D) / grid.domain_cell_count() : 0;
     for (const Segment &s : grid.rows())
       for (int i = 0; i < s.i_end; ++i) divergence[0](i, s.j, s.k) -= mean;
-    EXPECT_EQ(exchange->update(divergence, 1), 0);
+    EXPECT_EQ(exchange->update_ghosts(divergence, 1), 0);
     fill_wall_ghosts_even(grid, at_centre, divergence[0], 1);
   }
   // D - dt lap increment, from the ghosts of the increment.

@@ -73,11 +73,11 @@ double largest_error(const Domain &grid, ConstView view, const Staggering &at, E
 }
 
 /// Random values at all points, then periodic ghosts (no walls).
-inline void randomise(const Domain &grid, FieldBlock &block, Random &random, double mean = 0) {
+inline void randomise(const Domain &grid, Field &block, Random &random, double mean = 0) {
   for (int f = 0; f < block.count(); ++f)
     set(grid, block[f], at_centre, [&](double, double, double) { return mean + random(); });
   GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update(block, grid.spec().ghosts), 0);
+  EXPECT_EQ(exchange.update_ghosts(block, grid.spec().ghosts), 0);
 }
 
 /// 3-D (or 2-D) periodic box with three different spacings.

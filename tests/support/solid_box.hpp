@@ -11,16 +11,16 @@ struct Solid {
   Domain grid;
   Fluid fluid;
   std::vector<Phase> phases;
-  FieldBlock velocity, pressure, velocity_star, next;
+  Field velocity, pressure, velocity_star, next;
   Polynomial phi, v[3], B[3][3];
 
   Solid(bool flat, int degree, int seed) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     Random random(seed);
     const int dim = grid.dimension();
-    velocity = FieldBlock(grid, dim);
-    velocity_star = FieldBlock(grid, dim);
-    pressure = FieldBlock(grid, 1);
+    velocity = Field(grid, dim);
+    velocity_star = Field(grid, dim);
+    pressure = Field(grid, 1);
     for (int a = 0; a < dim; ++a) v[a] = Polynomial(random, 1);
     phi = Polynomial(random, degree);
     phi.c = 5;  // well above the threshold
@@ -30,9 +30,9 @@ struct Solid {
     phases.resize(1);
     Phase &phase = phases[0];
     phase.material.shear_modulus = 0.7;
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
-    next = FieldBlock(grid, phase.tensor.field.count());
+    phase.fraction = Field(grid, 1);
+    phase.tensor.field = Field(grid, static_cast<int>(components.size()));
+    next = Field(grid, phase.tensor.field.count());
     phase.tensor.rule = reset_below_one_per_cent;
     phase.tensor.evolving.build_all(grid);
     phase.tensor.stressed.build_all(grid);
@@ -71,9 +71,9 @@ struct Solid {
 };
 
 /// A solenoidal velocity at all faces of a periodic grid: the curl of a random potential on the edges.
-inline void randomise_solenoidal(const Domain &grid, FieldBlock &velocity, Random &random) {
+inline void randomise_solenoidal(const Domain &grid, Field &velocity, Random &random) {
   const Real3 &h = grid.spacing();
-  FieldBlock psi(grid, 3);
+  Field psi(grid, 3);
   randomise(grid, psi, random);
   for (int a = 0; a < grid.dimension(); ++a) {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
@@ -88,7 +88,7 @@ inline void randomise_solenoidal(const Domain &grid, FieldBlock &velocity, Rando
         }
   }
   GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update(velocity, 3), 0);
+  EXPECT_EQ(exchange.update_ghosts(velocity, 3), 0);
 }
 
 }  // namespace eulastic::test

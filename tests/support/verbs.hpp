@@ -7,15 +7,13 @@
 namespace eulastic::test {
 
 /// (7) at `time`, explicit Euler, WENO5's velocity scale 1.
-inline PetscErrorCode predict(const Domain &grid, const Fluid &fluid, double time, double dt,
-                              const FieldBlock &velocity, const FieldBlock &pressure, const std::vector<Phase> &phases,
-                              FieldBlock &out) {
+inline PetscErrorCode predict(const Domain &grid, const Fluid &fluid, double time, double dt, const Field &velocity,
+                              const Field &pressure, const std::vector<Phase> &phases, Field &out) {
   return predict_velocity(grid, fluid, {time, dt, 1, {}}, velocity, pressure, phases, out);
 }
 
 /// (5), explicit Euler.
-inline PetscErrorCode transport(const Domain &grid, double dt, const FieldBlock &velocity, const Phase &phase,
-                                FieldBlock &next) {
+inline PetscErrorCode transport(const Domain &grid, double dt, const Field &velocity, const Phase &phase, Field &next) {
   return transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next);
 }
 

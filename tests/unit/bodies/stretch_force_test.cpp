@@ -30,10 +30,10 @@ struct Pulled : InterfaceScene {
     exchange = std::make_unique<GhostExchange>(grid);
     Phase &phase = phases[0];
     phase.fraction = std::move(fraction);
-    phase.label = FieldBlock(grid, 1);
+    phase.label = Field(grid, 1);
     phase.material.stretch_force = {force, part};
     each_owned([&](int i, int j, int k) { phase.label[0](i, j, k) = phase.fraction[0](i, j, k) > 1e-12; });
-    EXPECT_EQ(exchange->update(phase.fraction, 1), 0);
+    EXPECT_EQ(exchange->update_ghosts(phase.fraction, 1), 0);
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
     EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
     EXPECT_EQ(forces.find(grid, phases, owners, {{int(x * cells) % cells, 19, 0}}), 0);
@@ -64,7 +64,7 @@ TEST(StretchForce, PullsThatPartOfTheVolumeAtEitherEnd) {
     const double middle = cap(dim, low).second;
     for (const double x : {0.51, 0.03}) {
       Pulled body(dim, x);
-      FieldBlock rate(body.grid, dim), scratch(body.grid, 1);
+      Field rate(body.grid, dim), scratch(body.grid, 1);
       constexpr double scale = 0.5;
       ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scale, scratch, rate), 0);
       const double volume = body.grid.cell_volume();
@@ -92,7 +92,7 @@ TEST(StretchForce, FollowsTheBodyContinuously) {
   double before = 0, most = 0, travelled = 0;
   for (int n = 0; n <= 20; ++n) {
     Pulled body(2, 0.51 + 5 * n * step);
-    FieldBlock rate(body.grid, 2), scratch(body.grid, 1);
+    Field rate(body.grid, 2), scratch(body.grid, 1);
     ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, rate), 0);
     double moment = 0;
     body.each_owned([&](int i, int j, int k) {
@@ -116,7 +116,7 @@ TEST(StretchForce, PowerIsThatOfTheEnds) {
     for (int k = 0; k < body.grid.cells()[2]; ++k)
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i <= cells; ++i) body.velocity[0](i, j, k) = 3 + rate * i / cells;
-    FieldBlock force_rate(body.grid, dim), scratch(body.grid, 1);
+    Field force_rate(body.grid, dim), scratch(body.grid, 1);
     ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, force_rate), 0);
     double expected = 0, power = 0;
     body.each_owned([&](int i, int j, int k) {

@@ -29,7 +29,7 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   Phase &phase = phases[0];
   phase.fraction = std::move(scene.fraction);
   phase.tensor.field = tensor_at_rest(scene.grid);
-  phase.label = FieldBlock(scene.grid, 1);
+  phase.label = Field(scene.grid, 1);
   phase.material.law = Law::membrane;
   phase.material.membrane.shear_modulus = 2;
   phase.material.membrane.bending_modulus = 0.1;
@@ -44,8 +44,8 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
       scene.velocity[d](i, j, k) = 0.2 + flow(x)[d];
     }
   });
-  EXPECT_EQ(exchange.update(scene.velocity, 1), 0);
-  EXPECT_EQ(exchange.update(phase.fraction, 5), 0);
+  EXPECT_EQ(exchange.update_ghosts(scene.velocity, 1), 0);
+  EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
   EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
   WorkSpace work(scene.grid);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);

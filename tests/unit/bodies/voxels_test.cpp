@@ -1,7 +1,7 @@
 // Voxels and surfaces to cells: volumes kept, exact fractions, every piece size, 2-D.
 #include "bodies/closed_surface.hpp"
 #include "bodies/resample.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
@@ -14,13 +14,13 @@ namespace {
 
 struct Cells {
   Domain grid;
-  FieldBlock phi;
+  Field phi;
   Cells(const Int3 &cells, const Real3 &length) {
     GridSpec spec;
     spec.cells = cells;
     spec.length = length;
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    phi = FieldBlock(grid, 1);
+    phi = Field(grid, 1);
   }
   double at(int i, int j, int k) { return phi[0](i, j, k); }
   double volume() {

@@ -25,7 +25,7 @@ GridSpec box(int n) {
   return spec;
 }
 
-double sum(const FieldBlock &block) {
+double sum(const Field &block) {
   return std::accumulate(block.data(), block.data() + block.count() * block.layout().size, 0.0);
 }
 
@@ -37,7 +37,7 @@ TEST(AtRest, OnesThenZerosGhostsIncluded) {
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(n)), 0);
     const std::ptrdiff_t size = grid.layout().size;
     for (const int ones : {0, 2, 3}) {
-      const FieldBlock block = FieldBlock::at_rest(grid, 3, ones);
+      const Field block = Field::at_rest(grid, 3, ones);
       for (std::ptrdiff_t at = 0; at < 3 * size; ++at) ASSERT_EQ(block.data()[at], at < ones * size) << at;
     }
   }
@@ -46,8 +46,8 @@ TEST(AtRest, OnesThenZerosGhostsIncluded) {
 TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(64)), 0);
-  FieldBlock a = FieldBlock::at_rest(grid, 1, 1);
-  const FieldBlock b = FieldBlock::at_rest(grid, 1, 1);
+  Field a = Field::at_rest(grid, 1, 1);
+  const Field b = Field::at_rest(grid, 1, 1);
   a[0](3, 4, 5) = 7;
   EXPECT_EQ(a[0](3, 4, 5), 7);
   EXPECT_EQ(b[0](3, 4, 5), 1);
@@ -58,7 +58,7 @@ TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(128)), 0);
   const double before = own_memory();
-  FieldBlock block = FieldBlock::at_rest(grid, 4, 2), copy;
+  Field block = Field::at_rest(grid, 4, 2), copy;
   const double all = double(block.bytes());
   ASSERT_GT(all, 64 * mega);
   EXPECT_EQ(sum(block), 2.0 * grid.layout().size);

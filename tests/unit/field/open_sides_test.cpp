@@ -76,7 +76,7 @@ template <class Map>
 double difference(const Scene &a, const Scene &b, Map map) {
   const State &p = a.solver.state(), &q = b.solver.state();
   double largest = 0;
-  const auto compare = [&](ConstView x, const FieldBlock &y, const Staggering &at, int c) {
+  const auto compare = [&](ConstView x, const Field &y, const Staggering &at, int c) {
     for (int k = 0; k < a.grid.points_end(2, at[2]); ++k)
       for (int j = 0; j < a.grid.points_end(1, at[1]); ++j)
         for (int i = 0; i < a.grid.points_end(0, at[0]); ++i)
@@ -88,7 +88,7 @@ double difference(const Scene &a, const Scene &b, Map map) {
 }
 
 double mirror_difference(const Scene &a, const Scene &b, int m) {
-  return difference(a, b, [&](const FieldBlock &y, const Staggering &at, Int3 point, int c) {
+  return difference(a, b, [&](const Field &y, const Staggering &at, Int3 point, int c) {
     point[m] = a.grid.domain_cells()[m] - 1 + at[m] - point[m];
     return (c == m ? -1 : 1) * y[std::max(c, 0)](point[0], point[1], point[2]);
   });
@@ -147,7 +147,7 @@ TEST(OpenSides, RotatedSceneGivesTheRotatedResult) {
   Scene original, rotated;
   run(setting, original);
   run(turned, rotated);
-  const double e = difference(original, rotated, [&](const FieldBlock &y, const Staggering &, const Int3 &x, int c) {
+  const double e = difference(original, rotated, [&](const Field &y, const Staggering &, const Int3 &x, int c) {
     return y[c < 0 ? 0 : (c + 1) % 3](x[2], x[0], x[1]);
   });
   EXPECT_LT(e, 1e-11);
@@ -172,7 +172,7 @@ TEST(OpenSides, AllPressureSolversAgreeAndVolumeBalances) {
     Scene other;
     run(setting, other);
     EXPECT_LT(difference(exact, other,
-                         [](const FieldBlock &y, const Staggering &, const Int3 &x, int c) {
+                         [](const Field &y, const Staggering &, const Int3 &x, int c) {
                            return y[std::max(c, 0)](x[0], x[1], x[2]);
                          }),
               1e-5);

@@ -59,7 +59,7 @@ bool is_owned(const Domain &grid, const Int3 &p, const Staggering &staggering) {
 double inner(int f, const Int3 &p) { return std::sin(1 + f + 1.3 * p[0] + 2.7 * p[1] + 4.1 * p[2]); }
 
 // Poison everywhere, then the points the field has, then the exchange.
-void prepare(const Domain &grid, FieldBlock &block, const std::function<Staggering(int)> &staggering, int width) {
+void prepare(const Domain &grid, Field &block, const std::function<Staggering(int)> &staggering, int width) {
   for (int f = 0; f < block.count(); ++f) {
     block.fill(f, poison);
     for_each_point(grid, staggering(f), 3, [&](const Int3 &p) {
@@ -67,7 +67,7 @@ void prepare(const Domain &grid, FieldBlock &block, const std::function<Staggeri
     });
   }
   GhostExchange exchange(grid);
-  ASSERT_EQ(exchange.update(block, width), 0);
+  ASSERT_EQ(exchange.update_ghosts(block, width), 0);
 }
 
 // What a ghost must be: unfold the point direction by direction, the last reflection first. `sign` is -1 for velocity
@@ -94,7 +94,7 @@ TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
   const double time = .7;
   for_each_grid([&](const Domain &grid) {
     for (const int width : {1, 2, 3}) {
-      FieldBlock velocity(grid, grid.dimension());
+      Field velocity(grid, grid.dimension());
       prepare(
           grid, velocity, [](int c) { return at_face[c]; }, width);
       fill_wall_ghosts_velocity(grid, walls, time, velocity, width);
@@ -126,7 +126,7 @@ TEST(WallGhosts, EveryStaggeringIsEvenAndKeepsItsPoints) {
     for (int s = 0; s < (grid.dimension() == 2 ? 4 : 8); ++s)
       for (const int width : {1, 2, 3}) {
         const Staggering staggering{bool(s & 1), bool(s & 2), bool(s & 4)};
-        FieldBlock block(grid, 1);
+        Field block(grid, 1);
         prepare(
             grid, block, [&](int) { return staggering; }, width);
         fill_wall_ghosts_even(grid, staggering, block[0], width);
@@ -144,7 +144,7 @@ TEST(WallGhosts, EveryStaggeringIsEvenAndKeepsItsPoints) {
 TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
   for_each_grid([](const Domain &grid) {
     const auto &components = tensor_components(grid.dimension());
-    FieldBlock tensor(grid, static_cast<int>(components.size()));
+    Field tensor(grid, static_cast<int>(components.size()));
     prepare(
         grid, tensor, [&](int f) { return components[f].at; }, 3);
     fill_wall_ghosts_tensor(grid, BoxSides{}, tensor, 3);
@@ -166,15 +166,15 @@ TEST(SymmetryGhosts, AreTheMirrorImage) {
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
   BoxSides sides{};
   sides[1][1].kind = SideKind::symmetry;
-  FieldBlock velocity(grid, 2), tensor(grid, 3);
+  Field velocity(grid, 2), tensor(grid, 3);
   for (int j = 0; j < 5; ++j)
     for (int i = 0; i < 3; ++i) {
       for (int c = 0; c < 2; ++c) velocity[c](i, j, 0) = 1 + j + 10 * c;
       for (int c = 0; c < 3; ++c) tensor[c](i, j, 0) = 1 + j + 10 * c;
     }
   GhostExchange exchange(grid);
-  ASSERT_EQ(exchange.update(velocity, 3), 0);
-  ASSERT_EQ(exchange.update(tensor, 3), 0);
+  ASSERT_EQ(exchange.update_ghosts(velocity, 3), 0);
+  ASSERT_EQ(exchange.update_ghosts(tensor, 3), 0);
   fill_wall_ghosts_velocity(grid, sides, 0, velocity, 3);
   fill_wall_ghosts_tensor(grid, sides, tensor, 3);
   const double even[3] = {4, 3, 2}, normal[3] = {-14, -13, -12}, shear[3] = {-24, -23, -22};
@@ -215,14 +215,14 @@ TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
   BoxSides walls{};
   walls[1][0].motion.velocity = {-1, 9, 0};  // the normal component is ignored
   walls[1][1].motion.velocity = {3, 9, 0};
-  FieldBlock velocity(grid, 2);
+  Field velocity(grid, 2);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 3; ++i) {
       velocity[0](i, j, 0) = j - .5;
       velocity[1](i, j, 0) = j * (4 - j);
     }
   GhostExchange exchange(grid);
-  ASSERT_EQ(exchange.update(velocity, 3), 0);
+  ASSERT_EQ(exchange.update_ghosts(velocity, 3), 0);
   fill_wall_ghosts_velocity(grid, walls, 0, velocity, 3);
   for (int i = -3; i < 6; ++i) {
     for (int j = -3; j < 7; ++j) EXPECT_EQ(velocity[0](i, j, 0), j - .5);
@@ -252,7 +252,7 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
         motion.velocity = turn(motion.velocity);
         turned_walls[(d + 1) % dimension][side].motion = motion;
       }
-    FieldBlock velocity(grid, dimension), turned_velocity(turned, dimension);
+    Field velocity(grid, dimension), turned_velocity(turned, dimension);
     for (int c = 0; c < dimension; ++c)
       for_each_point(grid, at_face[c], 3, [&](const Int3 &p) {
         if (!is_owned(grid, p, at_face[c])) return;
@@ -275,7 +275,7 @@ TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
   for (int d = 0; d < 3; ++d) {
     Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({24, 26, 28}, 1 << d)), 0);
-    FieldBlock phi(grid, 1), tensor(grid, 6);
+    Field phi(grid, 1), tensor(grid, 6);
     Int3 body{12, 12, 12};
     body[d] = 5;
     phi[0](body[0], body[1], body[2]) = 1;

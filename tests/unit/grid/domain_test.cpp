@@ -1,6 +1,6 @@
 // Decompositions, their refusals, and the memory layout of one rank.
-#include "field/field_block.hpp"
 #include "grid/domain.hpp"
+#include "field/field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -150,14 +150,14 @@ TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
 }
 
 // Rows start on 64-byte lines, strides avoid large powers of two, and no two points of a block share memory.
-TEST(FieldBlockLayout, AlignedAndWithoutOverlap) {
+TEST(FieldLayout, AlignedAndWithoutOverlap) {
   for (const Int3 &cells :
        {Int3{3, 3, 3}, Int3{5, 9, 7}, Int3{8, 4, 1}, Int3{58, 10, 4}, Int3{50, 58, 3}, Int3{250, 3, 1}}) {
     Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells)), 0);
     const Layout &own = grid.layout();
     const int fields = 3;
-    FieldBlock block(grid, fields);
+    Field block(grid, fields);
     EXPECT_EQ(block.bytes(), sizeof(double) * own.size * fields);
     EXPECT_NE(own.sy % 64, 0);
     EXPECT_NE(own.sz % 512, 0);
@@ -176,10 +176,10 @@ TEST(FieldBlockLayout, AlignedAndWithoutOverlap) {
   }
 }
 
-TEST(FieldBlockLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
+TEST(FieldLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
-  FieldBlock a(grid, 2), b(grid, 1);
+  Field a(grid, 2), b(grid, 1);
   const std::ptrdiff_t size = grid.layout().size;
   for (std::ptrdiff_t n = 0; n < 2 * size; ++n) ASSERT_EQ(a.data()[n], 0);
   a.fill(1, 7);
@@ -188,9 +188,9 @@ TEST(FieldBlockLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
   EXPECT_EQ(a.count(), 1);
   EXPECT_EQ(b.count(), 2);
   EXPECT_EQ(b[1](-3, -3, -3), 7);
-  const FieldBlock c = std::move(b);
+  const Field c = std::move(b);
   EXPECT_TRUE(c && a);
-  EXPECT_FALSE(b || FieldBlock());  // a block that was moved away is empty NOLINT(bugprone-use-after-move)
+  EXPECT_FALSE(b || Field());  // a block that was moved away is empty NOLINT(bugprone-use-after-move)
 }
 
 }  // namespace

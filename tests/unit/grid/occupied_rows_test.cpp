@@ -1,6 +1,6 @@
 // Spans of rows: wide enough, empty elsewhere, and found again after what they hold has moved.
 #include "grid/occupied_rows.hpp"
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ struct Scene {
     GridSpec spec;
     spec.cells = {48, 40, flat ? 1 : 40};
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    value = FieldBlock(grid, 1);
+    value = Field(grid, 1);
     reach = grid.layout().ghosts[0] + 2;
   }
   PetscErrorCode follow() { return OccupiedRows::follow(grid, {{&rows, std::as_const(value)[0]}}); }
@@ -36,7 +36,7 @@ struct Scene {
       }
   }
   Domain grid;
-  FieldBlock value;
+  Field value;
   OccupiedRows rows;
   int reach = 0;
 };

@@ -25,7 +25,7 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " cells, reach " << low << " " << high << ", share " << share);
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  FieldBlock value(grid, 1);
+  Field value(grid, 1);
   fill_everywhere(grid, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
   ActiveSegments segments;
   segments.build(grid, value[0], {}, 0.5, low, high);
@@ -103,7 +103,7 @@ TEST(ActiveSegments, BandAndItsFaces) {
           spec.boundary[1] = Boundary::wall;
           ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
           const bool flat = grid.dimension() == 2;
-          FieldBlock value(grid, 1);
+          Field value(grid, 1);
           fill_everywhere(grid, value[0], at_centre,
                           [&](const Point &) { return std::fabs(random()) < share ? 0.5 : rest; });
           ActiveSegments band, faces;
@@ -190,7 +190,7 @@ void compare_steps(bool flat, double y) {
   State &state = scene.solver.state();
   Phase &phase = state.phases[0];
   const auto &components = tensor_components(scene.grid.dimension());
-  FieldBlock star[2], next[2];
+  Field star[2], next[2];
   double points[2];
   for (int all = 0; all < 2; ++all) {
     if (all) {
@@ -198,8 +198,8 @@ void compare_steps(bool flat, double y) {
       phase.tensor.stressed.build_all(scene.grid);
     }
     points[all] = phase.tensor.evolving.points();
-    star[all] = FieldBlock(scene.grid, scene.grid.dimension());
-    next[all] = FieldBlock(scene.grid, phase.tensor.field.count());
+    star[all] = Field(scene.grid, scene.grid.dimension());
+    next[all] = Field(scene.grid, phase.tensor.field.count());
     ASSERT_EQ(predict(scene.grid, spec.fluid, 2, 0.1, state.velocity, state.pressure, state.phases, star[all]), 0);
     ASSERT_EQ(transport(scene.grid, 0.1, state.velocity, phase, next[all]), 0);
   }

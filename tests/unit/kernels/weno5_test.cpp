@@ -96,7 +96,7 @@ double advection_error(int d, int cells, double velocity) {
   spec.cells[d] = cells;
   Domain grid;
   EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  FieldBlock q(grid, 1);
+  Field q(grid, 1);
   fill_everywhere(grid, q[0], at_centre, [d](const Point &x) { return std::sin(2 * pi * x[d] + 1); });
   const Int3 n = grid.cells();
   std::vector<double> along(n[0], velocity), across(n[0], 0.3 * velocity), rate(n[0]);
@@ -104,7 +104,7 @@ double advection_error(int d, int cells, double velocity) {
   carried[d] = along.data();
   Real3 inverse;
   for (int e = 0; e < 3; ++e) inverse[e] = 1 / grid.spacing()[e];
-  FieldBlock out(grid, 1);
+  Field out(grid, 1);
   for (const Segment &s : grid.rows()) {
     advection_rate<3>(s, q[0], carried, inverse.data(), 1e-6, rate.data());
     std::copy(rate.begin(), rate.end(), out[0].row(s.j, s.k));
@@ -196,7 +196,7 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
     Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     const Polynomial q(random, 1);
-    FieldBlock field(grid, 1), out(grid, 1);
+    Field field(grid, 1), out(grid, 1);
     fill_everywhere(grid, field[0], at_centre, q);
     const Real3 &h = grid.spacing();
     const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
@@ -224,7 +224,7 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   GridSpec spec = uneven_box(false, {37, 3, 3});
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  FieldBlock q(grid, 1);
+  Field q(grid, 1);
   randomise(grid, q, random);
   std::vector<double> velocity(37), whole(37), pieces(37);
   for (double &v : velocity) v = random();
@@ -243,7 +243,7 @@ TEST(Weno5, BatchesHaveTheBitsOfRows) {
   GridSpec spec = uneven_box(false, {37, 3, 3});
   Domain grid;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  FieldBlock q(grid, 1);
+  Field q(grid, 1);
   randomise(grid, q, random);
   std::vector<double> velocity[3], row(37), batched(37);
   for (auto &v : velocity)

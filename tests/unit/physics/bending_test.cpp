@@ -84,14 +84,14 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   phase.material.law = Law::membrane;
   phase.material.membrane.bending_modulus = 1;
   phase.material.membrane.spontaneous_curvature = c0;
-  EXPECT_EQ(exchange.update(phase.fraction, 5), 0);
+  EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
   EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
   WorkSpace work(scene.grid);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
   const BoxSides sides{};
   MembraneTransport membrane(scene.grid, exchange, work, sides, true);
   EXPECT_EQ(membrane.start(&phase), 0);
-  FieldBlock force(scene.grid, dim);
+  Field force(scene.grid, dim);
   Seen seen{};
   const double volume = scene.grid.cell_volume() * (dim == 2 ? cells : 1);
   EXPECT_EQ(membrane.add_force(phases, 1, true, force), 0);
@@ -104,7 +104,7 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
     }
     seen.force += force[0](i, j, k) * volume;
   });
-  EXPECT_EQ(exchange.update(scene.velocity, 1), 0);
+  EXPECT_EQ(exchange.update_ghosts(scene.velocity, 1), 0);
   SurfaceEnergy measured;
   EXPECT_EQ(membrane.measure(phases, scene.velocity, &measured), 0);
   seen.energy = measured.energy;

@@ -14,9 +14,8 @@ const Material rubber = test::mooney_rivlin(0.7, 0.4, 0.3);
 
 // d(B)/dt by stretching alone.
 template <int Dim, class Viscosity>
-void stretch(const Domain &grid, const Phase &phase, const Viscosity &viscosity, const FieldBlock &v,
-             FieldBlock &rate) {
-  const FieldBlock &B = phase.tensor.field;
+void stretch(const Domain &grid, const Phase &phase, const Viscosity &viscosity, const Field &v, Field &rate) {
+  const Field &B = phase.tensor.field;
   const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
   for (const Segment &s : grid.rows())
     for (int a = 0; a < Dim; ++a)
@@ -65,7 +64,7 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform, double c
   if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
   randomise(grid, phase.tensor.field, random, 0.4);
   randomise_solenoidal(grid, solid.velocity, random);
-  FieldBlock force(grid, grid.dimension()), rate(grid, phase.tensor.field.count());
+  Field force(grid, grid.dimension()), rate(grid, phase.tensor.field.count());
   EXPECT_EQ(compute_elastic_force(grid, 1, solid.phases, force), 0);
   Exchange e;
   for (int a = 0; a < grid.dimension(); ++a)
@@ -83,8 +82,8 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform, double c
       stretch<3>(grid, phase, viscosity, solid.velocity, rate);
   });
   GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update(rate, 1), 0);
-  FieldBlock before;
+  EXPECT_EQ(exchange.update_ghosts(rate, 1), 0);
+  Field before;
   before.copy_from(phase.tensor.field);
   for (const double sign : {1.0, -1.0}) {
     const std::size_t doubles = before.bytes() / sizeof(double);
@@ -120,10 +119,10 @@ TEST(ElasticExchange, RotationIsThatOfTheMixture) {
     Phase &phase = solid.phases[0];
     Random random(8);
     randomise(solid.grid, phase.fraction, random, 0.5);
-    FieldBlock rate[2];
+    Field rate[2];
     for (const bool own : {false, true}) {
       phase.tensor.rule.viscosity_excess = own ? 4 : 0;
-      rate[own] = FieldBlock(solid.grid, phase.tensor.field.count());
+      rate[own] = Field(solid.grid, phase.tensor.field.count());
       with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
         if (flat)
           stretch<2>(solid.grid, phase, viscosity, solid.velocity, rate[own]);

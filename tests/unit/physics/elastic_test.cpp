@@ -115,7 +115,7 @@ TEST(Stretching, RigidRotationLeavesTheUnitTensor) {
 }
 
 // d(tr B)/dt by stretching alone, at centres.
-void trace_rate(const Domain &grid, const FieldBlock &B, const FieldBlock &v, FieldBlock &rate) {
+void trace_rate(const Domain &grid, const Field &B, const Field &v, Field &rate) {
   const int dim = grid.dimension();
   const auto at = [dim](int a, int b) { return a == b ? a : dim == 2 ? 2 : 6 - a - b; };
   for (const Segment &s : grid.rows())
@@ -150,7 +150,7 @@ TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
       randomise(grid, phase.tensor.field, random);
       randomise(grid, solid.velocity, random);
       if (solenoidal) randomise_solenoidal(grid, solid.velocity, random);
-      FieldBlock force(grid, dim), zero(grid, dim), rate(grid, 1), D(grid, 1);
+      Field force(grid, dim), zero(grid, dim), rate(grid, 1), D(grid, 1);
       ASSERT_EQ(predict(grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
       ASSERT_EQ(compute_divergence(grid, 1, solid.velocity, D), 0);
       trace_rate(grid, phase.tensor.field, solid.velocity, rate);

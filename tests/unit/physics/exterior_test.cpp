@@ -91,7 +91,7 @@ void create_disc(int m, int n, Scene *scene) {
   const auto along = [](double x, int centre) { return std::remainder(x - centre, 32.); };
   const auto distance = [&](double x, double y) { return std::hypot(along(x, m), along(y, n)); };
   scene->add_phase(1, [&](double x, double y, double) { return std::clamp(6.5 - distance(x, y), 0., 1.); });
-  FieldBlock &tensor = scene->solver.state().phases[0].tensor.field;
+  Field &tensor = scene->solver.state().phases[0].tensor.field;
   for (int c = 0; c < tensor.count(); ++c)
     set(scene->grid, tensor[c], tensor_components(2)[c].at, [&](double x, double y, double) {
       return (c < 2 ? 1.2 : 0) + .1 * std::sin(c + along(x, m) / 3 + along(y, n) / 5);

@@ -13,10 +13,10 @@ constexpr double pi = 3.14159265358979323846;
 
 struct Flow {
   Domain grid;
-  FieldBlock velocity;
+  Field velocity;
   Flow(const GridSpec &spec, const InitialFlow &flow, const BoxSides &walls = {}) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    velocity = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
     set_initial_velocity(grid, walls, flow, velocity);
   }
   double u(int c, int i, int j, int k) const { return velocity[c](i, j, k); }

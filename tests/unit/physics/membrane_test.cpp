@@ -159,7 +159,7 @@ struct Ball : InterfaceScene {
   const Real3 centre{0.51, 0.49, 0.505};
   std::vector<Phase> phases{1};
   std::unique_ptr<GhostExchange> exchange;
-  FieldBlock smooth;
+  Field smooth;
   int dim;
 
   explicit Ball(int dimension) : dim(dimension) {
@@ -172,9 +172,9 @@ struct Ball : InterfaceScene {
     exchange = std::make_unique<GhostExchange>(grid);
     phases[0].fraction = std::move(fraction);
     phases[0].tensor.field = tensor_at_rest(grid);
-    EXPECT_EQ(exchange->update(phases[0].fraction, 5), 0);
+    EXPECT_EQ(exchange->update_ghosts(phases[0].fraction, 5), 0);
     EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
-    smooth = FieldBlock(grid, SurfaceCells::work_fields);
+    smooth = Field(grid, SurfaceCells::work_fields);
   }
   Real3 from_centre(const SurfaceCells::Cell &cell) const {
     Real3 x = position(cell.place, {true, true, true});
@@ -216,7 +216,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
     const BoxSides sides{};
     SurfaceCells cells(ball.grid, *ball.exchange, sides);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
-    FieldBlock tensor(ball.grid, dim == 2 ? 3 : 6);
+    Field tensor(ball.grid, dim == 2 ? 3 : 6);
     const auto &components = tensor_components(dim);
     const auto tangential = [&](const SurfaceCells::Cell &cell, int f) {
       const auto [a, b, at] = components[f];
@@ -249,7 +249,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     MembraneTransport membrane(ball.grid, *ball.exchange, work, sides, false);
     ball.phases[0].material.law = Law::membrane;
     ball.phases[0].material.membrane.shear_modulus = 2;
-    FieldBlock velocity(ball.grid, dim);
+    Field velocity(ball.grid, dim);
     for (const double stretch : {1.0, 1.2}) {
       ball.phases[0].material.membrane.initial_area_stretch = stretch;
       ball.phases[0].tensor.field = tensor_at_rest(ball.grid);
@@ -261,7 +261,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
       const double J = stretch, trace = dim == 2 ? J * J + 1 : 2 * J;
       const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
       EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
-      FieldBlock force(ball.grid, dim);
+      Field force(ball.grid, dim);
       ASSERT_EQ(membrane.add_force(ball.phases, 1, false, force), 0);
       // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
       double virial = 0, largest = 0;
@@ -303,7 +303,7 @@ TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
     for (SurfaceMarker &marker : markers)
       for (int d = 0; d < 2; ++d)
         marker.rest[d] = ball.centre[d] + std::remainder(marker.rest[d] - ball.centre[d], 1.0) / stretch;
-    FieldBlock velocity(ball.grid, 2);
+    Field velocity(ball.grid, 2);
     velocity.fill(0, 1);
     MembraneTransport::Memory memory{&markers};
     ASSERT_EQ(membrane.advance(0.2 / Ball::cells, velocity, &memory, &ball.phases), 0);

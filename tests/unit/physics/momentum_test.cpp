@@ -38,7 +38,7 @@ TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
     Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     const int dim = grid.dimension();
-    FieldBlock velocity(grid, dim);
+    Field velocity(grid, dim);
     randomise(grid, velocity, random);
     for (int d = 0; d < dim; ++d)
       for (int set = 0; set < (1 << dim); ++set) {
@@ -59,7 +59,7 @@ TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
 struct Flow {
   Domain grid;
   Fluid fluid;
-  FieldBlock velocity, pressure, out;
+  Field velocity, pressure, out;
   Polynomial v[3], p;
 
   Flow(bool flat, int degree, int seed) {
@@ -68,9 +68,9 @@ struct Flow {
     fluid.density = 1.7;
     fluid.viscosity = 0.6;
     fluid.body_force.force = {0.3, -0.2, 0.5};
-    velocity = FieldBlock(grid, grid.dimension());
-    out = FieldBlock(grid, grid.dimension());
-    pressure = FieldBlock(grid, 1);
+    velocity = Field(grid, grid.dimension());
+    out = Field(grid, grid.dimension());
+    pressure = Field(grid, 1);
     for (int a = 0; a < grid.dimension(); ++a) {
       v[a] = Polynomial(random, degree);
       fill_everywhere(grid, velocity[a], at_face[a], v[a]);
@@ -127,7 +127,7 @@ TEST(Predictor, ForceFollowsItsTime) {
 TEST(Divergence, ExactOnQuadratics) {
   for (const bool flat : {false, true}) {
     Flow flow(flat, 2, 5);
-    FieldBlock D(flow.grid, 1);
+    Field D(flow.grid, 1);
     ASSERT_EQ(compute_divergence(flow.grid, 1.7, flow.velocity, D), 0);
     EXPECT_LT(largest_error(flow.grid, D[0], at_centre,
                             [&](const Point &x) {
@@ -156,7 +156,7 @@ TEST(Laplacian, ExactOnQuadratics) {
 TEST(Rate, IsWhatThePredictorAdvancesBy) {
   for (const bool flat : {false, true}) {
     Flow flow(flat, 1, 9);
-    FieldBlock none, rate(flow.grid, flow.grid.dimension());
+    Field none, rate(flow.grid, flow.grid.dimension());
     const MomentumStep step{0, 0.37, 1, {}};
     ASSERT_EQ(momentum_rate(flow.grid, flow.fluid, step, flow.velocity, flow.pressure, {}, none, rate), 0);
     ASSERT_EQ(predict_velocity(flow.grid, flow.fluid, step, flow.velocity, flow.pressure, {}, flow.out), 0);
@@ -170,7 +170,7 @@ TEST(Rate, IsWhatThePredictorAdvancesBy) {
 TEST(Rate, WeighsTheAdvectionOfTwoSteps) {
   for (const bool flat : {false, true}) {
     Flow flow(flat, 1, 7), before(flat, 1, 8);
-    FieldBlock advection(flow.grid, flow.grid.dimension());
+    Field advection(flow.grid, flow.grid.dimension());
     const auto rate = [&](Flow &f, AdvectionWeights weights) {
       ASSERT_EQ(momentum_rate(f.grid, f.fluid, {0, 0.37, 1, weights}, f.velocity, f.pressure, {}, advection, f.out), 0);
     };
@@ -201,7 +201,7 @@ TEST(Correction, ExactOnQuadraticsAndInOneGhostOfThePressure) {
     Flow flow(flat, 2, 7);
     Random random(8);
     const Polynomial dp(random, 2), D(random, 2);
-    FieldBlock increment(flow.grid, 1), divergence(flow.grid, 1);
+    Field increment(flow.grid, 1), divergence(flow.grid, 1);
     fill_everywhere(flow.grid, increment[0], at_centre, dp);
     fill_everywhere(flow.grid, divergence[0], at_centre, D);
     const double dt = 0.37, rotation = 0.3;

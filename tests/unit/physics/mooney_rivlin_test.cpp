@@ -130,9 +130,9 @@ TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
 }
 
 // Faces of all directions, random fields: -rho div(sigma) times dt.
-double predicted_force(Solid &solid, const Material &material, FieldBlock &force) {
+double predicted_force(Solid &solid, const Material &material, Field &force) {
   solid.phases[0].material = material;
-  FieldBlock zero(solid.grid, solid.grid.dimension());
+  Field zero(solid.grid, solid.grid.dimension());
   EXPECT_EQ(predict(solid.grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
   double largest = 0;
   for (int a = 0; a < force.count(); ++a)
@@ -146,7 +146,7 @@ TEST(MooneyRivlin, FirstCoefficientAloneIsNeoHookean) {
     Random random(7);
     randomise(solid.grid, solid.phases[0].fraction, random, 1.5);
     randomise(solid.grid, solid.phases[0].tensor.field, random);
-    FieldBlock a(solid.grid, solid.grid.dimension()), b(solid.grid, solid.grid.dimension());
+    Field a(solid.grid, solid.grid.dimension()), b(solid.grid, solid.grid.dimension());
     const double size = predicted_force(solid, Material{1.4}, a);
     predicted_force(solid, test::mooney_rivlin(0.7, 0, 0), b);
     for (int d = 0; d < a.count(); ++d)
@@ -161,7 +161,7 @@ TEST(MooneyRivlin, NoForceWithoutStrain) {
     const auto phi = solid.phi;
     fill_uniform(solid, {Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}});
     fill_everywhere(solid.grid, solid.phases[0].fraction[0], at_centre, phi);
-    FieldBlock force(solid.grid, solid.grid.dimension());
+    Field force(solid.grid, solid.grid.dimension());
     EXPECT_EQ(predicted_force(solid, rubber, force), 0);
   }
 }
@@ -184,15 +184,15 @@ double force_error(bool flat, int cells) {
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.material = rubber;
-  phase.fraction = FieldBlock(grid, 1);
-  phase.tensor.field = FieldBlock(grid, static_cast<int>(components.size()));
+  phase.fraction = Field(grid, 1);
+  phase.tensor.field = Field(grid, static_cast<int>(components.size()));
   phase.tensor.evolving.build_all(grid);
   phase.tensor.stressed.build_all(grid);
   fill_everywhere(grid, phase.fraction[0], at_centre, fraction);
   for (int c = 0; c < phase.tensor.field.count(); ++c)
     fill_everywhere(grid, phase.tensor.field[c], components[c].at,
                     [&](const Point &x) { return tensor(x)[components[c].a][components[c].b]; });
-  FieldBlock force(grid, grid.dimension());
+  Field force(grid, grid.dimension());
   EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
   double largest = 0;
   for (int a = 0; a < grid.dimension(); ++a)

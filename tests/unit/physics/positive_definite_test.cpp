@@ -18,8 +18,8 @@ struct Body {
   Phase phase;
   explicit Body(bool flat) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor.field = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
+    phase.fraction = Field(grid, 1);
+    phase.tensor.field = Field(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
     phase.tensor.rule = {0.5, 0.5, 0};
     phase.tensor.evolving.build_all(grid);
     const Layout &layout = grid.layout();
@@ -66,7 +66,7 @@ TEST(PositiveDefinite, ShearIsLimitedOnlyWhereItIsTooMuch) {
 
 TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
   Body body(true);
-  FieldBlock velocity(body.grid, 2), next(body.grid, 3);
+  Field velocity(body.grid, 2), next(body.grid, 3);
   const double h = body.grid.spacing()[0];
   const Layout &layout = body.grid.layout();
   for (std::ptrdiff_t p = 0; p < layout.size; ++p)
@@ -81,7 +81,7 @@ TEST(PositiveDefinite, TransportKeepsTheDiagonalAboveZero) {
 
 TEST(PositiveDefinite, WhatIsNotFiniteStaysSo) {
   Body body(true);
-  FieldBlock velocity(body.grid, 2), next(body.grid, 3);
+  Field velocity(body.grid, 2), next(body.grid, 3);
   for (int j = -3; j <= body.grid.cells()[1] + 1; ++j)
     for (int i = -3; i <= body.grid.cells()[0] + 1; ++i) velocity[0](i, j, 0) = -(i + 8 * j) * 1e200;
   ASSERT_EQ(transport_tensor(body.grid, {1e200, false}, velocity, body.phase, body.phase.tensor.field, next), 0);

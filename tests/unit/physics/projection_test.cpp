@@ -25,7 +25,7 @@ struct RandomFlow {
   Domain grid;
   std::unique_ptr<GhostExchange> exchange;
   BoxSides walls{};
-  FieldBlock velocity, pressure;
+  Field velocity, pressure;
 
   explicit RandomFlow(const Sides &sides) {
     GridSpec spec = uneven_box(sides.flat, {11, block_rows + 5, 6});
@@ -33,23 +33,23 @@ struct RandomFlow {
       if (sides.walls >> d & 1) spec.boundary[d] = Boundary::wall;
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
     exchange = std::make_unique<GhostExchange>(grid);
-    velocity = FieldBlock(grid, grid.dimension());
-    pressure = FieldBlock(grid, 1);
+    velocity = Field(grid, grid.dimension());
+    pressure = Field(grid, 1);
     Random random(5);
     for (int a = 0; a < grid.dimension(); ++a)
       set(grid, velocity[a], at_face[a], [&](double, double, double) { return random(); });
     set(grid, pressure[0], at_centre, [&](double, double, double) { return 2 + random(); });
-    EXPECT_EQ(exchange->update(velocity, 3), 0);
+    EXPECT_EQ(exchange->update_ghosts(velocity, 3), 0);
     fill_wall_ghosts_velocity(grid, walls, 0, velocity, 3);
     fill_centre(pressure);
   }
-  void fill_centre(FieldBlock &q) {
-    EXPECT_EQ(exchange->update(q, 1), 0);
+  void fill_centre(Field &q) {
+    EXPECT_EQ(exchange->update_ghosts(q, 1), 0);
     fill_wall_ghosts_even(grid, at_centre, q[0], 1);
   }
 };
 
-bool same_rows(const Domain &grid, const FieldBlock &a, const FieldBlock &b) {
+bool same_rows(const Domain &grid, const Field &a, const Field &b) {
   bool same = true;
   for (int f = 0; f < a.count(); ++f)
     for (const Segment &s : grid.rows())
@@ -64,7 +64,7 @@ TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   const Domain &grid = flow.grid;
   const double rotation = 0.3;
   const kernels::AcmIncrement formula{0.07, 0.3, 12, 1.9};
-  FieldBlock D(grid, 1), increment(grid, 1);
+  Field D(grid, 1), increment(grid, 1);
   ASSERT_EQ(compute_divergence(grid, 1, flow.velocity, D), 0);
   flow.fill_centre(D);
   for (std::ptrdiff_t i = 0; i < D.layout().size; ++i)

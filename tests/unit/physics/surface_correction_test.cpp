@@ -162,7 +162,7 @@ struct Wall {
   static constexpr int column = 8;
   Domain grid;
   Phase phase;
-  FieldBlock velocity, work;
+  Field velocity, work;
 
   Wall(double share, double shear) {
     GridSpec spec;
@@ -171,8 +171,8 @@ struct Wall {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
     phase.empty(grid, false);
     phase.material.shear_modulus = 1;
-    velocity = FieldBlock(grid, 2);
-    work = FieldBlock(grid, 3);
+    velocity = Field(grid, 2);
+    work = Field(grid, 3);
     for (int j = -5; j < 21; ++j)
       for (int i = -5; i < 21; ++i) {
         phase.fraction[0](i, j, 0) = i < column ? 1 : i == column ? share : 0;

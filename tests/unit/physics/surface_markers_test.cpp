@@ -23,7 +23,7 @@ struct MarkedBall : InterfaceScene {
   BoxSides sides;
   std::unique_ptr<SurfaceCells> surface;
   std::unique_ptr<SurfaceMarkers> markers;
-  FieldBlock smooth;
+  Field smooth;
   std::vector<SurfaceMarker> all;
   int dim;
 
@@ -36,11 +36,11 @@ struct MarkedBall : InterfaceScene {
     set_fraction(ball(centre, radius, dim, true));
     exchange = std::make_unique<GhostExchange>(grid);
     phase.fraction = std::move(fraction);
-    phase.tensor.field = FieldBlock(grid, dim == 2 ? 3 : 6);
+    phase.tensor.field = Field(grid, dim == 2 ? 3 : 6);
     phase.material.law = Law::membrane;
-    EXPECT_EQ(exchange->update(phase.fraction, 5), 0);
+    EXPECT_EQ(exchange->update_ghosts(phase.fraction, 5), 0);
     EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
-    smooth = FieldBlock(grid, SurfaceCells::work_fields);
+    smooth = Field(grid, SurfaceCells::work_fields);
     surface = std::make_unique<SurfaceCells>(grid, *exchange, sides);
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(grid);
@@ -69,7 +69,7 @@ void tells_the_strain(double stretch) {
   ball.set_strain<Dim>(stretch);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
   EXPECT_GT(ball.all.size(), Dim == 2 ? 50u : 1000u);
-  FieldBlock velocity(ball.grid, Dim);
+  Field velocity(ball.grid, Dim);
   const double F[3][3] = {
       {1.1, 0.2, Dim == 3 ? -0.1 : 0.}, {0.05, 0.9, Dim == 3 ? 0.1 : 0.}, {0, 0, Dim == 3 ? 1.05 : 1}};
   const double minor = F[0][0] * F[1][1] - F[0][1] * F[1][0];
@@ -108,7 +108,7 @@ TEST(SurfaceMarkers, AtRestTellThatToRoundOff) {
   MarkedBall ball(3);
   ball.set_strain<3>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  FieldBlock velocity(ball.grid, 3);
+  Field velocity(ball.grid, 3);
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
@@ -123,7 +123,7 @@ TEST(SurfaceMarkers, AreSilentWhereThereAreNone) {
   MarkedBall ball(2);
   ball.set_strain<2>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  FieldBlock velocity(ball.grid, 2);
+  Field velocity(ball.grid, 2);
   ball.all.resize(ball.all.size() / 2);
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
@@ -136,7 +136,7 @@ TEST(SurfaceMarkers, MoveWithALinearFlowAndAcrossTheBox) {
   MarkedBall ball(3);
   ball.set_strain<3>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  FieldBlock velocity(ball.grid, 3);
+  Field velocity(ball.grid, 3);
   const Real3 mean{0.7, -0.4, 0.1};
   for (int d = 0; d < 3; ++d)
     std::fill_n(velocity[d].origin - ball.grid.layout().origin, ball.grid.layout().size, mean[d]);

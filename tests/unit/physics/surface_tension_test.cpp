@@ -157,10 +157,10 @@ TEST(SurfaceTension, HasTheEnergyOfItsAreaAndNoNetForce) {
     std::vector<Phase> phases(1);
     phases[0].material.surface_tension = 3;
     phases[0].fraction = std::move(box.fraction);
-    ASSERT_EQ(exchange.update(phases[0].fraction, 5), 0);
+    ASSERT_EQ(exchange.update_ghosts(phases[0].fraction, 5), 0);
     ASSERT_EQ(phases[0].rows.find(box.grid, phases[0].fraction[0]), 0);
     const int dim = box.grid.dimension();
-    FieldBlock force(box.grid, dim), velocity(box.grid, dim);
+    Field force(box.grid, dim), velocity(box.grid, dim);
     velocity.fill(1, 0.7);
     SurfaceTension tension(box.grid, exchange, work, true);
     SurfaceEnergy seen;

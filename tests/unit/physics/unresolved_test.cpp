@@ -23,8 +23,8 @@ struct Body {
   Phase phase;
   explicit Body(bool flat, double l = 50) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
-    phase.fraction = FieldBlock(grid, 1);
-    phase.tensor.field = FieldBlock(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
+    phase.fraction = Field(grid, 1);
+    phase.tensor.field = Field(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
     const Layout &layout = grid.layout();
     for (std::ptrdiff_t p = 0; p < layout.size; ++p)
       for (int f = 0; f < phase.tensor.field.count(); ++f) {

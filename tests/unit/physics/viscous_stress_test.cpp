@@ -11,13 +11,13 @@ namespace {
 
 struct Flow {
   Domain grid;
-  FieldBlock velocity, force;
+  Field velocity, force;
   LocalViscosity viscosity;
 
   explicit Flow(bool flat, const Int3 &cells = {11, 6, 5}) {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat, cells)), 0);
-    velocity = FieldBlock(grid, grid.dimension());
-    force = FieldBlock(grid, grid.dimension());
+    velocity = Field(grid, grid.dimension());
+    force = Field(grid, grid.dimension());
     viscosity = LocalViscosity(grid);
   }
   template <class Value>
@@ -103,7 +103,7 @@ double stiffest(Flow &flow) {
     eigenvalue = product / square;
     EXPECT_GE(eigenvalue, 0);
     each([&](double &v, const double &f) { v = -f / (eigenvalue * std::sqrt(square)); });
-    EXPECT_EQ(exchange.update(flow.velocity, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(flow.velocity, 2), 0);
   }
   return eigenvalue;
 }
@@ -120,11 +120,11 @@ TEST(ViscousStress, SpectrumEndsWhereTheTimeStepLimitSays) {
     Random random(8);
     GhostExchange exchange(flow.grid);
     std::vector<Phase> phases(1);
-    phases[0].fraction = FieldBlock(flow.grid, 1);
+    phases[0].fraction = Field(flow.grid, 1);
     phases[0].material.viscosity = most;
     for_points(flow.grid, phases[0].fraction[0], at_centre,
                [&](double &phi, double, double, double) { phi = std::clamp(0.5 + random(), 0.0, 1.0); });
-    EXPECT_EQ(exchange.update(phases[0].fraction, 2), 0);
+    EXPECT_EQ(exchange.update_ghosts(phases[0].fraction, 2), 0);
     EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);
     Fluid thin;
     thin.viscosity = 0.01 * most;
@@ -160,7 +160,7 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
     phases[0].material.viscosity = 4;
     const double part[2][2] = {{0.25, 0.5}, {0.75, 0.75}};  // of cells with even and odd i
     for (int p = 0; p < 2; ++p) {
-      phases[p].fraction = FieldBlock(flow.grid, 1);
+      phases[p].fraction = Field(flow.grid, 1);
       EXPECT_EQ(phases[p].rows.find(flow.grid, phases[p].fraction[0]), 0);
     }
     const Int3 &n = flow.grid.cells();
@@ -197,7 +197,7 @@ TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
     fluid.viscosity = thin * fluid.density;
     std::vector<Phase> phases(1);
     phases[0].material.viscosity = thick * fluid.density;
-    phases[0].fraction = FieldBlock(flow.grid, 1);
+    phases[0].fraction = Field(flow.grid, 1);
     fill_everywhere(flow.grid, phases[0].fraction[0], at_centre,
                     [h](const Point &x) { return std::clamp(x[1] / h - 2, 0.0, 1.0); });  // 1/2 where j = 2
     EXPECT_EQ(phases[0].rows.find(flow.grid, phases[0].fraction[0]), 0);

@@ -15,7 +15,7 @@ constexpr int cells_x = 24, cells_y = 12;
 struct Film {
   Domain grid;
   Phase phase, floor;
-  FieldBlock scratch, force;
+  Field scratch, force;
   WallFilm film{grid};
 
   // A floor below row `bottom`: a side of the box, or a rigid body in a box without sides.
@@ -27,16 +27,16 @@ struct Film {
     EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
     phase.material.law = Law::membrane;
     phase.material.membrane.shear_modulus = modulus;
-    phase.fraction = FieldBlock(grid, 1);
-    floor.fraction = FieldBlock(grid, 1);
-    scratch = FieldBlock(grid, WallFilm::work_fields);
-    force = FieldBlock(grid, 2);
+    phase.fraction = Field(grid, 1);
+    floor.fraction = Field(grid, 1);
+    scratch = Field(grid, WallFilm::work_fields);
+    force = Field(grid, 2);
     BoxSides sides;
     for (auto &one : sides[1]) one.kind = side;
     for (int j = 0; j < bottom; ++j) std::fill_n(floor.fraction[0].row(j, 0), cells_x, 1.0);
     const std::vector<const Phase *> rigid(bottom > 0, &floor);
     GhostExchange exchange(grid);
-    EXPECT_EQ(exchange.update(floor.fraction, 5), 0);
+    EXPECT_EQ(exchange.update_ghosts(floor.fraction, 5), 0);
     film.find(sides, rigid, scratch);
   }
   // A body that fills the box above a film of part 1 - beside(i) of row `bottom`.
@@ -45,7 +45,7 @@ struct Film {
       for (int i = -5; i < cells_x + 5; ++i) phase.fraction[0](i, j, 0) = j == bottom ? beside(i) : 1;
   }
   // Minus the power of the force, and the stored energy.
-  std::array<double, 2> energy(const FieldBlock &velocity) {
+  std::array<double, 2> energy(const Field &velocity) {
     ExactSums sums(2);
     film.add_energy(phase, velocity, 0, 1, &sums);
     std::array<double, 2> found{};
@@ -74,7 +74,7 @@ TEST(WallFilm, PushesABodyOffTheWall) {
 TEST(WallFilm, StoresWhatTheFlowGivesToIt) {
   Film scene(0);
   const auto beside = [](int i) { return 0.5 + 0.4 * std::sin(2 * M_PI * i / cells_x); };
-  FieldBlock velocity(scene.grid, 2);
+  Field velocity(scene.grid, 2);
   const auto u = [](int i) { return 0.3 + std::cos(4 * M_PI * i / cells_x) + 0.2 * std::sin(6 * M_PI * i / cells_x); };
   const auto rate = [&](int i) {
     const auto flux = [&](int face) { return u(face) * 0.5 * (beside(face - 1) + beside(face)); };

@@ -159,16 +159,16 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   const BoxSides walls{};
   Random random(3);
   const double dt = 0.02, density = 1.7;
-  FieldBlock velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), none;
-  const auto velocity_ghosts = [&](FieldBlock &v) {
-    EXPECT_EQ(exchange.update(v, 1), 0);
+  Field velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), none;
+  const auto velocity_ghosts = [&](Field &v) {
+    EXPECT_EQ(exchange.update_ghosts(v, 1), 0);
     fill_wall_ghosts_velocity(grid, walls, 0, v, 1);
   };
-  const auto centre_ghosts = [&](FieldBlock &q) {
-    EXPECT_EQ(exchange.update(q, 1), 0);
+  const auto centre_ghosts = [&](Field &q) {
+    EXPECT_EQ(exchange.update_ghosts(q, 1), 0);
     fill_wall_ghosts_even(grid, at_centre, q[0], 1);
   };
-  const auto sum = [&](const FieldBlock &a, const FieldBlock &b) {
+  const auto sum = [&](const Field &a, const Field &b) {
     double total = 0;
     for (const Segment &s : grid.rows())
       for (int i = 0; i < s.i_end; ++i) total += a[0](i, s.j, s.k) * b[0](i, s.j, s.k);
@@ -182,10 +182,10 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   ASSERT_EQ(compute_divergence(grid, density, velocity, D), 0);
   centre_ghosts(D);
   // D + kappa lap D + g lap p for the coefficients that the solver reports.
-  FieldBlock predicted(grid, 1), lap_D(grid, 1), lap_p(grid, 1);
+  Field predicted(grid, 1), lap_D(grid, 1), lap_p(grid, 1);
   double second[3];
   for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
-  const auto laplacian = [&](const FieldBlock &q, FieldBlock &out) {
+  const auto laplacian = [&](const Field &q, Field &out) {
     const ConstView view = q[0];
     for (const Segment &s : grid.rows())
       for (int i = 0; i < s.i_end; ++i) {
@@ -201,14 +201,14 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   laplacian(p, lap_p);
 
   AcmSolver solver(grid);
-  FieldBlock old_pressure(grid, 1);
+  Field old_pressure(grid, 1);
   std::copy(p.data(), p.data() + p.layout().size, old_pressure.data());
   ASSERT_EQ(solver.solve(dt, D, p, none), 0);
   const auto [kappa, g] = solver.last();
   EXPECT_GT(kappa, 0);
   ASSERT_EQ(correct_velocity(grid, density, dt, 0, *solver.formula(), D, velocity, p), 0);
   velocity_ghosts(velocity);
-  FieldBlock D_new(grid, 1);
+  Field D_new(grid, 1);
   ASSERT_EQ(compute_divergence(grid, density, velocity, D_new), 0);
 
   const AcmSums s{-sum(D, lap_D), sum(lap_D, lap_D), sum(lap_p, lap_p), sum(D, lap_p), sum(lap_D, lap_p)};
@@ -226,7 +226,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   EXPECT_NEAR(mean, 0, 1e-12 * (1 + GetParam().pressure));
 
   // The ghosts come out right without an exchange.
-  FieldBlock fresh(grid, 1);
+  Field fresh(grid, 1);
   std::copy(p.data(), p.data() + p.layout().size, fresh.data());
   centre_ghosts(fresh);
   const Int3 n = grid.cells();

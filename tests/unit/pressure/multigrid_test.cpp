@@ -97,12 +97,12 @@ TEST(Multigrid, IsLinear) {
     PoissonScene s(PETSC_COMM_SELF, spec);
     Multigrid multigrid;
     ASSERT_EQ(multigrid.create(s.grid), 0);
-    FieldBlock result[3] = {FieldBlock(s.grid, 1), FieldBlock(s.grid, 1), FieldBlock(s.grid, 1)}, scratch(s.grid, 1);
+    Field result[3] = {Field(s.grid, 1), Field(s.grid, 1), Field(s.grid, 1)}, scratch(s.grid, 1);
     const CellFunction f[3] = {noise, [](int i, int j, int k) { return noise(k, i + 5, j); },
                                [](int i, int j, int k) { return noise(i, j, k) - 3 * noise(k, i + 5, j); }};
     for (int m = 0; m < 3; ++m) {
       s.set(f[m]);
-      ASSERT_EQ(s.exchange->update(s.divergence, Multigrid::halo), 0);
+      ASSERT_EQ(s.exchange->update_ghosts(s.divergence, Multigrid::halo), 0);
       ASSERT_EQ(multigrid.apply(s.divergence, result[m], scratch), 0);
     }
     const double size = s.rms(result[2][0]);

@@ -98,7 +98,7 @@ double difference(const Scene &a, const Scene &b, Map map) {
   const State &p = a.solver.state(), &q = b.solver.state();
   const auto &components = tensor_components(dim);
   double largest = 0;
-  const auto compare = [&](ConstView x, const FieldBlock &y, const Staggering &at, int c, int d) {
+  const auto compare = [&](ConstView x, const Field &y, const Staggering &at, int c, int d) {
     for (int k = 0; k < a.grid.points_end(2, at[2]); ++k)
       for (int j = 0; j < a.grid.points_end(1, at[1]); ++j)
         for (int i = 0; i < a.grid.points_end(0, at[0]); ++i)
@@ -121,7 +121,7 @@ int block_position(int dim, int c, int d) {
 
 double mirror_difference(const Scene &a, const Scene &b, int m) {
   const int dim = a.grid.dimension();
-  return difference(a, b, [&](const FieldBlock &y, const Staggering &at, Int3 point, int c, int d) {
+  return difference(a, b, [&](const Field &y, const Staggering &at, Int3 point, int c, int d) {
     const int N = a.grid.domain_cells()[m];
     point[m] = at[m] ? (N - point[m]) % (a.grid.is_wall(m) ? N + 1 : N) : N - 1 - point[m];
     const double sign = (c == m) == (d == m) ? 1 : -1;
@@ -131,7 +131,7 @@ double mirror_difference(const Scene &a, const Scene &b, int m) {
 
 double permutation_difference(const Scene &a, const Scene &b, const Permutation &p) {
   const int dim = a.grid.dimension();
-  return difference(a, b, [&](const FieldBlock &y, const Staggering &, const Int3 &point, int c, int d) {
+  return difference(a, b, [&](const Field &y, const Staggering &, const Int3 &point, int c, int d) {
     const Int3 x = p(point);
     return y[block_position(dim, c < 0 ? c : p.to[c], d < 0 ? d : p.to[d])](x[0], x[1], x[2]);
   });
@@ -256,10 +256,9 @@ TEST(HalfOfASymmetricScene, IsTheWholeOne) {
         Scene whole, part;
         run(setting, whole);
         run(half(setting, d), part);
-        const double e =
-            difference(part, whole, [&](const FieldBlock &y, const Staggering &, const Int3 &x, int a, int b) {
-              return y[block_position(two_d ? 2 : 3, a, b)](x[0], x[1], x[2]);
-            });
+        const double e = difference(part, whole, [&](const Field &y, const Staggering &, const Int3 &x, int a, int b) {
+          return y[block_position(two_d ? 2 : 3, a, b)](x[0], x[1], x[2]);
+        });
         std::printf("  half along %c: %g\n", "xyz"[d], e);
         EXPECT_LT(e, 1e-11) << "xyz"[d] << (method == MethodKind::fast ? ", fast" : ", classic");
         EXPECT_GT(mirror_difference(whole, whole, (d + 1) % 2), 1e-3) << "nothing happens";

@@ -1,4 +1,4 @@
-#include "field/field_block.hpp"
+#include "field/field.hpp"
 
 #include "grid/threads.hpp"
 
@@ -58,7 +58,7 @@ double *map_file(int file, double *from, double *to) {
 
 // Stencils reach over many pages at once: in huge pages, where the system has them, their addresses fit the TLB. Not of
 // the heap, which keeps what is freed where MPI wants it to.
-FieldBlock::Memory FieldBlock::allocate(std::size_t values) {
+Field::Memory Field::allocate(std::size_t values) {
   constexpr std::size_t line = 64, huge = std::size_t{1} << 21;
   const std::size_t bytes = values * sizeof(double);
   if (bytes < huge) {
@@ -79,7 +79,7 @@ FieldBlock::Memory FieldBlock::allocate(std::size_t values) {
 
 // The system copies a page when it is written. Zeros come from a file as ones do: not every system has one page of
 // zeros for all that is only read.
-FieldBlock::Memory FieldBlock::allocate_at_rest(std::size_t values, std::size_t ones) {
+Field::Memory Field::allocate_at_rest(std::size_t values, std::size_t ones) {
   static const int file_of_zeros = open_file_of(0), file_of_ones = open_file_of(1);
   const std::size_t bytes = values * sizeof(double);
   Memory memory(static_cast<double *>(map_pages(nullptr, bytes, MAP_ANONYMOUS | MAP_NORESERVE, -1)),
@@ -93,7 +93,7 @@ FieldBlock::Memory FieldBlock::allocate_at_rest(std::size_t values, std::size_t 
   return memory;
 }
 
-void FieldBlock::Free::operator()(double *p) const noexcept {
+void Field::Free::operator()(double *p) const noexcept {
   if (borrowed) return;
   if (mapped > 0)
     (void)munmap(p, mapped);
@@ -101,41 +101,39 @@ void FieldBlock::Free::operator()(double *p) const noexcept {
     std::free(p);
 }
 
-FieldBlock::FieldBlock(const Box &box, int count) : layout_(box.layout()), count_(count) {
+Field::Field(const Box &box, int count) : layout_(box.layout()), count_(count) {
   data_ = allocate(size());
   clear();
 }
 
-FieldBlock FieldBlock::at_rest(const Box &box, int count, int ones) {
-  FieldBlock block;
-  block.layout_ = box.layout();
-  block.count_ = count;
-  block.rests_ = true;
-  block.ones_ = ones;
-  block.data_ = allocate_at_rest(block.size(), ones * block.layout_.size);
-  return block;
+Field Field::at_rest(const Box &box, int count, int ones) {
+  Field field;
+  field.layout_ = box.layout();
+  field.count_ = count;
+  field.rests_ = true;
+  field.ones_ = ones;
+  field.data_ = allocate_at_rest(field.size(), ones * field.layout_.size);
+  return field;
 }
 
-FieldBlock FieldBlock::part(int first, int count) noexcept {
-  FieldBlock block;
-  block.layout_ = layout_;
-  block.count_ = count;
-  block.rests_ = rests_;
-  block.ones_ = std::clamp(ones_ - first, 0, count);
-  block.data_ = {data_.get() + first * layout_.size, Free{true, 0}};
-  return block;
+Field Field::part(int first, int count) noexcept {
+  Field field;
+  field.layout_ = layout_;
+  field.count_ = count;
+  field.rests_ = rests_;
+  field.ones_ = std::clamp(ones_ - first, 0, count);
+  field.data_ = {data_.get() + first * layout_.size, Free{true, 0}};
+  return field;
 }
 
-void FieldBlock::fill(int f, double value) noexcept {
-  std::fill_n(data_.get() + f * layout_.size, layout_.size, value);
-}
+void Field::fill(int f, double value) noexcept { std::fill_n(data_.get() + f * layout_.size, layout_.size, value); }
 
-void FieldBlock::clear() noexcept {
+void Field::clear() noexcept {
   in_pieces(layout_.size, count_,
             [this](std::size_t begin, std::size_t n) { std::fill_n(data_.get() + begin, n, 0.0); });
 }
 
-void FieldBlock::copy_from(const FieldBlock &other) {
+void Field::copy_from(const Field &other) {
   const bool is_new = count_ != other.count_ || layout_.size != other.layout_.size;
   if (is_new) {
     rests_ = other.rests_;
@@ -147,14 +145,14 @@ void FieldBlock::copy_from(const FieldBlock &other) {
   copy(other.data_.get(), is_new);
 }
 
-void FieldBlock::leave_rest() {
+void Field::leave_rest() {
   if (!std::exchange(rests_, false)) return;
   const Memory before = std::exchange(data_, allocate(size()));
   copy(before.get(), true);
 }
 
 // What is equal is not written, so that rest stays rest. What is new holds nothing else, and is not read.
-void FieldBlock::copy(const double *values, bool is_new) {
+void Field::copy(const double *values, bool is_new) {
   constexpr std::size_t page = 512;
   static const std::vector<double> zeros(page, 0.0), ones(page, 1.0);
   in_pieces(layout_.size, count_, [&](std::size_t begin, std::size_t n) {
