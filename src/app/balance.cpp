@@ -19,13 +19,13 @@ constexpr int most_units = 4096;  // along a direction: a sum over all ranks for
 
 class Balance {
 public:
-  explicit Balance(const Solver &solver) : domain_(solver.domain()), cost_(domain_.rows().size(), 0) {
+  explicit Balance(const Solver &solver)
+      : domain_(solver.domain()), split_(domain_.split()), cost_(domain_.rows().size(), 0) {
     for (double &cost : cost_) cost = domain_.cells()[0];
     for (const Phase &phase : solver.state().phases) add(phase);
     for (const double cost : cost_) own_ += cost;
     for (int d = 0; d < 3; ++d) {
       const int cells = domain_.domain_cells()[d], parts = domain_.processors(d);
-      for (int p = 0; p <= parts; ++p) starts_[d].push_back(domain_.first_cell(d, p));
       unit_[d] = cut_unit(cells, parts);
       while (cells > most_units * unit_[d]) unit_[d] *= 2;
       least_[d] = (Box::stencil_width + unit_[d] - 1) / unit_[d];
@@ -43,19 +43,19 @@ public:
     const double even = heaviest;
     for (int d = 1; d < 3; ++d) PetscCall(sum_planes(d, &sums[d]));
     weights = sums;
-    auto best = starts_;
+    Split best = split_;
     for (int round = 0; round < rounds; ++round) {
       for (int d = 1; d < 3; ++d)
         if (movable_[d] && (round == 0 || round % 2 == d - 1)) cut(d, weights[d]);
       std::array<std::vector<double>, 3> most;
       PetscCall(heaviest_boxes(&most));
       const double here = *std::max_element(most[1].begin(), most[1].end());
-      if (here < heaviest) heaviest = here, best = starts_;
+      if (here < heaviest) heaviest = here, best = split_;
       for (int d = 1; d < 3; ++d)
         if (movable_[d]) weigh(d, sums[d], most[d], &weights[d]);
     }
     *after = heaviest * domain_.ranks() / total;
-    if (heaviest < worth * even) spec->starts = best;
+    if (heaviest < worth * even) spec->starts = best.starts;
     PetscFunctionReturn(0);
   }
 
@@ -91,40 +91,39 @@ private:
   void cut(int d, const std::vector<double> &weights) {
     const int parts = domain_.processors(d);
     const std::vector<int> first = equal_cuts(weights, parts, least_[d]);
-    for (int p = 1; p < parts; ++p) starts_[d][p] = first[p] * unit_[d];
+    for (int p = 1; p < parts; ++p) split_.starts[d][p] = first[p] * unit_[d];
   }
 
   // The planes of a rank weigh together what the heaviest of the boxes that they go through does.
   void weigh(int d, const std::vector<double> &sums, const std::vector<double> &most, std::vector<double> *weights) {
     const int units = static_cast<int>(sums.size());
     for (int p = 0; p < domain_.processors(d); ++p) {
-      const int begin = starts_[d][p] / unit_[d],
-                end = p + 1 < domain_.processors(d) ? starts_[d][p + 1] / unit_[d] : units;
+      const int begin = split_.starts[d][p] / unit_[d],
+                end = p + 1 < domain_.processors(d) ? split_.starts[d][p + 1] / unit_[d] : units;
       double sum = 0;
       for (int u = begin; u < end; ++u) sum += sums[u];
       for (int u = begin; u < end; ++u) (*weights)[u] = sums[u] * most[p] / sum;
     }
   }
 
-  // The heaviest box at every place along y and z, if ranks began at starts_.
+  // The heaviest box at every position along y and z, if ranks had the cells of split_.
   PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
     PetscFunctionBeginUser;
     const Int3 &begin = domain_.layout().begin, &n = domain_.cells();
-    const auto place_along = [&](int d, int i) {
-      return static_cast<int>(std::upper_bound(starts_[d].begin(), starts_[d].end(), i) - starts_[d].begin()) - 1;
-    };
-    const Int3 me = domain_.place_of(domain_.rank());
+    const Int3 me = split_.position_of(domain_.rank());
     std::vector<PetscSFNode> owners;
     std::vector<double> parts;
-    const int y0 = place_along(1, begin[1]), y1 = place_along(1, begin[1] + n[1] - 1);
-    const int z0 = place_along(2, begin[2]), z1 = place_along(2, begin[2] + n[2] - 1);
+    const int y0 = split_.position_along(1, begin[1]), y1 = split_.position_along(1, begin[1] + n[1] - 1);
+    const int z0 = split_.position_along(2, begin[2]), z1 = split_.position_along(2, begin[2] + n[2] - 1);
     for (int z = z0; z <= z1; ++z)
       for (int y = y0; y <= y1; ++y) {
         double sum = 0;
-        for (int k = std::max(starts_[2][z], begin[2]); k < std::min(starts_[2][z + 1], begin[2] + n[2]); ++k)
-          for (int j = std::max(starts_[1][y], begin[1]); j < std::min(starts_[1][y + 1], begin[1] + n[1]); ++j)
+        for (int k = std::max(split_.starts[2][z], begin[2]); k < std::min(split_.starts[2][z + 1], begin[2] + n[2]);
+             ++k)
+          for (int j = std::max(split_.starts[1][y], begin[1]); j < std::min(split_.starts[1][y + 1], begin[1] + n[1]);
+               ++j)
             sum += cost(j - begin[1], k - begin[2]);
-        owners.push_back({domain_.rank_at({me[0], y, z}), 0});
+        owners.push_back({split_.rank_at({me[0], y, z}), 0});
         parts.push_back(sum);
       }
     SfHandle boxes;
@@ -145,10 +144,10 @@ private:
   }
 
   const Domain &domain_;
+  Split split_;               ///< the best cuts so far
   std::vector<double> cost_;  ///< of owned rows
   double own_ = 0;            ///< their sum
-  std::array<std::vector<int>, 3> starts_;
-  Int3 unit_{}, least_{};  ///< cells that cuts are multiples of; units of a rank
+  Int3 unit_{}, least_{};     ///< cells that cuts are multiples of; units of a rank
   std::array<bool, 3> movable_{};
 };
 

@@ -160,7 +160,7 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   spec.starts = {};
   const bool share = Domain::why_not(spec, ranks).empty();
   const Domain domain = Domain::planned(spec, share ? ranks : 1);
-  const Layout box = share || rank == 0 ? domain.layout_of(rank) : Layout{};
+  const Layout box = share || rank == 0 ? domain.split().box_of(rank, spec, 0).layout() : Layout{};
   std::vector<Places> near(config.species.size());
   for (std::size_t s = 0; s < near.size(); ++s)
     PetscCall(bring_near(comm, domain, config.species[s], config.places[s], &near[s]));

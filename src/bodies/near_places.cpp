@@ -15,8 +15,8 @@ double reach(const Surface &surface, const BodyPlace &place, int d) {
   return std::isfinite(radius) ? radius : surface.support(rotation(place.orientation)[d]);
 }
 
-// The places along d of ranks that a body comes near.
-std::vector<int> parts_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
+// The positions along d of ranks that a body comes near.
+std::vector<int> positions_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
   const int cells = domain.domain_cells()[d];
   const double h = domain.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
   int first = 0, last = cells - 1;
@@ -25,32 +25,32 @@ std::vector<int> parts_near(const Domain &domain, int d, const Surface &surface,
     last = static_cast<int>(std::floor((centre + far) / h));
     if (domain.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
   }
-  std::vector<int> parts;
+  std::vector<int> positions;
   for (int i = first; i <= last;) {
-    const int cell = (i + cells) % cells, part = domain.owner_along(d, cell);
-    if (parts.empty() || part != parts.front()) parts.push_back(part);
-    i += domain.first_cell(d, part + 1) - cell;
+    const int cell = (i + cells) % cells, position = domain.split().position_along(d, cell);
+    if (positions.empty() || position != positions.front()) positions.push_back(position);
+    i += domain.split().starts[d][position + 1] - cell;
   }
-  return parts;
+  return positions;
 }
 
 }  // namespace
 
 bool is_near(const Domain &domain, int rank, const Surface &surface, const BodyPlace &place) {
-  const Int3 at = domain.place_of(rank);
+  const Int3 at = domain.split().position_of(rank);
   for (int d = 0; d < domain.dimension(); ++d) {
-    const std::vector<int> parts = parts_near(domain, d, surface, place);
-    if (std::find(parts.begin(), parts.end(), at[d]) == parts.end()) return false;
+    const std::vector<int> near = positions_near(domain, d, surface, place);
+    if (std::find(near.begin(), near.end(), at[d]) == near.end()) return false;
   }
   return true;
 }
 
 std::vector<int> ranks_near(const Domain &domain, const Surface &surface, const BodyPlace &place) {
   std::vector<int> ranks;
-  const std::vector<int> x = parts_near(domain, 0, surface, place), y = parts_near(domain, 1, surface, place);
-  for (const int k : parts_near(domain, 2, surface, place))
+  const std::vector<int> x = positions_near(domain, 0, surface, place), y = positions_near(domain, 1, surface, place);
+  for (const int k : positions_near(domain, 2, surface, place))
     for (const int j : y)
-      for (const int i : x) ranks.push_back(domain.rank_at({i, j, k}));
+      for (const int i : x) ranks.push_back(domain.split().rank_at({i, j, k}));
   return ranks;
 }
 

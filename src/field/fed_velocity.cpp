@@ -8,8 +8,8 @@ namespace eulastic {
 PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
                                  FedVelocity *fed) {
   const Plane plane(domain.layout(), d);
-  const int owner = domain.owner_along(d, index), local = index - domain.layout().begin[d];
-  int place;
+  const int owner = domain.split().position_along(d, index), local = index - domain.layout().begin[d];
+  int position;
   PetscFunctionBeginUser;
   fed->d_ = d;
   fed->begin_ = plane.begin;
@@ -17,8 +17,8 @@ PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int 
   std::size_t count = 1;
   for (int e = 0; e < 3; ++e) count *= std::size_t(plane.end[e] - plane.begin[e]);
   fed->values_.resize(count);
-  PetscCallMPI(MPI_Comm_rank(line, &place));
-  if (place == owner)
+  PetscCallMPI(MPI_Comm_rank(line, &position));
+  if (position == owner)
     fed->for_each([&](Int3 at, double &value) {
       at[d] = local;
       value = component(at[0], at[1], at[2]);

@@ -13,7 +13,7 @@ class FedVelocity {
 public:
   /// `component`, normal to direction d, on the faces with global index `index`, ghosts of the other directions
   /// included, of the rank that has them to all ranks of its line along d. Collective over `line`, whose ranks are the
-  /// places along d.
+  /// positions along d.
   static PetscErrorCode copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
                              FedVelocity *fed);
   /// Writes the values of a row of the plane; `row` lies on it or on another one along d.

@@ -186,18 +186,15 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
   PetscFunctionBeginUser;
   if (!list_) {
     list_ = std::make_unique<GhostList>();
-    if (find_) {
-      *list_ = find_();
-    } else {
-      PetscCall(list_->read(*domain_));
-    }
+    PetscCall(find_(list_.get()));
   }
-  const Layout &own = domain_->layout();
-  const std::ptrdiff_t unit = by_rows() ? own.sy : 1;
+  const Layout &own = box_->layout();
+  const bool whole_rows = box_->whole_rows();
+  const std::ptrdiff_t unit = whole_rows ? own.sy : 1;
   const auto wanted = [&](const Int3 &at) {
-    for (int d = by_rows() ? 1 : 0; d < 3; ++d)
+    for (int d = whole_rows ? 1 : 0; d < 3; ++d)
       if (at[d] < -width || at[d] >= own.cells[d] + width) return false;
-    return !by_rows() || at[0] == 0;
+    return !whole_rows || at[0] == 0;
   };
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
@@ -212,7 +209,7 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
         leaves.push_back(unit_of(own.size, f, own.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
         roots.push_back({ghost.owner, unit_of(list_->field_size.at(ghost.owner), f, ghost.there)});
       }
-  PetscCall(PetscSFCreate(domain_->comm(), sf));
+  PetscCall(PetscSFCreate(comm_, sf));
   PetscCall(PetscSFSetFromOptions(*sf));
   PetscInt count;
   PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * own.size / unit, &count));  // an error where it has no room
@@ -277,12 +274,12 @@ PetscErrorCode GhostExchange::update_ghosts(Field &field, int width, const Occup
 // is split.
 void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
-  if (!domain_->wraps_x() || !wanted.row_ends) return;
+  if (!box_->wraps_x() || !wanted.row_ends) return;
   Field &field = *wanted.field;
   const Layout &own = field.layout();
-  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*domain_);
+  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*box_);
   const int layers = is_inside(wanted) ? 0 : width;
-  const Box::Range y = domain_->points_near(1, true, layers), z = domain_->points_near(2, true, layers);
+  const Box::Range y = box_->points_near(1, true, layers), z = box_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
     for (int f = 0; f < field.count(); ++f)

@@ -1,7 +1,7 @@
 // Ghost updates by PETSc: a PetscSF whose roots are the values that a rank owns and whose leaves are ghosts, across
 // periodic sides too. Who owns which ghost is read from the scatter of the DMDA.
 //
-// The components of a field travel in one message to each neighbour. While x is not split, roots and leaves are whole
+// The components of a field travel in one message to each neighbour. Where x is not split, roots and leaves are whole
 // rows, and the ghosts at their ends are the other end of the same row.
 #pragma once
 
@@ -44,9 +44,11 @@ struct GhostList {
 
 class GhostExchange {
 public:
-  explicit GhostExchange(const Domain &domain) : domain_(&domain) {}
-  /// For a domain without a DMDA, which must say which ghosts it has.
-  GhostExchange(const Domain &domain, std::function<GhostList()> find) : domain_(&domain), find_(std::move(find)) {}
+  explicit GhostExchange(const Domain &domain)
+      : GhostExchange(domain, domain.comm(), [&domain](GhostList *list) { return list->read(domain); }) {}
+  /// For boxes on the ranks of `comm`; `find` lists the ghosts of this rank and is called when they are first needed.
+  GhostExchange(const Box &box, MPI_Comm comm, std::function<PetscErrorCode(GhostList *)> find)
+      : box_(&box), comm_(comm), find_(std::move(find)) {}
 
   /// Afterwards every ghost within `width` layers that is not behind a wall is right, on ranks that have cells. In
   /// ghost rows, ghosts behind walls of x and further out in x may have changed; all others are not touched.
@@ -70,15 +72,15 @@ private:
       if (type != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type);
     }
   };
-  bool by_rows() const { return domain_->processors(0) == 1; }
   PetscErrorCode build_scatter(int width, int fields, PetscSF *sf);
   PetscErrorCode broadcast(const WantedGhosts &wanted,
                            PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
   void wrap_rows(const WantedGhosts &wanted) const;
 
-  const Domain *domain_;
-  std::function<GhostList()> find_;
-  std::unique_ptr<GhostList> list_;  ///< found when it is first needed
+  const Box *box_;
+  MPI_Comm comm_;
+  std::function<PetscErrorCode(GhostList *)> find_;
+  std::unique_ptr<GhostList> list_;  ///< null until it is needed
   Unit unit_;
   std::map<std::pair<int, int>, SfHandle> scatters_;  ///< by width and number of fields
 };

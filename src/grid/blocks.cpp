@@ -11,13 +11,14 @@ Sides::Sides(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
   }
 }
 
-int StagePass::depth(const Domain &domain, const Sides &sides, int least, int most) {
+int StagePass::depth(const Box &box, const Split &split, int least, int most) {
+  const Sides sides(box);
   int depth = least;
-  for (int more = least + 1; more <= std::min(most, domain.layout().ghosts[0]); ++more) {
+  for (int more = least + 1; more <= std::min(most, box.layout().ghosts[0]); ++more) {
     double share = 1;
-    for (int d = 0; d < domain.dimension(); ++d)
-      if (!sides.alone[d] && (domain.processors(d) > 1 || domain.boundary(d) == Boundary::periodic))
-        share *= 1 + 2.0 * (more - 1) * domain.processors(d) / domain.domain_cells()[d];
+    for (int d = 0; d < box.dimension(); ++d)
+      if (!sides.alone[d] && (split.parts(d) > 1 || box.boundary(d) == Boundary::periodic))
+        share *= 1 + 2.0 * (more - 1) * split.parts(d) / box.domain_cells()[d];
     if (share < 1.25) depth = more;
   }
   return depth;

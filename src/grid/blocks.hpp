@@ -2,7 +2,7 @@
 // and several stages of a stencil in one pass over memory.
 #pragma once
 
-#include "grid/domain.hpp"
+#include "grid/split.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ public:
 
   /// The most stages of a pass, `least` to `most`: ghosts must reach, and what is computed again stay below a quarter
   /// of the first stage. Every rank finds the same.
-  static int depth(const Domain &domain, const Sides &sides, int least, int most);
+  static int depth(const Box &box, const Split &split, int least, int most);
 
   /// Slices of a field that go together: all stages, a block of rows after the other, or what is left of one stage.
   struct Task {

@@ -17,8 +17,8 @@ std::vector<Segment> rows_between(const Int3 &begin, const Int3 &end) {
 
 }  // namespace
 
-Box::Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int ghosts, bool wraps_x)
-    : domain_(domain), wraps_x_(wraps_x) {
+Box::Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int ghosts, bool whole_rows)
+    : domain_(domain), whole_rows_(whole_rows) {
   layout_.begin = begin;
   layout_.cells = cells;
   for (int d = 0; d < 3; ++d) {

@@ -61,9 +61,9 @@ public:
   static constexpr int stencil_width = 3;  ///< layers that WENO5 reads
 
   Box() = default;
-  /// `cells` cells from global cell `begin` on. `wraps_x`: in a periodic x the ghosts of a row are filled from its
-  /// other end; the block must have all of x.
-  Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int ghosts, bool wraps_x = false);
+  /// `cells` cells from global cell `begin` on. `whole_rows`: this block and all that it exchanges ghosts with have all
+  /// of x, so that in a periodic x the ghosts of a row are filled from its other end.
+  Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int ghosts, bool whole_rows = false);
 
   const DomainShape &domain_shape() const { return domain_; }
   const Int3 &domain_cells() const { return domain_.cells; }
@@ -94,8 +94,9 @@ public:
   double cell_count() const { return double(layout_.cells[0]) * layout_.cells[1] * layout_.cells[2]; }
   /// Whether the block has all cells of the domain along d.
   bool spans(int d) const { return layout_.cells[d] == domain_.cells[d]; }
+  bool whole_rows() const { return whole_rows_; }
   /// Whether the ghosts of a row are its other end.
-  bool wraps_x() const { return domain_.boundary[0] == Boundary::periodic && wraps_x_; }
+  bool wraps_x() const { return domain_.boundary[0] == Boundary::periodic && whole_rows_; }
   bool touches_low(int d) const { return is_wall(d) && layout_.begin[d] == 0; }
   bool touches_high(int d) const { return is_wall(d) && layout_.begin[d] + layout_.cells[d] == domain_.cells[d]; }
   bool touches(int d, bool high) const { return high ? touches_high(d) : touches_low(d); }
@@ -126,7 +127,7 @@ public:
 private:
   DomainShape domain_;
   Real3 spacing_{};
-  bool wraps_x_ = false;
+  bool whole_rows_ = false;
   Layout layout_;
 };
 

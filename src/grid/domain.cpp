@@ -108,32 +108,10 @@ std::string Domain::why_not(const GridSpec &spec, int ranks) {
   return option + text + rule + "at least 3 cells per rank in every direction";
 }
 
-Box Domain::box_at(const Int3 &place) const {
-  Int3 begin, cells;
-  for (int d = 0; d < 3; ++d) {
-    begin[d] = starts_[d][place[d]];
-    cells[d] = starts_[d][place[d] + 1] - begin[d];
-  }
-  return Box(spec_, begin, cells, spec_.ghosts, processors(0) == 1);
-}
-
-Int3 Domain::place_of(int rank) const {
-  const int px = processors(0), py = processors(1);
-  return {rank % px, rank / px % py, rank / px / py};
-}
-
-Layout Domain::layout_of(int rank) const { return box_at(place_of(rank)).layout(); }
-
-int Domain::owner_along(int d, int i) const {
-  const std::vector<int> &starts = starts_[d];
-  const int cell = std::min(i, spec_.cells[d] - 1);
-  return static_cast<int>(std::upper_bound(starts.begin(), starts.end(), cell) - starts.begin()) - 1;
-}
-
 Domain Domain::planned(const GridSpec &spec, int ranks) {
   Domain domain;
   domain.divide(spec, ranks);
-  domain.set_box({});
+  static_cast<Box &>(domain) = domain.split_.box_of(0, spec, spec.ghosts);
   return domain;
 }
 
@@ -144,9 +122,7 @@ void Domain::divide(const GridSpec &spec, int ranks) {
   for (int d = 0; d < 3; ++d)
     if (spec_.boundary[d] != Boundary::wall) spec_.open[d] = {};
   const Int3 parts = decompose(spec, ranks);
-  for (int d = 0; d < 3; ++d) {
-    starts_[d] = starts_of(spec, parts, d);
-  }
+  for (int d = 0; d < 3; ++d) split_.starts[d] = starts_of(spec, parts, d);
 }
 
 PetscErrorCode Domain::create(MPI_Comm comm, const GridSpec &spec) {
@@ -176,7 +152,7 @@ PetscErrorCode Domain::create_dm(bool high_faces, DMDAStencilType stencil, int w
   std::array<DMBoundaryType, 3> type{};
   Int3 points = spec_.cells;
   for (int d = 0; d < 3; ++d) {
-    for (int p = 0; p < processors(d); ++p) counts[d].push_back(starts_[d][p + 1] - starts_[d][p]);
+    for (int p = 0; p < processors(d); ++p) counts[d].push_back(split_.cells_along(d, p));
     const bool wall = spec_.is_wall(d), more = wall && high_faces;
     if (d < spec_.dimension()) width = std::min<int>(width, *std::min_element(counts[d].begin(), counts[d].end()));
     counts[d].back() += more;
@@ -208,49 +184,12 @@ PetscErrorCode Domain::read_dm() {
   for (int d = 0; d < 3; ++d) {
     const int N = spec_.cells[d];  // the point N is no cell
     for (int p = 0; p < processors(d); ++p)
-      starts_[d][p + 1] = std::min(N, starts_[d][p] + (points[d] ? static_cast<int>(points[d][p]) : 1));
+      split_.starts[d][p + 1] = std::min(N, split_.starts[d][p] + (points[d] ? static_cast<int>(points[d][p]) : 1));
     first[d] = static_cast<int>(begin[d]);
     cells[d] = std::min(N, static_cast<int>(begin[d] + count[d])) - first[d];
   }
   static_cast<Box &>(*this) = Box(spec_, first, cells, spec_.ghosts, processors(0) == 1);
   PetscFunctionReturn(0);
-}
-
-Domain Domain::coarse(const Int3 &cells, bool everywhere) const {
-  Domain result;
-  result.comm_ = everywhere ? PETSC_COMM_SELF : comm_;
-  result.rank_ = everywhere ? 0 : rank_;
-  result.ranks_ = everywhere ? 1 : ranks_;
-  result.spec_ = spec_;
-  result.spec_.cells = cells;
-  result.spec_.starts = {};
-  for (int d = 0; d < 3; ++d) {
-    result.starts_[d] = {0};
-    if (!everywhere) {
-      const int stride = cells[d] < spec_.cells[d] ? 2 : 1;
-      for (int p = 1; p < processors(d); ++p)
-        result.starts_[d].push_back(std::min(cells[d], (starts_[d][p] + stride - 1) / stride));
-    }
-    result.starts_[d].push_back(cells[d]);
-  }
-  result.set_box(result.place_of(result.rank_));
-  return result;
-}
-
-Domain Domain::joined(const std::array<bool, 3> &along) const {
-  Domain result = coarse(spec_.cells, false);
-  for (int d = 0; d < 3; ++d) {
-    if (!along[d]) continue;
-    std::vector<int> &starts = result.starts_[d], holders;
-    for (int p = 0; p < processors(d); ++p)
-      if (starts[p] < starts[p + 1]) holders.push_back(p);
-    std::vector<bool> stays(processors(d), false);
-    for (std::size_t m = 0; m + 1 < holders.size(); m += 2) stays[holders[m]] = true;
-    for (int p = processors(d) - 1; p >= 0; --p)
-      if (!stays[p]) starts[p] = starts[p + 1];
-  }
-  result.set_box(result.place_of(rank_));
-  return result;
 }
 
 }  // namespace eulastic

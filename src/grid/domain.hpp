@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "grid/box.hpp"
+#include "grid/split.hpp"
 
 #include <string>
 #include <vector>
@@ -36,50 +36,36 @@ public:
 
   /// The DMDA of all fields: one value per point. Its stencil is a box as wide as there are ghosts, or as the narrowest
   /// rank has cells. A direction with boundaries has N + 1 points, so that the high face is a point like any other, and
-  /// DM_BOUNDARY_GHOSTED. Null for a coarse() domain.
+  /// DM_BOUNDARY_GHOSTED. Null for a planned() domain.
   DM dm() const { return dm_.get(); }
   /// A DMDA with one value per cell, of the same split, for matrices: these have a column for each point of the
   /// stencil.
   PetscErrorCode create_cell_dm(DMDAStencilType stencil, int width, DM *dm) const;
-
-  /// The same domain in fewer cells, for multigrid, without a DMDA. In a direction with fewer cells each rank begins at
-  /// half of its first cell, rounded up, so a rank may have no cells. With `everywhere` every rank has all cells.
-  Domain coarse(const Int3 &cells, bool everywhere) const;
-  /// The same cells on fewer ranks, without a DMDA: in each named direction every second rank that has cells takes
-  /// those of the next one as well.
-  Domain joined(const std::array<bool, 3> &along) const;
 
   MPI_Comm comm() const { return comm_; }
   const GridSpec &spec() const { return spec_; }
   int rank() const { return rank_; }
   int ranks() const { return ranks_; }
   /// Ranks along direction d.
-  int processors(int d) const { return static_cast<int>(starts_[d].size()) - 1; }
+  int processors(int d) const { return split_.parts(d); }
 
-  /// The position of a rank among the ranks along every direction; ranks count through x first.
-  Int3 place_of(int rank) const;
-  int rank_at(const Int3 &place) const { return place[0] + processors(0) * (place[1] + processors(1) * place[2]); }
-  /// The position along d of the ranks that own the cells with index i; index N of a direction with boundaries belongs
-  /// to the owner of N - 1.
-  int owner_along(int d, int i) const;
-  /// The first cell of the ranks at a position along d, and N at position processors(d).
-  int first_cell(int d, int place) const { return starts_[d][place]; }
-  Layout layout_of(int rank) const;
+  /// The cells of all ranks, as the DMDA's ownership ranges say.
+  const Split &split() const { return split_; }
   /// The rank that owns global cell (i,j,k).
-  int owner(int i, int j, int k) const { return rank_at({owner_along(0, i), owner_along(1, j), owner_along(2, k)}); }
+  int owner(int i, int j, int k) const {
+    return split_.rank_at({split_.position_along(0, i), split_.position_along(1, j), split_.position_along(2, k)});
+  }
 
 private:
   void divide(const GridSpec &spec, int ranks);
   PetscErrorCode create_dm(bool high_faces, DMDAStencilType stencil, int width, DM *dm) const;
   PetscErrorCode read_dm();
-  Box box_at(const Int3 &place) const;
-  void set_box(const Int3 &place) { static_cast<Box &>(*this) = box_at(place); }
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, ranks_ = 1;
   DmHandle dm_;
   GridSpec spec_;
-  std::array<std::vector<int>, 3> starts_;  ///< first cell of every rank along a direction, and N at the end
+  Split split_;
 };
 
 }  // namespace eulastic

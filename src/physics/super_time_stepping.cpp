@@ -272,7 +272,7 @@ PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, co
   VerbScope scope(Verb::viscous);
   const InverseSquares h = domain.inverse_squares();
   const StageSides sides(domain, box_sides);
-  const int depth = StagePass::depth(domain, sides, 2, deepest);
+  const int depth = StagePass::depth(domain, domain.split(), 2, deepest);
   std::vector<char> stressed;
   for (Field *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(domain, *field);

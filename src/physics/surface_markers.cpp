@@ -165,20 +165,18 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
     bool inside = true;  // nobody else needs it
     for (int d = 0; d < domain_->dimension(); ++d)
       inside = inside && (domain_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < domain_->cells()[d]));
-    std::set<int> places[3], to;
     if (inside) {
       ranks.push_back(domain_->rank());
       all_.push_back(marker);
       continue;
     }
-    for (int d = 0; d < 3; ++d)
-      for (const int away : {-reach, 0, reach}) {
-        if (d >= domain_->dimension() && away != 0) continue;
-        places[d].insert(domain_->owner_along(d, in_box(*domain_, d, marker.cell[d] + away)));
-      }
-    for (const int z : places[2])
-      for (const int y : places[1])
-        for (const int x : places[0]) to.insert(domain_->rank_at({x, y, z}));
+    std::set<int> to;  // the owners of the corners and middles of the box of cells within reach
+    const int reach_z = domain_->dimension() == 3 ? reach : 0;
+    for (const int z : {-reach_z, 0, reach_z})
+      for (const int y : {-reach, 0, reach})
+        for (const int x : {-reach, 0, reach})
+          to.insert(domain_->owner(in_box(*domain_, 0, marker.cell[0] + x), in_box(*domain_, 1, marker.cell[1] + y),
+                                   in_box(*domain_, 2, marker.cell[2] + z)));
     for (const int rank : to) {
       ranks.push_back(rank);
       all_.push_back(marker);

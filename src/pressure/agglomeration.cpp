@@ -1,5 +1,4 @@
 #include "pressure/agglomeration.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -29,24 +28,24 @@ void unpack(const double *values, const CellBlock &box, Field &block) {
 
 }  // namespace
 
-PetscErrorCode Agglomeration::create(const Domain &from, const Domain &to) {
+PetscErrorCode Agglomeration::create(const Partition &from, const Partition &to) {
   PetscFunctionBeginUser;
   from_ = &from;
   to_ = &to;
-  values_.resize(static_cast<std::size_t>(std::max(from.cell_count(), to.cell_count())));
+  values_.resize(static_cast<std::size_t>(std::max(from.box().cell_count(), to.box().cell_count())));
   other_.resize(values_.size());
   if (!everywhere()) {
-    PetscCall(move_.create(from.comm(), Partition(from), Partition(to)));
+    PetscCall(move_.create(from.comm(), CellBlocks(from.split()), CellBlocks(to.split())));
     PetscFunctionReturn(0);
   }
+  const CellBlocks blocks(from.split());
   int cells = 0;
   for (int rank = 0; rank < from.ranks(); ++rank) {
-    const Layout theirs = from.layout_of(rank);
-    const CellBlock box{theirs.begin, theirs.cells};
+    const CellBlock &block = blocks.of(rank);
     displacements_.push_back(cells);
-    counts_.push_back(static_cast<int>(box.size()));
+    counts_.push_back(static_cast<int>(block.size()));
     cells += counts_.back();
-    if (box.size() > 0) boxes_.push_back(box);
+    if (block.size() > 0) blocks_.push_back(block);
   }
   PetscFunctionReturn(0);
 }
@@ -58,9 +57,9 @@ PetscErrorCode Agglomeration::forward(const Field &from, Field &to) {
     PetscCallMPI(MPI_Allgatherv(values_.data(), counts_[from_->rank()], MPI_DOUBLE, other_.data(), counts_.data(),
                                 displacements_.data(), MPI_DOUBLE, from_->comm()));
     const double *theirs = other_.data();
-    for (const CellBlock &box : boxes_) {
-      unpack(theirs, box, to);
-      theirs += box.size();
+    for (const CellBlock &block : blocks_) {
+      unpack(theirs, block, to);
+      theirs += block.size();
     }
   } else {
     PetscCall(move_.forward(values_, other_));

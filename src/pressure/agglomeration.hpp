@@ -4,15 +4,15 @@
 
 #include "base/petsc.hpp"
 #include "field/field.hpp"
-#include "grid/domain.hpp"
+#include "pressure/partition.hpp"
 #include "pressure/redistribute.hpp"
 
 namespace eulastic {
 
 class Agglomeration {
 public:
-  /// Collective. `to` is one of the same cells: Box::joined, or with all of them on every rank. Both must stay.
-  PetscErrorCode create(const Domain &from, const Domain &to);
+  /// Collective. `to` has the same cells: Partition::joined or everywhere. Both must outlive this.
+  PetscErrorCode create(const Partition &from, const Partition &to);
   /// Owned values of one field; ghosts are not touched. Collective.
   PetscErrorCode forward(const Field &from, Field &to);
   PetscErrorCode backward(const Field &to, Field &from);
@@ -20,10 +20,10 @@ public:
 private:
   bool everywhere() const { return to_->ranks() < from_->ranks(); }
 
-  const Domain *from_ = nullptr, *to_ = nullptr;
+  const Partition *from_ = nullptr, *to_ = nullptr;
   Redistribution move_;                      ///< unless everywhere()
-  std::vector<double> values_, other_;       ///< boxes, one after the other
-  std::vector<CellBlock> boxes_;             ///< everywhere(): of all ranks that have cells, in the order of ranks
+  std::vector<double> values_, other_;       ///< blocks, one after the other
+  std::vector<CellBlock> blocks_;            ///< everywhere(): of all ranks that have cells, in the order of ranks
   std::vector<int> counts_, displacements_;  ///< everywhere(): of all ranks
 };
 

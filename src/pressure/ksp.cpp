@@ -84,7 +84,7 @@ int geometric_levels(const Domain &domain, double *coarsest) {
   Int3 cells = domain.domain_cells(), narrowest = cells;
   for (int d = 0; d < 3; ++d)
     for (int p = 0; p < domain.processors(d); ++p)
-      narrowest[d] = std::min(narrowest[d], domain.first_cell(d, p + 1) - domain.first_cell(d, p));
+      narrowest[d] = std::min(narrowest[d], domain.split().cells_along(d, p));
   const auto halves = [&](int d) { return cells[d] % 2 == 0 && cells[d] / 2 >= 2 && narrowest[d] / 2 >= least; };
   int levels = 1;
   for (; halves(0) && halves(1) && (domain.dimension() == 2 || halves(2)); ++levels)

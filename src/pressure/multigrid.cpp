@@ -24,21 +24,21 @@ constexpr double gathered_cells = 4096;  // from here on messages cost more than
 std::unique_ptr<MultigridLevel> finest(const Domain &domain) {
   MultigridLevel::Widths equal;
   for (int d = 0; d < 3; ++d) equal[d].assign(domain.domain_cells()[d], 1.0);
-  return std::make_unique<MultigridLevel>(domain.coarse(domain.domain_cells(), false), equal, domain.spacing());
+  return std::make_unique<MultigridLevel>(Partition(domain), equal, domain.spacing());
 }
 
 // Half the cells; or the same on every rank, where they are few, or on fewer ranks, where half of them are too few for
 // one.
 std::unique_ptr<MultigridLevel> after(const MultigridLevel &fine) {
   std::unique_ptr<MultigridLevel> next = fine.coarser();
-  if (fine.domain().ranks() == 1) return next;
-  if (fine.domain().domain_cell_count() <= gathered_cells) return fine.everywhere();
+  if (fine.partition().ranks() == 1) return next;
+  if (fine.box().domain_cell_count() <= gathered_cells) return fine.everywhere();
   const std::array<bool, 3> thin = fine.thin(*next);
   return thin[0] || thin[1] || thin[2] ? fine.joined(thin) : std::move(next);
 }
 
 bool same_cells(const MultigridLevel &level, const MultigridLevel &next) {
-  return level.domain().domain_cells() == next.domain().domain_cells();
+  return level.box().domain_cells() == next.box().domain_cells();
 }
 
 template <int Dim>
@@ -133,8 +133,8 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
              {pass.rhs.row(row.j, row.k + 1), ConstView(q).row(row.j, row.k + 1), ConstView(out).row(row.j, row.k + 1)})
           prefetch(values, row.i_end);
       if (s == 0 && pass.coarse)
-        prolong_row(*pass.fine, row, pass.coarse->domain().cells()[0], pass.factor[0], pass.rhs,
-                    pass.coarse->solution[0], out);
+        prolong_row(*pass.fine, row, pass.coarse->box().cells()[0], pass.factor[0], pass.rhs, pass.coarse->solution[0],
+                    out);
       else
         kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
       pass.sides->wrap(out.row(row.j, row.k));                                     // long before it is read
@@ -154,7 +154,7 @@ EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, const S
 
 // By cells: the finest level may also be one on other ranks.
 const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level) const {
-  return level.domain().domain_cells() == levels_[0]->domain().domain_cells() ? on_finest : on_coarse;
+  return level.box().domain_cells() == levels_[0]->box().domain_cells() ? on_finest : on_coarse;
 }
 
 std::vector<Multigrid::Level> Multigrid::plan(const Domain &domain) {
@@ -169,8 +169,8 @@ std::string Multigrid::shares(const Domain &domain) {
   double joined = 0, gathered = 0;  // cells of the largest levels that are
   for (std::size_t l = 1; l < levels.size(); ++l) {
     if (!same_cells(*levels[l - 1], *levels[l])) continue;
-    double &cells = levels[l]->domain().ranks() == 1 ? gathered : joined;
-    cells = std::max(cells, levels[l]->domain().domain_cell_count());
+    double &cells = levels[l]->partition().ranks() == 1 ? gathered : joined;
+    cells = std::max(cells, levels[l]->box().domain_cell_count());
   }
   char fewer[80] = "", text[240];
   if (joined > 0) std::snprintf(fewer, sizeof fewer, ", on fewer ranks from %.0f cells on", joined);
@@ -185,23 +185,23 @@ PetscErrorCode Multigrid::create(const Domain &domain) {
   flops_ = 0;
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     MultigridLevel &fine = *levels_[l], &next = *levels_[l + 1];
-    const double owned = fine.domain().cell_count(), dim = fine.domain().dimension();
+    const double owned = fine.box().cell_count(), dim = fine.box().dimension();
     if (same_cells(fine, next)) {
       fine.agglomeration = std::make_unique<Agglomeration>();
-      PetscCall(fine.agglomeration->create(fine.domain(), next.domain()));
+      PetscCall(fine.agglomeration->create(fine.partition(), next.partition()));
     } else {
       for (int d = 0; d < 3; ++d) fine.lines[d] = fine.transfer(next, d);
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
     // Of coarse levels messages cost more than cells that are computed again.
-    const int least = l > 0 && fine.domain().ranks() > 1 ? 2 : 1;
+    const int least = l > 0 && fine.partition().ranks() > 1 ? 2 : 1;
     if (dim == 3)
       fine.depth =
-          StagePass::depth(fine.domain(), Sides(fine.domain()), least, 1 + int(relaxations(fine).after.size()));
-    next.rhs = Field(next.domain(), 1);
-    next.solution = Field(next.domain(), 1);
-    next.scratch = Field(next.domain(), 1);
+          StagePass::depth(fine.box(), fine.partition().split(), least, 1 + int(relaxations(fine).after.size()));
+    next.rhs = Field(next.box(), 1);
+    next.solution = Field(next.box(), 1);
+    next.scratch = Field(next.box(), 1);
   }
   PetscFunctionReturn(0);
 }
@@ -215,7 +215,7 @@ std::size_t Multigrid::bytes() const {
 PetscErrorCode Multigrid::apply(const Field &rhs, Field &solution, Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   PetscCall(cycle(0, rhs, solution, scratch,
-                  levels_[0]->domain().wraps_x() && levels_[0]->domain().dimension() == 3 ? rows_done : RowsDone()));
+                  levels_[0]->box().wraps_x() && levels_[0]->box().dimension() == 3 ? rows_done : RowsDone()));
   PetscCall(levels_[0]->exchange().update_ghosts(solution, 1));
   PetscFunctionReturn(0);
 }
@@ -229,7 +229,7 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
   if (level.single_cell()) {  // without an open side defined up to a constant: 0
-    if (level.has_cells() && level.domain().any_open()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
+    if (level.has_cells() && level.box().any_open()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
     PetscFunctionReturn(0);
   }
   MultigridLevel &next = *levels_[l + 1];
@@ -250,7 +250,7 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution
 PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const Field &rhs, Field &solution,
                                  Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
-  const Sides sides(fine.domain());
+  const Sides sides(fine.box());
   const Relaxations &relax = relaxations(fine);
   std::vector<double> factors{relax.before * fine.step()};
   for (const double after : relax.after) factors.push_back(after * fine.step());
@@ -270,12 +270,12 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
                     rhs[0],
                     {solution[0], scratch[0]},
                     depth,
-                    fine.domain().is_open(0, true) && fine.domain().touches_high(0) ? fine.domain().cells()[0] : -1,
+                    fine.box().is_open(0, true) && fine.box().touches_high(0) ? fine.box().cells()[0] : -1,
                     &rows_done};
-    const StagePass order(fine.domain(), sides, depth + reports, 1, reports ? -1 : 0);
+    const StagePass order(fine.box(), sides, depth + reports, 1, reports ? -1 : 0);
     if (fine.has_cells())
       order.for_tasks([&](const StagePass::Task &task) {
-        (fine.domain().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
+        (fine.box().dimension() == 2 ? stages_2d : stages_3d)(pass, order, task);
       });
     if (depth % 2) solution.swap(scratch);
   }
@@ -285,11 +285,11 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
 void Multigrid::restrict_residual(const MultigridLevel &fine, const Field &rhs, MultigridLevel &coarse) {
   if (!coarse.has_cells()) return;
   const double factor = relaxations(fine).before * fine.step();
-  const int parts = row_parts(fine.domain()), n = coarse.domain().cells()[0];
+  const int parts = row_parts(fine.box()), n = coarse.box().cells()[0];
   in_parallel(parts, parts, [&](int part) {
-    const RowScratch sum(fine.domain(), 1);
-    (fine.domain().dimension() == 2 ? restrict_2d : restrict_3d)(
-        fine, factor, rhs[0], n, row_part(coarse.domain(), part, parts), coarse.rhs[0], sum.row(0));
+    const RowScratch sum(fine.box(), 1);
+    (fine.box().dimension() == 2 ? restrict_2d : restrict_3d)(
+        fine, factor, rhs[0], n, row_part(coarse.box(), part, parts), coarse.rhs[0], sum.row(0));
   });
 }
 

@@ -1,5 +1,4 @@
 #include "pressure/multigrid_level.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,65 +31,32 @@ std::vector<double> centres(const std::vector<double> &widths) {
   return centre;
 }
 
-// A point along one direction: its local index here, the position of its owner among the ranks, and its index there.
-struct Point {
-  int here, place, there;
-};
-
-// The points of this rank along d with all its ghosts, but those behind sides of the domain.
-std::vector<Point> points_along(const Domain &domain, int d) {
-  const int n = domain.domain_cells()[d], begin = domain.layout().begin[d], ghosts = domain.layout().ghosts[d];
-  std::vector<Point> points;
-  for (int i = -ghosts; i < domain.cells()[d] + ghosts; ++i) {
-    if (domain.is_wall(d) && (begin + i < 0 || begin + i > n)) continue;
-    const int image = domain.image(d, begin + i), place = domain.owner_along(d, image);
-    points.push_back({i, place, image - domain.first_cell(d, place)});
-  }
-  return points;
-}
-
-// The ghosts of a level, on which ranks may have no cells or fewer than layers of ghosts, as a DMDA does not allow.
-GhostList ghosts_of(const Domain &domain) {
-  GhostList list;
-  const Int3 &n = domain.cells();
-  if (domain.cell_count() == 0) return list;
-  const std::vector<Point> x = points_along(domain, 0), y = points_along(domain, 1), z = points_along(domain, 2);
-  for (const Point &k : z)
-    for (const Point &j : y)
-      for (const Point &i : x) {
-        const Int3 at{i.here, j.here, k.here};
-        if (at[0] >= 0 && at[0] < n[0] && at[1] >= 0 && at[1] < n[1] && at[2] >= 0 && at[2] < n[2]) continue;
-        const int owner = domain.rank_at({i.place, j.place, k.place});
-        const Layout theirs = domain.layout_of(owner);
-        if (owner == domain.rank() && at == Int3{i.there, j.there, k.there}) continue;  // N of a direction with sides
-        list.ghosts.push_back({at, owner, theirs.offset(i.there, j.there, k.there)});
-        list.field_size[owner] = theirs.size;
-      }
-  return list;
-}
-
 }  // namespace
 
-MultigridLevel::MultigridLevel(Domain &&domain, const Widths &widths, const Real3 &finest_spacing)
-    : domain_(std::move(domain)),
-      exchange_(domain_, [this] { return ghosts_of(domain_); }),
+MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths, const Real3 &finest_spacing)
+    : partition_(partition),
+      exchange_(box(), partition_.comm(),
+                [this](GhostList *list) {
+                  *list = partition_.ghosts();
+                  return PetscErrorCode(0);
+                }),
       widths_(widths),
       finest_spacing_(finest_spacing) {
   double diagonal = 0;
   for (int d = 0; d < 3; ++d) {
     const std::vector<double> &w = widths_[d];
-    const int cells = domain_.domain_cells()[d], begin = domain_.layout().begin[d];
+    const int cells = box().domain_cells()[d], begin = box().layout().begin[d];
     const double h = finest_spacing[d];
-    for (int local = -reach; local < domain_.cells()[d] + reach; ++local) {
+    for (int local = -reach; local < box().cells()[d] + reach; ++local) {
       const int g = image(begin + local, cells), below = image(g - 1, cells), above = image(g + 1, cells);
-      const bool low_wall = domain_.boundary(d) == Boundary::wall && g == 0;
-      const bool high_wall = domain_.boundary(d) == Boundary::wall && g == cells - 1;
+      const bool low_wall = box().boundary(d) == Boundary::wall && g == 0;
+      const bool high_wall = box().boundary(d) == Boundary::wall && g == cells - 1;
       const auto coupling = [&](bool side, bool open, int other) {
         if (side && open) return 2 / (h * h * w[g] * w[g]);  // to the 0 on it
         return cells == 1 || side ? 0 : 2 / (h * h * w[g] * (w[g] + w[other]));
       };
-      low_[d].push_back(coupling(low_wall, domain_.is_open(d, false), below));
-      high_[d].push_back(coupling(high_wall, domain_.is_open(d, true), above));
+      low_[d].push_back(coupling(low_wall, box().is_open(d, false), below));
+      high_[d].push_back(coupling(high_wall, box().is_open(d, true), above));
     }
     if (cells > 1)
       diagonal += 2 / (h * h * w[0] * w[0]);
@@ -103,38 +69,37 @@ MultigridLevel::MultigridLevel(Domain &&domain, const Widths &widths, const Real
 std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
   // Beyond this ratio of spacings the stiffer direction goes first: relaxation smooths little along the other.
   constexpr double about_equal = 1.25;
-  Int3 cells = domain_.domain_cells();
+  Int3 cells = box().domain_cells();
   Widths widths;
   double smallest = HUGE_VAL;
   for (int d = 0; d < 3; ++d)
     if (cells[d] > 1) smallest = std::min(smallest, widths_[d][0] * finest_spacing_[d]);
   for (int d = 0; d < 3; ++d) {
     const bool halve = cells[d] > 1 && widths_[d][0] * finest_spacing_[d] <= about_equal * smallest;
-    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0], domain_.is_open(d, true));
+    if (halve) cells[d] = halved(cells[d], widths_[d].back() < widths_[d][0], box().is_open(d, true));
     widths[d].assign(cells[d], 0.0);
-    for (int i = 0; i < domain_.domain_cells()[d]; ++i)
-      widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
+    for (int i = 0; i < box().domain_cells()[d]; ++i) widths[d][parent_of(i, halve ? 2 : 1, cells[d])] += widths_[d][i];
   }
-  return std::make_unique<MultigridLevel>(domain_.coarse(cells, false), widths, finest_spacing_);
+  return std::make_unique<MultigridLevel>(partition_.coarse(cells), widths, finest_spacing_);
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::everywhere() const {
-  return std::make_unique<MultigridLevel>(domain_.coarse(domain_.domain_cells(), true), widths_, finest_spacing_);
+  return std::make_unique<MultigridLevel>(partition_.everywhere(), widths_, finest_spacing_);
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::joined(const std::array<bool, 3> &along) const {
-  return std::make_unique<MultigridLevel>(domain_.joined(along), widths_, finest_spacing_);
+  return std::make_unique<MultigridLevel>(partition_.joined(along), widths_, finest_spacing_);
 }
 
 std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
   std::array<bool, 3> result{};
+  const Split &split = partition_.split(), &next = coarse.partition_.split();
   for (int d = 0; d < 3; ++d) {
-    int holders = 0, least = coarse.domain_.domain_cells()[d];
-    for (int p = 0; p < domain_.processors(d); ++p) {
-      const auto cells = [&](const Domain &domain) { return domain.first_cell(d, p + 1) - domain.first_cell(d, p); };
-      if (cells(domain_) == 0) continue;
+    int holders = 0, least = coarse.box().domain_cells()[d];
+    for (int p = 0; p < split.parts(d); ++p) {
+      if (split.cells_along(d, p) == 0) continue;
       ++holders;
-      least = std::min(least, cells(coarse.domain_));
+      least = std::min(least, next.cells_along(d, p));
     }
     result[d] = holders > 1 && least < 2;
   }
@@ -142,12 +107,12 @@ std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
 }
 
 LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const {
-  const int fine_cells = domain_.domain_cells()[d], coarse_cells = coarse.domain_.domain_cells()[d];
-  const int fine_begin = domain_.layout().begin[d], coarse_begin = coarse.domain_.layout().begin[d];
-  const int coarse_owned = coarse.domain_.cells()[d];
+  const int fine_cells = box().domain_cells()[d], coarse_cells = coarse.box().domain_cells()[d];
+  const int fine_begin = box().layout().begin[d], coarse_begin = coarse.box().layout().begin[d];
+  const int coarse_owned = coarse.box().cells()[d];
   const std::vector<double> &fine_width = widths_[d], &coarse_width = coarse.widths_[d];
   const std::vector<double> fine_centre = centres(fine_width), coarse_centre = centres(coarse_width);
-  const bool wall = domain_.boundary(d) == Boundary::wall;
+  const bool wall = box().boundary(d) == Boundary::wall;
   LineTransfer line;
   line.stride = coarse_cells < fine_cells ? 2 : 1;
   line.first = line.stride * coarse_begin - fine_begin;
@@ -164,7 +129,7 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     const int way = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + way;
     *share = 0;
     if (way != 0 && wall && (other < 0 || other >= coarse_cells)) {
-      if (!domain_.is_open(d, other >= coarse_cells)) return 0;
+      if (!box().is_open(d, other >= coarse_cells)) return 0;
       *share = 2 * std::abs(distance) / coarse_width[parent];
       return way;
     }
@@ -172,7 +137,7 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
     return way;
   };
-  for (int i = -reach; i < domain_.cells()[d] + reach; ++i) {
+  for (int i = -reach; i < box().cells()[d] + reach; ++i) {
     const int g = image(fine_begin + i, fine_cells), turns = (fine_begin + i - g) / fine_cells;
     double share;
     const int way = neighbour(g, &share);

@@ -2,10 +2,9 @@
 // number of cells was odd), their Laplacian as couplings along lines, and the lines of the transfer to the next level.
 #pragma once
 
-#include "field/ghost_exchange.hpp"
-#include "grid/domain.hpp"
 #include "kernels/poisson.hpp"
 #include "pressure/agglomeration.hpp"
+#include "pressure/partition.hpp"
 
 namespace eulastic {
 
@@ -42,14 +41,16 @@ class MultigridLevel {
 public:
   using Widths = std::array<std::vector<double>, 3>;  ///< of all cells, in units of the finest spacing
 
-  MultigridLevel(Domain &&domain, const Widths &widths, const Real3 &finest_spacing);
+  MultigridLevel(const Partition &partition, const Widths &widths, const Real3 &finest_spacing);
   MultigridLevel(const MultigridLevel &) = delete;
 
-  const Domain &domain() const { return domain_; }
+  const Partition &partition() const { return partition_; }
+  /// The cells of this rank.
+  const Box &box() const { return partition_.box(); }
   GhostExchange &exchange() { return exchange_; }
-  bool single_cell() const { return domain_.domain_cell_count() == 1; }
+  bool single_cell() const { return box().domain_cell_count() == 1; }
   /// Whether this rank holds cells.
-  bool has_cells() const { return domain_.cell_count() > 0; }
+  bool has_cells() const { return box().cell_count() > 0; }
   /// 1 / (sum over directions of -2/h^2): the step of an undamped relaxation.
   double step() const { return step_; }
   kernels::LineCoefficients coefficients(int j, int k) const {
@@ -60,7 +61,7 @@ public:
   std::unique_ptr<MultigridLevel> coarser() const;
   /// The same cells, all of them on every rank.
   std::unique_ptr<MultigridLevel> everywhere() const;
-  /// The same cells on fewer ranks: Domain::joined.
+  /// The same cells on fewer ranks: Partition::joined.
   std::unique_ptr<MultigridLevel> joined(const std::array<bool, 3> &along) const;
   /// In which directions, of those that several ranks share, one of them would have fewer than two cells of `coarse`.
   std::array<bool, 3> thin(const MultigridLevel &coarse) const;
@@ -73,7 +74,7 @@ public:
   std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if that has the same cells on other ranks
 
 private:
-  Domain domain_;
+  Partition partition_;
   GhostExchange exchange_;
   Widths widths_;
   Real3 finest_spacing_;

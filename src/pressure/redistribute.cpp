@@ -1,32 +1,39 @@
 #include "pressure/redistribute.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
 namespace eulastic {
 
-Partition::Partition(const Domain &domain) : cells_(domain.domain_cells()) {
-  for (int d = 0; d < 3; ++d) parts_[d] = domain.processors(d);
-  for (int rank = 0; rank < domain.ranks(); ++rank) {
-    const Layout layout = domain.layout_of(rank);
-    boxes_.push_back({layout.begin, layout.cells});
-    positions_.push_back({rank % parts_[0], rank / parts_[0] % parts_[1], rank / parts_[0] / parts_[1]});
+CellBlocks::CellBlocks(const Split &split) {
+  for (int d = 0; d < 3; ++d) {
+    cells_[d] = split.starts[d].back();
+    parts_[d] = split.parts(d);
+  }
+  for (int rank = 0; rank < parts_[0] * parts_[1] * parts_[2]; ++rank) {
+    const Int3 at = split.position_of(rank);
+    CellBlock block;
+    for (int d = 0; d < 3; ++d) {
+      block.begin[d] = split.starts[d][at[d]];
+      block.cells[d] = split.cells_along(d, at[d]);
+    }
+    positions_.push_back(at);
+    blocks_.push_back(block);
   }
 }
 
-Partition Partition::complete(int direction, int other) const {
-  Partition result = *this;
+CellBlocks CellBlocks::complete(int direction, int other) const {
+  CellBlocks result = *this;
   const std::int64_t parts = parts_[direction];
   for (int rank = 0; rank < ranks(); ++rank) {
-    CellBlock &box = result.boxes_[rank];
+    CellBlock &block = result.blocks_[rank];
     Int3 &position = result.positions_[rank];
-    const std::int64_t part = position[direction], cells = box.cells[other];
+    const std::int64_t part = position[direction], cells = block.cells[other];
     const int low = static_cast<int>(cells * part / parts), high = static_cast<int>(cells * (part + 1) / parts);
-    box.begin[other] += low;
-    box.cells[other] = high - low;
-    box.begin[direction] = 0;
-    box.cells[direction] = cells_[direction];
+    block.begin[other] += low;
+    block.cells[other] = high - low;
+    block.begin[direction] = 0;
+    block.cells[direction] = cells_[direction];
     position[other] = static_cast<int>(position[other] * parts + part);
     position[direction] = 0;
   }
@@ -35,15 +42,15 @@ Partition Partition::complete(int direction, int other) const {
   return result;
 }
 
-PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, const Partition &to) {
+PetscErrorCode Redistribution::create(MPI_Comm comm, const CellBlocks &from, const CellBlocks &to) {
   int me;
   PetscFunctionBeginUser;
   if (from == to) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(comm, &me));
-  const CellBlock &mine = to.box(me);
+  const CellBlock &mine = to.of(me);
   std::vector<PetscSFNode> roots(mine.size());
   for (int rank = 0; rank < from.ranks(); ++rank) {
-    const CellBlock &theirs = from.box(rank);
+    const CellBlock &theirs = from.of(rank);
     Int3 low, high;
     for (int d = 0; d < 3; ++d) {
       low[d] = std::max(mine.begin[d], theirs.begin[d]);
@@ -55,7 +62,7 @@ PetscErrorCode Redistribution::create(MPI_Comm comm, const Partition &from, cons
           roots[mine.offset(i, j, k)] = {rank, static_cast<PetscInt>(theirs.offset(i, j, k))};
   }
   PetscCall(PetscSFCreate(comm, scatter_.put()));
-  PetscCall(PetscSFSetGraph(scatter_.get(), static_cast<PetscInt>(from.box(me).size()),
+  PetscCall(PetscSFSetGraph(scatter_.get(), static_cast<PetscInt>(from.of(me).size()),
                             static_cast<PetscInt>(roots.size()), nullptr, PETSC_OWN_POINTER, roots.data(),
                             PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(scatter_.get()));

@@ -1,9 +1,8 @@
-// Boxes of cells, one per rank, and the moves between two such partitions: from the grid's own to complete lines, or to
-// fewer ranks.
+// Blocks of cells, one per rank, and the moves between two such distributions: to complete lines, or to fewer ranks.
 #pragma once
 
 #include "base/petsc.hpp"
-#include "grid/domain.hpp"
+#include "grid/split.hpp"
 
 namespace eulastic {
 
@@ -16,30 +15,29 @@ struct CellBlock {
   }
 };
 
-/// Who holds which cells. Known to everybody, without communication.
-class Partition {
+/// The blocks of all ranks.
+class CellBlocks {
 public:
-  /// The grid's own.
-  explicit Partition(const Domain &domain);
+  explicit CellBlocks(const Split &split);
   /// Complete lines along `direction`: the ranks that shared one now split their cells along `other` instead. So a
   /// move between the two stays among them.
-  Partition complete(int direction, int other) const;
-  const CellBlock &box(int rank) const { return boxes_[rank]; }
-  int ranks() const { return static_cast<int>(boxes_.size()); }
-  bool operator==(const Partition &other) const { return boxes_ == other.boxes_; }
+  CellBlocks complete(int direction, int other) const;
+  const CellBlock &of(int rank) const { return blocks_[rank]; }
+  int ranks() const { return static_cast<int>(blocks_.size()); }
+  bool operator==(const CellBlocks &other) const { return blocks_ == other.blocks_; }
 
 private:
-  Int3 cells_{}, parts_{};
+  Int3 cells_{}, parts_{};  ///< of the domain; ranks along each direction
   std::vector<Int3> positions_;
-  std::vector<CellBlock> boxes_;
+  std::vector<CellBlock> blocks_;
 };
 
-/// Moves the values of one partition to another and back, one PetscSF for both.
+/// Moves values from one distribution to another and back, one PetscSF for both.
 class Redistribution {
 public:
   /// Collective. Without effect, and free, when both are the same.
-  PetscErrorCode create(MPI_Comm comm, const Partition &from, const Partition &to);
-  /// `values` in `from` become `values` in `to`; `other` is scratch. Both must hold the larger of the two boxes.
+  PetscErrorCode create(MPI_Comm comm, const CellBlocks &from, const CellBlocks &to);
+  /// `values` in `from` become `values` in `to`; `other` is scratch. Both must hold the larger of the two blocks.
   PetscErrorCode forward(std::vector<double> &values, std::vector<double> &other);
   PetscErrorCode backward(std::vector<double> &values, std::vector<double> &other);
 

@@ -24,15 +24,15 @@ PetscErrorCode SmacSolver::set_up() {
   PetscFunctionBeginUser;
   const bool flat = domain_->dimension() == 2;
   // Every move hands the cut to a direction whose lines are done or still to come, so that slabs move only once.
-  const Partition own(*domain_), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
+  const CellBlocks own(domain_->split()), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
   PetscCall(to_x_.create(domain_->comm(), own, x));
   PetscCall(to_z_.create(domain_->comm(), x, z));
   PetscCall(to_y_.create(domain_->comm(), z, y));
   const int me = domain_->rank();
-  box_x_ = x.box(me);
-  box_z_ = z.box(me);
-  box_y_ = y.box(me);
-  const std::ptrdiff_t size = std::max({own.box(me).size(), box_x_.size(), box_z_.size(), box_y_.size()});
+  box_x_ = x.of(me);
+  box_z_ = z.of(me);
+  box_y_ = y.of(me);
+  const std::ptrdiff_t size = std::max({own.of(me).size(), box_x_.size(), box_z_.size(), box_y_.size()});
   values_.resize(size);
   other_.resize(domain_->ranks() > 1 ? size : 0);
 

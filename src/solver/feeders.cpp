@@ -22,14 +22,14 @@ Feeders::~Feeders() {
 PetscErrorCode Feeders::create(const Domain &domain, const BoxSides &sides) {
   PetscFunctionBeginUser;
   domain_ = &domain;
-  const Int3 place = domain.place_of(domain.rank());
+  const Int3 position = domain.split().position_of(domain.rank());
   for (int d = 0; d < domain.dimension(); ++d)
     for (const int high : {0, 1}) {
       if (sides[d][high].feeder == 0) continue;
-      Int3 first = place;
+      Int3 first = position;
       first[d] = 0;
       MPI_Comm line;
-      PetscCallMPI(MPI_Comm_split(domain.comm(), domain.rank_at(first), place[d], &line));
+      PetscCallMPI(MPI_Comm_split(domain.comm(), domain.split().rank_at(first), position[d], &line));
       stretches_.push_back({d, high, sides[d][high].feeder, line});
     }
   PetscFunctionReturn(0);
@@ -83,8 +83,9 @@ PetscErrorCode Feeders::feed_velocity(double time, const Field &velocity, BoxSid
     double sum, cells = 1;
     for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : domain_->domain_cells()[e];
     const Int3 &n = domain_->cells();
+    const Split &split = domain_->split();
     // One rank of the line adds, that which has the faces.
-    const bool adds = domain_->owner_along(d, end) == domain_->place_of(domain_->rank())[d];
+    const bool adds = split.position_along(d, end) == split.position_of(domain_->rank())[d];
     fed->for_each([&](const Int3 &at, double &value) {
       bool own = adds;
       for (int e = 0; e < 3; ++e) own = own && (e == d || (at[e] >= 0 && at[e] < n[e]));

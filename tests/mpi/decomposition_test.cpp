@@ -43,17 +43,20 @@ void check(const GridSpec &spec) {
     EXPECT_EQ(type[d], grid.is_wall(d) ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_PERIODIC);
   }
 
-  const Layout mine = grid.layout_of(grid.rank());
+  const auto layout_of = [&spec](const Domain &domain, int rank) {
+    return domain.split().box_of(rank, spec, domain.spec().ghosts).layout();
+  };
+  const Layout mine = layout_of(grid, grid.rank());
   EXPECT_EQ(mine.begin, own.begin);
   EXPECT_EQ(mine.cells, own.cells);
   EXPECT_EQ(mine.size, own.size);
   EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
 
   const Domain planned = Domain::planned(spec, grid.ranks());
-  EXPECT_EQ(planned.layout_of(grid.rank()).begin, own.begin);
-  EXPECT_EQ(planned.layout_of(grid.rank()).size, own.size);
+  EXPECT_EQ(layout_of(planned, grid.rank()).begin, own.begin);
+  EXPECT_EQ(layout_of(planned, grid.rank()).size, own.size);
 
-  // What layout_of says of another rank is what that rank says of itself.
+  // What the split says of another rank is what that rank says of itself.
   std::vector<int> sizes(grid.ranks());
   const int size = static_cast<int>(own.size);
   MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, run_communicator());
@@ -62,7 +65,7 @@ void check(const GridSpec &spec) {
   std::vector<int> times(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   int wrong_owner = 0;
   for (int rank = 0; rank < grid.ranks(); ++rank) {
-    const Layout layout = grid.layout_of(rank);
+    const Layout layout = layout_of(grid, rank);
     EXPECT_EQ(layout.size, sizes[rank]);
     for (int k = layout.begin[2]; k < layout.begin[2] + layout.cells[2]; ++k)
       for (int j = layout.begin[1]; j < layout.begin[1] + layout.cells[1]; ++j)

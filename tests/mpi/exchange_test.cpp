@@ -57,13 +57,13 @@ void for_each_point(const Layout &own, int fields, const Visit &visit) {
         for (int i = -own.ghosts[0]; i < own.cells[0] + own.ghosts[0]; ++i) visit(f, Int3{i, j, k});
 }
 
-bool is_owned(const Domain &grid, const Int3 &local) {
+bool is_owned(const Box &grid, const Int3 &local) {
   for (int d = 0; d < 3; ++d)
     if (local[d] < 0 || local[d] >= grid.points_end(d, true) || grid.cells()[d] == 0) return false;
   return true;
 }
 
-void prepare(const Domain &grid, Field &block) {
+void prepare(const Box &grid, Field &block) {
   const Layout &own = grid.layout();
   for (std::ptrdiff_t n = 0; n < own.size * block.count(); ++n) block.data()[n] = sentinel(n);
   for_each_point(own, block.count(), [&](int f, const Int3 &p) {
@@ -73,17 +73,17 @@ void prepare(const Domain &grid, Field &block) {
 }
 
 // Whether row (j, k) is a ghost row that an exchange brings, and x whole: it comes with what lies behind its ends.
-bool comes_whole(const Domain &grid, int width, int j, int k) {
+bool comes_whole(const Box &grid, int width, int j, int k) {
   const int row[3] = {0, j, k};
   for (int d = 1; d < 3; ++d) {
     const Box::Range near = grid.points_near(d, true, width);
     if (row[d] < near.begin || row[d] >= near.end) return false;
   }
-  return grid.processors(0) == 1 && !is_owned(grid, {0, j, k});
+  return grid.whole_rows() && !is_owned(grid, {0, j, k});
 }
 
 // Wrong values anywhere in the memory of the block. A rank without cells gets no ghosts.
-int count_errors(const Domain &grid, const Field &block, int width) {
+int count_errors(const Box &grid, const Field &block, int width) {
   const Layout &own = grid.layout();
   std::vector<double> expected(own.size * block.count());
   for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = sentinel(n);
@@ -149,13 +149,13 @@ TEST(GhostExchange, FillsThoseOfCoarseGrids) {
     for (int halvings = 0; halvings <= 3; ++halvings) {
       MultigridLevel::Widths widths;
       for (int d = 0; d < 3; ++d) widths[d].assign(cells[d], 1.0);
-      level = std::make_unique<MultigridLevel>((level ? level->domain() : grid).coarse(cells, false), widths,
+      level = std::make_unique<MultigridLevel>((level ? level->partition() : Partition(grid)).coarse(cells), widths,
                                                grid.spacing());
       for (const int width : {1, 3}) {
-        Field block(level->domain(), 1);
-        prepare(level->domain(), block);
+        Field block(level->box(), 1);
+        prepare(level->box(), block);
         ASSERT_EQ(level->exchange().update_ghosts(block, width), 0);
-        EXPECT_EQ(count_errors(level->domain(), block, width), 0) << halvings << " halvings, width " << width;
+        EXPECT_EQ(count_errors(level->box(), block, width), 0) << halvings << " halvings, width " << width;
       }
       for (int &n : cells) n = (n + 1) / 2;
     }

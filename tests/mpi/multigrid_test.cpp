@@ -22,7 +22,7 @@ struct Cycle : PoissonScene {
     EXPECT_EQ(exchange->update_ghosts(divergence, Multigrid::halo), 0);
     EXPECT_EQ(multigrid.apply(divergence, solution, scratch), 0);
   }
-  int stages_of_a_pass() const { return StagePass::depth(grid, Sides(grid), 1, 3); }
+  int stages_of_a_pass() const { return StagePass::depth(grid, grid.split(), 1, 3); }
 };
 
 // Cells, and ghosts within the domain, that differ in any bit from those of `one` rank.
@@ -91,8 +91,8 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         bool joined = false;
         const auto levels = Multigrid::plan(many.grid);
         for (std::size_t l = 1; l < levels.size(); ++l)
-          joined |= levels[l]->domain().domain_cells() == levels[l - 1]->domain().domain_cells() &&
-                    levels[l]->domain().ranks() > 1;
+          joined |= levels[l]->box().domain_cells() == levels[l - 1]->box().domain_cells() &&
+                    levels[l]->partition().ranks() > 1;
         EXPECT_EQ(joined, ranks > 1);
       }
     }

@@ -10,7 +10,7 @@ inline GridSpec lopsided(GridSpec spec) {
   const Int3 &parts = spec.processors;
   const Domain even = Domain::planned(spec, parts[0] * parts[1] * parts[2]);
   for (int d = 0; d < 3; ++d) {
-    for (int p = 0; p < parts[d]; ++p) spec.starts[d].push_back(d == 0 ? even.first_cell(0, p) : 3 * p);
+    for (int p = 0; p < parts[d]; ++p) spec.starts[d].push_back(d == 0 ? even.split().starts[0][p] : 3 * p);
     spec.starts[d].push_back(spec.cells[d]);
   }
   return spec;

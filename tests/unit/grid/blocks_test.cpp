@@ -1,6 +1,7 @@
 // Stages that share a pass: which rows they do, and that none reads or overwrites what is not there yet or still
 // needed.
 #include "grid/blocks.hpp"
+#include "grid/domain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -97,24 +97,6 @@ TEST(GridDecomposition, SaysWhyNot) {
       "a product of 3, and at least 3 cells per rank in every direction");
 }
 
-// Every second rank stays, with the cells of two, the last with those of three.
-TEST(GridDecomposition, JoinsRanks) {
-  const Domain once = Domain::planned(box({8, 16, 8}, {1, 5, 2}), 10).joined({false, true, false});
-  const Domain twice = once.joined({false, true, true});
-  const auto firsts = [](const Domain &grid, int d) {
-    std::vector<int> cells;
-    for (int p = 0; p <= grid.processors(d); ++p) cells.push_back(grid.first_cell(d, p));
-    return cells;
-  };
-  EXPECT_EQ(firsts(once, 1), (std::vector<int>{0, 6, 6, 16, 16, 16}));
-  EXPECT_EQ(firsts(once, 2), (std::vector<int>{0, 4, 8}));
-  EXPECT_EQ(firsts(twice, 1), (std::vector<int>{0, 16, 16, 16, 16, 16}));
-  EXPECT_EQ(firsts(twice, 2), (std::vector<int>{0, 8, 8}));
-  EXPECT_EQ(once.owner(0, 5, 4), 5);
-  EXPECT_EQ(once.owner(0, 6, 0), 2);
-  EXPECT_EQ(twice.owner(7, 15, 7), 0);
-}
-
 TEST(GridGeometry, SpacingVolumeAndWalls) {
   GridSpec spec = box({8, 4, 5});
   spec.length = {2, 3, 10};

@@ -122,13 +122,13 @@ TEST(Multigrid, TransfersAreConservativeAndLinear) {
     Domain grid;
     ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({n, n, 1}, {1, 1, 1}, true, true, false)), 0);
     std::vector<double> ones(n, 1.0);
-    auto fine = std::make_unique<MultigridLevel>(grid.coarse(grid.domain_cells(), false),
-                                                 MultigridLevel::Widths{ones, ones, {1.0}}, grid.spacing());
+    auto fine =
+        std::make_unique<MultigridLevel>(Partition(grid), MultigridLevel::Widths{ones, ones, {1.0}}, grid.spacing());
     std::vector<double> width(ones);
     while (!fine->single_cell()) {
       auto coarse = fine->coarser();
       const LineTransfer line = fine->transfer(*coarse, 0);
-      const int cells = coarse->domain().domain_cells()[0];
+      const int cells = coarse->box().domain_cells()[0];
       std::vector<double> coarse_width(cells), coarse_centre(cells);
       for (std::size_t i = 0; i < width.size(); ++i) coarse_width[line.parent[i]] += width[i];
       double edge = 0;
@@ -222,29 +222,31 @@ TEST(Multigrid, LevelsOnManyRanks) {
                                      {{64, 64, 64}, 4}}) {
     const Domain grid = Domain::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
     const auto levels = Multigrid::plan(grid);
-    const auto most = [](const Domain &shared) {
-      double of_a_rank = 0;
-      for (int rank = 0; rank < shared.ranks(); ++rank) {
-        const Int3 n = shared.layout_of(rank).cells;
-        of_a_rank = std::max(of_a_rank, double(n[0]) * n[1] * n[2]);
+    const auto most = [](const Split &split) {  // cells of a rank
+      double product = 1;
+      for (int d = 0; d < 3; ++d) {
+        int along = 0;
+        for (int p = 0; p < split.parts(d); ++p) along = std::max(along, split.cells_along(d, p));
+        product *= along;
       }
-      return of_a_rank;
+      return product;
     };
     EXPECT_TRUE(levels.back()->single_cell());
     for (std::size_t l = 1; l < levels.size(); ++l) {
-      const Domain &fine = levels[l - 1]->domain(), &next = levels[l]->domain();
-      if (next.ranks() == 1) {
+      const Box &fine = levels[l - 1]->box(), &next = levels[l]->box();
+      const Split &before = levels[l - 1]->partition().split(), &after = levels[l]->partition().split();
+      if (levels[l]->partition().ranks() == 1) {
         EXPECT_LE(fine.domain_cell_count(), 4096);
         break;
       }
-      EXPECT_EQ(next.ranks(), ranks);
-      EXPECT_LE(most(next), std::max(most(grid), 4096.0)) << next.domain_cells()[0] << " x " << next.domain_cells()[1];
+      EXPECT_EQ(levels[l]->partition().ranks(), ranks);
+      EXPECT_LE(most(after), std::max(most(grid.split()), 4096.0))
+          << next.domain_cells()[0] << " x " << next.domain_cells()[1];
       joined += next.domain_cells() == fine.domain_cells();
       for (int d = 0; d < 3; ++d)
         for (int p = 0; next.domain_cells() != fine.domain_cells() && p < grid.processors(d); ++p) {
-          const int before = fine.first_cell(d, p + 1) - fine.first_cell(d, p);
-          const int after = next.first_cell(d, p + 1) - next.first_cell(d, p);
-          EXPECT_TRUE(before == 0 ? after == 0 : after >= 2 || before == fine.domain_cells()[d]);
+          const int had = before.cells_along(d, p), has = after.cells_along(d, p);
+          EXPECT_TRUE(had == 0 ? has == 0 : has >= 2 || had == fine.domain_cells()[d]);
         }
     }
   }

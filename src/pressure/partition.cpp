@@ -1,0 +1,94 @@
+#include "pressure/partition.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+// A point along one direction: its local index, the position of its owner among the ranks, and its local index there.
+struct Point {
+  int here, position, there;
+};
+
+// The points of a box along d with all its ghosts, but without those behind sides of the domain.
+std::vector<Point> points_along(const Box &box, const Split &split, int d) {
+  const int N = box.domain_cells()[d], begin = box.layout().begin[d], ghosts = box.layout().ghosts[d];
+  std::vector<Point> points;
+  for (int i = -ghosts; i < box.cells()[d] + ghosts; ++i) {
+    if (box.is_wall(d) && (begin + i < 0 || begin + i > N)) continue;
+    const int image = box.image(d, begin + i), position = split.position_along(d, image);
+    points.push_back({i, position, image - split.starts[d][position]});
+  }
+  return points;
+}
+
+}  // namespace
+
+Partition::Partition(const Domain &domain)
+    : comm_(domain.comm()), rank_(domain.rank()), ranks_(domain.ranks()), split_(domain.split()), box_(domain) {}
+
+void Partition::set_box(const Int3 &cells) {
+  DomainShape shape = box_.domain_shape();
+  shape.cells = cells;
+  box_ = split_.box_of(rank_, shape, box_.layout().ghosts[0]);
+}
+
+Partition Partition::coarse(const Int3 &cells) const {
+  Partition result = *this;
+  for (int d = 0; d < 3; ++d) {
+    if (cells[d] == box_.domain_cells()[d]) continue;
+    std::vector<int> &starts = result.split_.starts[d];
+    for (int &start : starts) start = std::min(cells[d], (start + 1) / 2);
+    starts.back() = cells[d];
+  }
+  result.set_box(cells);
+  return result;
+}
+
+Partition Partition::joined(const std::array<bool, 3> &along) const {
+  Partition result = *this;
+  for (int d = 0; d < 3; ++d) {
+    if (!along[d]) continue;
+    std::vector<int> &starts = result.split_.starts[d], holders;
+    for (int p = 0; p < split_.parts(d); ++p)
+      if (split_.cells_along(d, p) > 0) holders.push_back(p);
+    std::vector<bool> stays(split_.parts(d), false);
+    for (std::size_t m = 0; m + 1 < holders.size(); m += 2) stays[holders[m]] = true;
+    for (int p = split_.parts(d) - 1; p >= 0; --p)
+      if (!stays[p]) starts[p] = starts[p + 1];
+  }
+  result.set_box(box_.domain_cells());
+  return result;
+}
+
+Partition Partition::everywhere() const {
+  Partition result = *this;
+  result.comm_ = PETSC_COMM_SELF;
+  result.rank_ = 0;
+  result.ranks_ = 1;
+  for (int d = 0; d < 3; ++d) result.split_.starts[d] = {0, box_.domain_cells()[d]};
+  result.set_box(box_.domain_cells());
+  return result;
+}
+
+GhostList Partition::ghosts() const {
+  GhostList list;
+  if (box_.cell_count() == 0) return list;
+  const Int3 &n = box_.cells();
+  const std::vector<Point> x = points_along(box_, split_, 0), y = points_along(box_, split_, 1),
+                           z = points_along(box_, split_, 2);
+  for (const Point &k : z)
+    for (const Point &j : y)
+      for (const Point &i : x) {
+        const Int3 at{i.here, j.here, k.here};
+        if (at[0] >= 0 && at[0] < n[0] && at[1] >= 0 && at[1] < n[1] && at[2] >= 0 && at[2] < n[2]) continue;
+        const int owner = split_.rank_at({i.position, j.position, k.position});
+        const Box box = split_.box_of(owner, box_.domain_shape(), box_.layout().ghosts[0]);
+        if (owner == rank_ && at == Int3{i.there, j.there, k.there}) continue;  // N of a direction with sides
+        list.ghosts.push_back({at, owner, box.layout().offset(i.there, j.there, k.there)});
+        list.field_size[owner] = box.layout().size;
+      }
+  return list;
+}
+
+}  // namespace eulastic
