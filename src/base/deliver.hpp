@@ -1,7 +1,7 @@
 // Records go to the ranks that they are for.
 #pragma once
 
-#include "base/petsc.hpp"
+#include "base/mpi_type.hpp"
 
 #include <vector>
 
@@ -14,7 +14,7 @@ PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector
   SfHandle sf;
   const PetscInt *arriving;
   std::vector<PetscSFNode> to;
-  MPI_Datatype one;
+  MpiType one;
   PetscFunctionBeginUser;
   for (const int rank : ranks) to.push_back({rank, 0});
   PetscCall(PetscSFCreate(comm, sf.put()));
@@ -23,11 +23,9 @@ PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector
   PetscCall(PetscSFComputeDegreeBegin(sf.get(), &arriving));
   PetscCall(PetscSFComputeDegreeEnd(sf.get(), &arriving));
   std::vector<T> arrived(static_cast<std::size_t>(arriving[0]));
-  PetscCallMPI(MPI_Type_contiguous(sizeof(T), MPI_BYTE, &one));
-  PetscCallMPI(MPI_Type_commit(&one));
-  PetscCall(PetscSFGatherBegin(sf.get(), one, records->data(), arrived.data()));
-  PetscCall(PetscSFGatherEnd(sf.get(), one, records->data(), arrived.data()));
-  PetscCallMPI(MPI_Type_free(&one));
+  PetscCall(one.create(sizeof(T), MPI_BYTE));
+  PetscCall(PetscSFGatherBegin(sf.get(), one.get(), records->data(), arrived.data()));
+  PetscCall(PetscSFGatherEnd(sf.get(), one.get(), records->data(), arrived.data()));
   records->swap(arrived);
   PetscFunctionReturn(0);
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/body_range.hpp"
-#include "base/petsc.hpp"
+#include "base/mpi_type.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -50,12 +50,11 @@ private:
 template <class T>
 PetscErrorCode gather_bodies(MPI_Comm comm, int bodies, int limit, const std::vector<T> &owned, std::vector<T> *all) {
   int rank, ranks;
-  MPI_Datatype one;
+  MpiType one;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  PetscCallMPI(MPI_Type_contiguous(sizeof(T), MPI_BYTE, &one));
-  PetscCallMPI(MPI_Type_commit(&one));
+  PetscCall(one.create(sizeof(T), MPI_BYTE));
   const int first = BodyRange::of(bodies, rank, ranks).begin, count = std::min(limit, bodies);
   if (rank == 0) all->resize(static_cast<std::size_t>(count));
   for (int begin = 0; begin < count; begin += BodyRange::piece) {
@@ -66,10 +65,9 @@ PetscErrorCode gather_bodies(MPI_Comm comm, int bodies, int limit, const std::ve
       counts.push_back(share.size());
       begins.push_back(share.begin);
     }
-    PetscCallMPI(MPI_Gatherv(owned.data() + (begins[rank] - first), counts[rank], one, all->data(), counts.data(),
-                             begins.data(), one, 0, comm));
+    PetscCallMPI(MPI_Gatherv(owned.data() + (begins[rank] - first), counts[rank], one.get(), all->data(), counts.data(),
+                             begins.data(), one.get(), 0, comm));
   }
-  PetscCallMPI(MPI_Type_free(&one));
   PetscFunctionReturn(0);
 }
 

@@ -1,13 +1,36 @@
 #include "field/ghost_exchange.hpp"
 
 #include "base/events.hpp"
-#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
 
 namespace eulastic {
 namespace {
+
+// Where a point lies in the memory of its owner.
+struct Source {
+  PetscInt rank = -1;  // none: behind a side of the domain
+  PetscInt offset = 0;
+  PetscInt size = 0, sy = 0, sz = 0;  // of the layout there
+};
+
+PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *copies) {
+  MpiType type;
+  PetscFunctionBeginUser;
+  PetscCall(type.create(sizeof(Source) / sizeof(PetscInt), MPIU_INT));
+  PetscCall(PetscSFBcastBegin(scatter, type.get(), owned, copies, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(scatter, type.get(), owned, copies, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+// visit(point) for all points begin <= point < end, x fastest.
+template <class Visit>
+void for_block(const Int3 &begin, const Int3 &end, const Visit &visit) {
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i) visit(Int3{i, j, k});
+}
 
 // Offset in a field of the first point in memory, where its first row begins.
 std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
@@ -17,177 +40,66 @@ bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->
 
 }  // namespace
 
-PetscErrorCode GhostExchange::Unit::make(std::ptrdiff_t values) {
+// The scatter of the DMDA from owned to local points brings where the owned ones lie in memory. Where a rank is
+// narrower than the layers of ghosts, the stencil of the DMDA is, too; then the owner of the outermost ghost that is
+// known says where those beyond it lie.
+PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
+  PetscInt first[3], points[3], near_first[3], near_points[3], width;
+  VecScatter scatter;
   PetscFunctionBeginUser;
-  if (type != MPI_DATATYPE_NULL) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(values), MPIU_REAL, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscFunctionReturn(0);
-}
-
-namespace {
-
-// The point that a local point is, or copies.
-struct Source {
-  PetscInt rank = -1;   // none: behind a side of the domain
-  PetscInt offset = 0;  // in the memory there
-};
-
-// Memory of a field on another rank.
-struct Shape {
-  PetscInt size, sy, sz;
-};
-
-class SourceFinder {
-public:
-  explicit SourceFinder(const Domain &domain) : domain_(domain), sources_(domain.layout().size) {}
-  PetscErrorCode find() {
-    PetscFunctionBeginUser;
-    PetscCall(find_near());
-    PetscCall(find_shapes());
-    if (width_ < domain_.layout().ghosts[0]) {
-      PetscCall(find_far());
-      PetscCall(find_shapes());
-    }
-    PetscFunctionReturn(0);
+  PetscCall(DMDAGetCorners(domain.dm(), &first[0], &first[1], &first[2], &points[0], &points[1], &points[2]));
+  PetscCall(DMDAGetGhostCorners(domain.dm(), &near_first[0], &near_first[1], &near_first[2], &near_points[0],
+                                &near_points[1], &near_points[2]));
+  PetscCall(DMDAGetStencilWidth(domain.dm(), &width));
+  PetscCall(DMDAGetScatter(domain.dm(), &scatter, nullptr));
+  const Layout &own = domain.layout();
+  const auto offset = [&own](const Int3 &p) { return static_cast<PetscInt>(own.offset(p[0], p[1], p[2])); };
+  Int3 n, near_begin, near_end, begin, end;  // of owned points, of those of the DMDA, and of all in memory
+  for (int d = 0; d < 3; ++d) {
+    n[d] = static_cast<int>(points[d]);
+    near_begin[d] = static_cast<int>(near_first[d] - first[d]);
+    near_end[d] = near_begin[d] + static_cast<int>(near_points[d]);
+    begin[d] = -own.ghosts[d];
+    end[d] = n[d] + own.ghosts[d];
   }
-  const Source &at(const Int3 &point) const { return sources_[offset(point)]; }
-  /// Of the ranks that sources lie on.
-  const std::map<PetscInt, Shape> &shapes() const { return shapes_; }
-  bool is_owned(const Int3 &point) const {
-    for (int d = 0; d < 3; ++d)
-      if (point[d] < 0 || point[d] >= points_[d]) return false;
-    return true;
-  }
-  /// visit(point) for all points in memory: those of the box, and all ghosts.
-  template <class Visit>
-  void for_all(const Visit &visit) const {
-    const Int3 &g = domain_.layout().ghosts;
-    for (int k = -g[2]; k < points_[2] + g[2]; ++k)
-      for (int j = -g[1]; j < points_[1] + g[1]; ++j)
-        for (int i = -g[0]; i < points_[0] + g[0]; ++i) visit({i, j, k});
-  }
-
-private:
-  PetscInt offset(const Int3 &p) const { return static_cast<PetscInt>(domain_.layout().offset(p[0], p[1], p[2])); }
-
-  // Within the stencil of the DMDA: its scatter from owned to local points brings where the owned ones lie in memory.
-  PetscErrorCode find_near() {
-    PetscInt first[3], count[3], ghost[3], width[3], roots, leaves;
-    VecScatter scatter;
-    const PetscInt *places;
-    const PetscSFNode *nodes;
-    PetscFunctionBeginUser;
-    PetscCall(DMDAGetCorners(domain_.dm(), &first[0], &first[1], &first[2], &count[0], &count[1], &count[2]));
-    PetscCall(DMDAGetGhostCorners(domain_.dm(), &ghost[0], &ghost[1], &ghost[2], &width[0], &width[1], &width[2]));
-    PetscCall(DMDAGetStencilWidth(domain_.dm(), &width_));
-    PetscCall(DMDAGetScatter(domain_.dm(), &scatter, nullptr));
-    PetscCall(PetscSFGetGraph(scatter, &roots, &leaves, &places, &nodes));
-    for (int d = 0; d < 3; ++d) points_[d] = static_cast<int>(count[d]);
-    std::vector<PetscInt> mine, found(static_cast<std::size_t>(width[0]) * width[1] * width[2]);
-    mine.reserve(roots);
-    for (int k = 0; k < points_[2]; ++k)
-      for (int j = 0; j < points_[1]; ++j)
-        for (int i = 0; i < points_[0]; ++i) mine.push_back(offset({i, j, k}));
-    PetscCall(PetscSFBcastBegin(scatter, MPIU_INT, mine.data(), found.data(), MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(scatter, MPIU_INT, mine.data(), found.data(), MPI_REPLACE));
-    for (PetscInt l = 0; l < leaves; ++l) {
-      const PetscInt place = places ? places[l] : l, row = place / width[0];
-      const PetscInt local[3] = {place % width[0], row % width[1], row / width[1]};
-      Int3 point;
-      for (int d = 0; d < 3; ++d) point[d] = static_cast<int>(ghost[d] + local[d] - first[d]);
-      sources_[offset(point)] = {nodes[l].rank, found[place]};
-    }
-    PetscFunctionReturn(0);
-  }
-
-  // Further out, where a rank is narrower than the layers of ghosts: the owner of the outermost point that is known
-  // knows those beyond it.
-  PetscErrorCode find_far() {
-    std::vector<PetscInt> leaves;
-    std::vector<PetscSFNode> roots;
-    PetscFunctionBeginUser;
-    for_all([&](const Int3 &point) {
-      Int3 near, beyond;
-      for (int d = 0; d < 3; ++d) {
-        near[d] = std::clamp<int>(point[d], -width_, points_[d] + width_ - 1);
-        beyond[d] = point[d] - near[d];
-      }
-      const Source &source = at(near);
-      if (beyond == Int3{} || source.rank < 0) return;
-      const Shape &shape = shapes_.at(source.rank);
-      leaves.push_back(offset(point));
-      roots.push_back({source.rank, source.offset + beyond[0] + beyond[1] * shape.sy + beyond[2] * shape.sz});
-    });
-    PetscCall(
-        broadcast(MPIU_2INT, static_cast<PetscInt>(sources_.size()), leaves, roots, sources_.data(), sources_.data()));
-    PetscFunctionReturn(0);
-  }
-
-  PetscErrorCode find_shapes() {
-    const Layout &own = domain_.layout();
-    const Shape mine{static_cast<PetscInt>(own.size), static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)};
-    std::vector<PetscInt> leaves;
-    std::vector<PetscSFNode> roots;
-    MPI_Datatype type;
-    PetscFunctionBeginUser;
-    for (const Source &source : sources_)
-      if (source.rank >= 0) shapes_[source.rank] = {};
-    for (const auto &[rank, shape] : shapes_) {
-      leaves.push_back(static_cast<PetscInt>(leaves.size()));
-      roots.push_back({rank, 0});
-    }
-    std::vector<Shape> found(leaves.size());
-    PetscCallMPI(MPI_Type_contiguous(sizeof(Shape) / sizeof(PetscInt), MPIU_INT, &type));
-    PetscCallMPI(MPI_Type_commit(&type));
-    PetscCall(broadcast(type, 1, leaves, roots, &mine, found.data()));
-    PetscCallMPI(MPI_Type_free(&type));
-    std::size_t n = 0;
-    for (auto &[rank, shape] : shapes_) shape = found[n++];
-    PetscFunctionReturn(0);
-  }
-
-  PetscErrorCode broadcast(MPI_Datatype type, PetscInt count, std::vector<PetscInt> leaves,
-                           std::vector<PetscSFNode> roots, const void *from, void *to) const {
-    SfHandle sf;
-    PetscFunctionBeginUser;
-    PetscCall(PetscSFCreate(domain_.comm(), sf.put()));
-    PetscCall(PetscSFSetGraph(sf.get(), count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
-                              roots.data(), PETSC_COPY_VALUES));
-    PetscCall(PetscSFBcastBegin(sf.get(), type, from, to, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf.get(), type, from, to, MPI_REPLACE));
-    PetscFunctionReturn(0);
-  }
-
-  const Domain &domain_;
-  std::vector<Source> sources_;  // of all points in memory
-  std::map<PetscInt, Shape> shapes_;
-  Int3 points_{};       // owned
-  PetscInt width_ = 0;  // of the DMDA's stencil
-};
-
-}  // namespace
-
-PetscErrorCode GhostList::read(const Domain &domain) {
-  SourceFinder finder(domain);
-  PetscFunctionBeginUser;
-  PetscCall(finder.find());
-  finder.for_all([&](const Int3 &point) {
-    const Source &source = finder.at(point);
-    if (finder.is_owned(point) || source.rank < 0) return;
-    ghosts.push_back({point, static_cast<int>(source.rank), source.offset});
+  std::vector<Source> sources(own.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
+  for_block({}, n, [&](const Int3 &p) {
+    owned.push_back({static_cast<PetscInt>(domain.rank()), offset(p), static_cast<PetscInt>(own.size),
+                     static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)});
   });
-  for (const auto &[rank, shape] : finder.shapes()) field_size[static_cast<int>(rank)] = shape.size;
+  PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
+  auto next = near.begin();
+  for_block(near_begin, near_end, [&](const Int3 &p) { sources[offset(p)] = *next++; });
+
+  std::vector<PetscInt> leaves;
+  std::vector<PetscSFNode> roots;
+  for_block(begin, end, [&](const Int3 &p) {
+    Int3 known;
+    for (int d = 0; d < 3; ++d) known[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
+    const Source &source = sources[offset(known)];
+    if (known == p || source.rank < 0) return;
+    leaves.push_back(offset(p));
+    roots.push_back({source.rank, source.offset + (p[0] - known[0]) + (p[1] - known[1]) * source.sy +
+                                      (p[2] - known[2]) * source.sz});
+  });
+  SfHandle beyond;
+  PetscCall(PetscSFCreate(domain.comm(), beyond.put()));
+  PetscCall(PetscSFSetGraph(beyond.get(), static_cast<PetscInt>(own.size), static_cast<PetscInt>(leaves.size()),
+                            leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
+  PetscCall(broadcast_sources(beyond.get(), sources.data(), sources.data()));
+
+  for_block(begin, end, [&](const Int3 &p) {
+    const Source &source = sources[offset(p)];
+    const bool is_owned = p[0] >= 0 && p[0] < n[0] && p[1] >= 0 && p[1] < n[1] && p[2] >= 0 && p[2] < n[2];
+    if (!is_owned && source.rank >= 0) ghosts->push_back({p, source.rank, source.offset, source.size});
+  });
   PetscFunctionReturn(0);
 }
 
 // Leaves and roots are the values of all components of a field, or whole rows where x is not split.
 PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
-  if (!list_) {
-    list_ = std::make_unique<GhostList>();
-    PetscCall(find_(list_.get()));
-  }
+  if (!ghosts_) PetscCall(find_(&ghosts_.emplace()));
   const Layout &own = box_->layout();
   const bool whole_rows = box_->whole_rows();
   const std::ptrdiff_t unit = whole_rows ? own.sy : 1;
@@ -204,10 +116,10 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
     return static_cast<PetscInt>((f * field_size + offset - first_offset(own)) / unit);
   };
   for (int f = 0; f < fields; ++f)
-    for (const GhostList::Ghost &ghost : list_->ghosts)
+    for (const Ghost &ghost : *ghosts_)
       if (wanted(ghost.at)) {
         leaves.push_back(unit_of(own.size, f, own.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
-        roots.push_back({ghost.owner, unit_of(list_->field_size.at(ghost.owner), f, ghost.there)});
+        roots.push_back({ghost.owner, unit_of(ghost.size, f, ghost.offset)});
       }
   PetscCall(PetscSFCreate(comm_, sf));
   PetscCall(PetscSFSetFromOptions(*sf));
@@ -216,7 +128,7 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
   PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
                             roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
-  PetscCall(unit_.make(unit));
+  if (!unit_) PetscCall(unit_.create(unit, MPIU_REAL));
   PetscFunctionReturn(0);
 }
 
@@ -227,7 +139,7 @@ PetscErrorCode GhostExchange::broadcast(const WantedGhosts &wanted,
   SfHandle &scatter = scatters_[{wanted.width, field.count()}];
   if (!scatter) PetscCall(build_scatter(wanted.width, field.count(), scatter.put()));
   double *first = field.data() + first_offset(field.layout());
-  PetscCall(bcast(scatter.get(), unit_.type, first, first, MPI_REPLACE));
+  PetscCall(bcast(scatter.get(), unit_.get(), first, first, MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 

@@ -5,14 +5,14 @@
 // rows, and the ghosts at their ends are the other end of the same row.
 #pragma once
 
-#include "base/petsc.hpp"
+#include "base/mpi_type.hpp"
 #include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <functional>
 #include <map>
-#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,26 +28,22 @@ struct WantedGhosts {
   bool row_ends = true;
 };
 
-/// All ghosts of this rank that copy a point, so those that are not behind sides of the domain.
-struct GhostList {
-  struct Ghost {
-    Int3 at;               ///< local indices
-    int owner;             ///< rank of the point that it copies
-    std::ptrdiff_t there;  ///< offset of that point in a field of its owner
-  };
-  std::vector<Ghost> ghosts;
-  std::map<int, std::ptrdiff_t> field_size;  ///< doubles per field of each owner
-
-  /// Reads them from the scatter of the domain's DMDA. Collective.
-  PetscErrorCode read(const Domain &domain);
+/// A ghost of this rank that copies a point, so that is not behind a side of the domain.
+struct Ghost {
+  Int3 at;                ///< local indices
+  PetscInt owner;         ///< rank of the point that it copies
+  PetscInt offset, size;  ///< of that point in a field of its owner; doubles per component there
 };
+/// All of them, as the scatter of the domain's DMDA says. Collective.
+PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts);
 
 class GhostExchange {
 public:
   explicit GhostExchange(const Domain &domain)
-      : GhostExchange(domain, domain.comm(), [&domain](GhostList *list) { return list->read(domain); }) {}
-  /// For boxes on the ranks of `comm`; `find` lists the ghosts of this rank and is called when they are first needed.
-  GhostExchange(const Box &box, MPI_Comm comm, std::function<PetscErrorCode(GhostList *)> find)
+      : GhostExchange(domain, domain.comm(),
+                      [&domain](std::vector<Ghost> *ghosts) { return find_ghosts(domain, ghosts); }) {}
+  /// For boxes on the ranks of `comm`; `find` lists the ghosts of this rank when they are first needed.
+  GhostExchange(const Box &box, MPI_Comm comm, std::function<PetscErrorCode(std::vector<Ghost> *)> find)
       : box_(&box), comm_(comm), find_(std::move(find)) {}
 
   /// Afterwards every ghost within `width` layers that is not behind a wall is right, on ranks that have cells. In
@@ -61,17 +57,6 @@ public:
   PetscErrorCode end_update(const WantedGhosts &wanted);
 
 private:
-  /// What roots and leaves are: a row, its ghosts and padding included, or a value.
-  struct Unit {
-    MPI_Datatype type = MPI_DATATYPE_NULL;
-    Unit() = default;
-    PetscErrorCode make(std::ptrdiff_t values);
-    Unit(const Unit &) = delete;
-    Unit &operator=(const Unit &) = delete;
-    ~Unit() {
-      if (type != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type);
-    }
-  };
   PetscErrorCode build_scatter(int width, int fields, PetscSF *sf);
   PetscErrorCode broadcast(const WantedGhosts &wanted,
                            PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
@@ -79,9 +64,9 @@ private:
 
   const Box *box_;
   MPI_Comm comm_;
-  std::function<PetscErrorCode(GhostList *)> find_;
-  std::unique_ptr<GhostList> list_;  ///< null until it is needed
-  Unit unit_;
+  std::function<PetscErrorCode(std::vector<Ghost> *)> find_;
+  std::optional<std::vector<Ghost>> ghosts_;
+  MpiType unit_;  ///< of roots and leaves: a row, its ghosts and padding included, or a value
   std::map<std::pair<int, int>, SfHandle> scatters_;  ///< by width and number of fields
 };
 

@@ -2,6 +2,7 @@
 
 #include "base/body_range.hpp"
 #include "base/events.hpp"
+#include "base/mpi_type.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 #include "io/growing_datasets.hpp"
@@ -166,12 +167,10 @@ PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *valu
     begins[r + 1] = begins[r] + counts[r];
   }
   if (rank_ == 0) values->resize(begins[ranks_] * rows * width_);
-  MPI_Datatype body;
-  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(rows) * width_, MPI_DOUBLE, &body));
-  PetscCallMPI(MPI_Type_commit(&body));
-  PetscCallMPI(
-      MPI_Gatherv(sent.data(), mine.size(), body, values->data(), counts.data(), begins.data(), body, 0, comm_));
-  PetscCallMPI(MPI_Type_free(&body));
+  MpiType body;
+  PetscCall(body.create(rows * width_, MPI_DOUBLE));
+  PetscCallMPI(MPI_Gatherv(sent.data(), mine.size(), body.get(), values->data(), counts.data(), begins.data(),
+                           body.get(), 0, comm_));
   PetscFunctionReturn(0);
 }
 

@@ -36,8 +36,8 @@ std::vector<double> centres(const std::vector<double> &widths) {
 MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths, const Real3 &finest_spacing)
     : partition_(partition),
       exchange_(box(), partition_.comm(),
-                [this](GhostList *list) {
-                  *list = partition_.ghosts();
+                [this](std::vector<Ghost> *ghosts) {
+                  *ghosts = partition_.ghosts();
                   return PetscErrorCode(0);
                 }),
       widths_(widths),

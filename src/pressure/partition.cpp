@@ -71,9 +71,9 @@ Partition Partition::everywhere() const {
   return result;
 }
 
-GhostList Partition::ghosts() const {
-  GhostList list;
-  if (box_.cell_count() == 0) return list;
+std::vector<Ghost> Partition::ghosts() const {
+  std::vector<Ghost> ghosts;
+  if (box_.cell_count() == 0) return ghosts;
   const Int3 &n = box_.cells();
   const std::vector<Point> x = points_along(box_, split_, 0), y = points_along(box_, split_, 1),
                            z = points_along(box_, split_, 2);
@@ -85,10 +85,11 @@ GhostList Partition::ghosts() const {
         const int owner = split_.rank_at({i.position, j.position, k.position});
         const Box box = split_.box_of(owner, box_.domain_shape(), box_.layout().ghosts[0]);
         if (owner == rank_ && at == Int3{i.there, j.there, k.there}) continue;  // N of a direction with sides
-        list.ghosts.push_back({at, owner, box.layout().offset(i.there, j.there, k.there)});
-        list.field_size[owner] = box.layout().size;
+        const Layout &theirs = box.layout();
+        ghosts.push_back({at, owner, static_cast<PetscInt>(theirs.offset(i.there, j.there, k.there)),
+                          static_cast<PetscInt>(theirs.size)});
       }
-  return list;
+  return ghosts;
 }
 
 }  // namespace eulastic

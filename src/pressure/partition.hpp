@@ -25,7 +25,7 @@ public:
   /// The cells of this rank.
   const Box &box() const { return box_; }
   /// The ghosts of this rank.
-  GhostList ghosts() const;
+  std::vector<Ghost> ghosts() const;
 
 private:
   /// `cells` of the domain, divided by split_.
