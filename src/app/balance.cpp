@@ -1,6 +1,6 @@
 #include "app/balance.hpp"
 
-#include "grid/cuts.hpp"
+#include "app/cuts.hpp"
 #include "grid/domain.hpp"
 
 #include <algorithm>

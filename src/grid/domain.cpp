@@ -1,7 +1,5 @@
 #include "grid/domain.hpp"
 
-#include "grid/cuts.hpp"
-
 #include <algorithm>
 #include <cstdint>
 
@@ -111,7 +109,7 @@ std::string Domain::why_not(const GridSpec &spec, int ranks) {
 Domain Domain::planned(const GridSpec &spec, int ranks) {
   Domain domain;
   domain.divide(spec, ranks);
-  static_cast<Box &>(domain) = domain.split_.box_of(0, spec, spec.ghosts);
+  static_cast<Box &>(domain) = domain.split_.box_of(0, domain.spec_, spec.ghosts);
   return domain;
 }
 

@@ -7,6 +7,14 @@
 
 namespace eulastic {
 
+/// The cells that cuts of a direction are multiples of: a power of two that divides `cells`, so that coarse grids have
+/// whole cells on every rank, as large as an unevenness of an eighth allows.
+inline int cut_unit(int cells, int parts) {
+  int unit = 1;
+  while (cells % (2 * unit) == 0 && cells / parts >= 8 * 2 * unit) unit *= 2;
+  return unit;
+}
+
 struct Split {
   std::array<std::vector<int>, 3> starts;  ///< [direction][position]: first cell; N at the end
 

@@ -5,10 +5,6 @@
 
 namespace eulastic {
 
-/// The cells that cuts of one direction are multiples of: a power of two that divides `cells`, so that coarse grids
-/// have whole cells on every rank, as large as unevenness of an eighth allows.
-int cut_unit(int cells, int parts);
-
 /// First unit of each of `parts` ranks along a direction, and the number of units at the end. `cost`: of every unit of
 /// that direction, >= 0, at least `parts` times `least`, which is how many each rank has or more. The largest sum over
 /// a rank is the least that there is, but for what `least` takes; within that the cuts are where sums are most equal.

@@ -1,5 +1,5 @@
 // Cuts by cost: whole units, the fewest cells of a rank, and the least largest sum that there is.
-#include "grid/cuts.hpp"
+#include "app/cuts.hpp"
 #include "grid/domain.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "grid/cuts.hpp"
+#include "app/cuts.hpp"
 
 #include <algorithm>
 
@@ -16,12 +16,6 @@ std::vector<int> earliest(const std::vector<double> &sums, int parts, double bou
 }
 
 }  // namespace
-
-int cut_unit(int cells, int parts) {
-  int unit = 1;
-  while (cells % (2 * unit) == 0 && cells / parts >= 8 * 2 * unit) unit *= 2;
-  return unit;
-}
 
 std::vector<int> equal_cuts(const std::vector<double> &cost, int parts, int least) {
   std::vector<double> sums{0};
