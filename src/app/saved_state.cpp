@@ -2,7 +2,7 @@
 
 #include "app/checkpoint_range.hpp"
 #include "bodies/colours.hpp"
-#include "field/exact_sum.hpp"
+#include "diagnostics/state_hash.hpp"
 #include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"

@@ -1,4 +1,4 @@
-// Sums that do not depend on order, ranks, threads or vector length, and a hash of the state.
+// Sums that do not depend on order, ranks, threads or vector length.
 //
 // A row is added in blocks of 256 cells by absolute x index, each with eight fixed lanes (i mod 8) and a fixed
 // tree; the block sums enter a fixed-point superaccumulator (67 limbs of 32 bits cover 2^-1074 ... 2^1024; cf.
@@ -86,11 +86,5 @@ PetscErrorCode sum_row_parts(const Domain &domain, int count, const Add &add, do
   PetscCall(reduce_parts(domain.comm(), sums, result));
   PetscFunctionReturn(0);
 }
-
-/// Rank-independent hash of the points of one field, its high wall included, to be added up over fields and ranks
-/// (MPI_SUM on uint64). `salt` tells fields apart.
-std::uint64_t hash_points(const Box &box, ConstView field, const std::array<bool, 3> &staggering, std::uint64_t salt);
-/// The same of one record.
-std::uint64_t hash_values(const double *values, std::size_t count);
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 // ACM sweeps: any residual is reached on any boundaries, the same bits on any decomposition, what memory buys.
 #include "pressure/acm_sweeps.hpp"
 #include "base/rank_zero.hpp"
+#include "diagnostics/state_hash.hpp"
 #include "pressure/smac.hpp"
 #include "support/poisson_scene.hpp"
 

@@ -3,7 +3,7 @@
 #include "app/scene.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/near_places.hpp"
-#include "field/exact_sum.hpp"
+#include "diagnostics/state_hash.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
 #include "support/files.hpp"

@@ -1,5 +1,6 @@
 // Global sums and the state hash: the same bits on every decomposition as on one rank.
 #include "base/rank_zero.hpp"
+#include "diagnostics/state_hash.hpp"
 #include "field/exact_sum.hpp"
 
 #include <gtest/gtest.h>
