@@ -80,7 +80,7 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
   const PlacedBody &body = *sources_[index].body;
   std::array<std::vector<PlacedBody::Range>, 3> pieces;
   for (int d = 0; d < 3; ++d) {
-    const int first = own.begin[d], last = first + domain_.faces_end(a, d);
+    const int first = own.begin[d], last = first + domain_.points_end(d, a == d);
     pieces[d] = d < domain_.dimension() && body.ends(d) ? body.ranges(d, first, last)
                                                         : std::vector<PlacedBody::Range>{{first, last, 0}};
   }
@@ -164,9 +164,9 @@ void RigidBodies::mark_file(int a, ConstView phi, int index) {
   if (!level_[a]) level_[a] = Field(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
-  for (int k = 0; k < domain_.faces_end(a, 2); ++k)
-    for (int j = 0; j < domain_.faces_end(a, 1); ++j)
-      for (int i = 0; i < domain_.faces_end(a, 0); ++i) {
+  for (int k = 0; k < domain_.points_end(2, a == 2); ++k)
+    for (int j = 0; j < domain_.points_end(1, a == 1); ++j)
+      for (int i = 0; i < domain_.points_end(0, a == 0); ++i) {
         const double *q = phi.row(j, k) + i;
         const double here = 0.5 - 0.5 * (q[0] + q[-step]);
         if (inside(i, j, k) != 0) continue;

@@ -46,15 +46,6 @@ double ActiveSegments::points() const noexcept {
   return sum;
 }
 
-void ActiveSegments::build_all(const Box &box) {
-  start({0, 0, 0}, {box.points_end(0, true), box.points_end(1, true), box.points_end(2, true)});
-  for (int k = 0; k < rows_z_; ++k)
-    for (int j = 0; j < rows_y_; ++j) {
-      segments_.push_back({0, points_x_, j, k});
-      first_.push_back(static_cast<int>(segments_.size()));
-    }
-}
-
 // Adds the runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last
 // points of a run that ends within a vector would be done one by one.
 void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const {

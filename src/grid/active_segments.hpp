@@ -29,8 +29,6 @@ public:
   void build_within(const Box &box, const ActiveSegments &cells, ConstView value);
   /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
   void build_faces(const Box &box, const ActiveSegments &cells);
-  /// Everything.
-  void build_all(const Box &box);
 
   Range row(int j, int k) const noexcept {
     const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
@@ -48,7 +46,6 @@ public:
   const std::vector<Segment> &all() const noexcept { return segments_; }
   int rows_y() const noexcept { return rows_y_; }
   int rows_z() const noexcept { return rows_z_; }
-  int points_x() const noexcept { return points_x_; }
   double points() const noexcept;  ///< sum of lengths
 
 private:

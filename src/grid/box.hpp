@@ -121,8 +121,6 @@ public:
   std::vector<Segment> cells_at(int d, bool high, int layers) const;
   /// All rows, whole.
   std::vector<Segment> rows() const;
-  /// One past the last face of velocity component a along d, with the face on the high side.
-  int faces_end(int a, int d) const { return layout_.cells[d] + (a == d && touches_high(d)); }
 
 private:
   DomainShape domain_;

@@ -24,7 +24,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i) {
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i) {
         out[i] = 0;
         if (m) m[i] = 0;
       }
@@ -102,7 +102,7 @@ void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, F
       const RigidBody &body = faces.bodies[run->body];
       const RigidMotion &motion = faces.motions[body.motion];
       const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i)
         out[i] = motion.moves()
                      ? faces.velocity(a, body, place_of_face(box, a, i, j, k), box.spacing(), of_velocity, of_rotation)
                      : 0;
@@ -122,7 +122,7 @@ void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field) {
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = field[a].row(j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.faces_end(a, 0)); ++i) out[i] = 0;
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i) out[i] = 0;
   });
 }
 

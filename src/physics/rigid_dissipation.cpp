@@ -31,7 +31,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
     }
     // Faces inside feel no friction on sides of the box, where a body has no surface.
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.faces_end(a, 0)); ++i) {
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.points_end(0, a == 0)); ++i) {
         const double of_body = velocity[a](i, j, k);
         if (of_body != 0)
           sums.add(0, volume_of_face(domain, a, side_of_face(domain, a, i, j, k)) * of_body *

@@ -99,7 +99,7 @@ void RigidImpulse::for_moving_faces(const Visit &visit) const {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
       if (!motion_of(run->body).moves()) continue;
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain_.faces_end(a, 0)); ++i)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain_.points_end(0, a == 0)); ++i)
         visit(a, i, j, k, run->body);
     }
   });

@@ -35,8 +35,8 @@ template <class Visit>
 double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visit) {
   double cut_faces = 0;
   for (int a = 0; a < box.dimension(); ++a)
-    for (int k = 0; k < box.faces_end(a, 2); ++k)
-      for (int j = 0; j < box.faces_end(a, 1); ++j) {
+    for (int k = 0; k < box.points_end(2, a == 2); ++k)
+      for (int j = 0; j < box.points_end(1, a == 1); ++j) {
         const RigidFaces::Row row = faces.row(a, j, k);
         if (row.empty()) continue;
         visit(a, row, j, k);
@@ -70,7 +70,7 @@ inline double laplacian_of_sides(const Box &box, int a, int i, int j, int k, Con
   return sum;
 }
 
-inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.faces_end(a, 0); }
+inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.points_end(0, a == 0); }
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 

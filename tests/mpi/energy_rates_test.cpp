@@ -3,6 +3,7 @@
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "physics/momentum.hpp"
+#include "support/all_segments.hpp"
 #include "support/materials.hpp"
 #include "support/scene.hpp"
 
@@ -49,8 +50,8 @@ struct CellBlock {
     phase.fraction = Field(grid, 1);
     phase.tensor.field = Field(grid, static_cast<int>(components.size()));
     phase.tensor.rule.centre = 0.5;
-    phase.tensor.evolving.build_all(grid);
-    phase.tensor.stressed.build_all(grid);
+    build_all(grid, &phase.tensor.evolving);
+    build_all(grid, &phase.tensor.stressed);
     set(grid, phase.fraction[0], at_centre,
         [&](double x, double y, double z) { return std::fabs(wild(seed)(x, y, z)); });
     for (int c = 0; c < phase.tensor.field.count(); ++c) {

@@ -1,6 +1,7 @@
 // RKL2 on eigenmodes of the discrete Laplacian: the stages of a number, as Meyer, Balsara & Aslam (2014) write them.
 #include "physics/super_time_stepping.hpp"
 #include "base/rank_zero.hpp"
+#include "support/all_segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,7 +61,7 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   SuperTimeStepping work{Field(grid, 3), Field(grid, 3), Field(grid, 3), Field(grid, 3)};
   Field velocity(grid, 3), result(grid, 3);
   std::vector<Phase> phases(1);
-  phases[0].tensor.stressed.build_all(grid);
+  build_all(grid, &phases[0].tensor.stressed);
   std::array<std::array<Wave, 3>, 3> waves;
   const auto mode = [&](int c, const Segment &row, int i) {
     const Int3 &begin = grid.layout().begin;

@@ -1,6 +1,7 @@
 // A box full of solid whose fields are polynomials or random numbers, ghosts included, for tests of the elastic terms.
 #pragma once
 
+#include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -34,8 +35,8 @@ struct Solid {
     phase.tensor.field = Field(grid, static_cast<int>(components.size()));
     next = Field(grid, phase.tensor.field.count());
     phase.tensor.rule = reset_below_one_per_cent;
-    phase.tensor.evolving.build_all(grid);
-    phase.tensor.stressed.build_all(grid);
+    build_all(grid, &phase.tensor.evolving);
+    build_all(grid, &phase.tensor.stressed);
     fill();
   }
 

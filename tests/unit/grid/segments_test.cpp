@@ -1,4 +1,5 @@
 // Active segments: a superset, no larger than promised, aligned; and a step that does not see what was skipped.
+#include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -29,7 +30,6 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
   fill_everywhere(grid, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
   ActiveSegments segments;
   segments.build(grid, value[0], {}, 0.5, low, high);
-  EXPECT_EQ(segments.points_x(), grid.points_end(0, true));
   EXPECT_EQ(segments.rows_y(), grid.points_end(1, true));
   EXPECT_EQ(segments.rows_z(), grid.points_end(2, true));
   double points = 0;
@@ -37,7 +37,7 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
   for (int k = 0; k < segments.rows_z(); ++k)
     for (int j = 0; j < segments.rows_y(); ++j) {
       const ConstView q = value[0];
-      std::vector<char> covered(segments.points_x());
+      std::vector<char> covered(grid.points_end(0, true));
       int last_end = -8;
       for (const Segment &s : segments.row(j, k)) {
         EXPECT_EQ(&s, &segments.all()[count++]);
@@ -46,8 +46,8 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
         EXPECT_EQ(s.i_begin % 8, 0);
         EXPECT_GE(s.i_begin - last_end, 8);
         ASSERT_GT(s.i_end, s.i_begin);
-        ASSERT_LE(s.i_end, segments.points_x());
-        EXPECT_TRUE(s.i_end % 8 == 0 || s.i_end == segments.points_x()) << "whole vectors where the row has them";
+        ASSERT_LE(s.i_end, grid.points_end(0, true));
+        EXPECT_TRUE(s.i_end % 8 == 0 || s.i_end == grid.points_end(0, true)) << "whole vectors where the row has them";
         int idle = 0;  // never twice a vector: what was rounded down or closed
         for (int i = s.i_begin; i < s.i_end; ++i) {
           covered[i] = 1;
@@ -61,7 +61,7 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
         points += s.size();
         last_end = s.i_end;
       }
-      for (int i = 0; i < segments.points_x(); ++i) {
+      for (int i = 0; i < grid.points_end(0, true); ++i) {
         if (!covered[i]) {
           EXPECT_FALSE(active(grid, q, low, high, i, j, k)) << i << " " << j << " " << k;
         }
@@ -154,7 +154,7 @@ TEST(ActiveSegments, AllIsEveryPoint) {
   spec.boundary[0] = spec.boundary[2] = Boundary::wall;
   ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
   ActiveSegments segments;
-  segments.build_all(grid);
+  build_all(grid, &segments);
   EXPECT_EQ(segments.points(), 10 * 4 * 6);
   EXPECT_EQ(segments.row(3, 5).begin()->size(), 10);
 }
@@ -194,8 +194,8 @@ void compare_steps(bool flat, double y) {
   double points[2];
   for (int all = 0; all < 2; ++all) {
     if (all) {
-      phase.tensor.evolving.build_all(scene.grid);
-      phase.tensor.stressed.build_all(scene.grid);
+      build_all(scene.grid, &phase.tensor.evolving);
+      build_all(scene.grid, &phase.tensor.stressed);
     }
     points[all] = phase.tensor.evolving.points();
     star[all] = Field(scene.grid, scene.grid.dimension());

@@ -2,6 +2,7 @@
 #include "diagnostics/edge_stress.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "physics/limits.hpp"
+#include "support/all_segments.hpp"
 #include "support/materials.hpp"
 #include "support/solid_box.hpp"
 
@@ -186,8 +187,8 @@ double force_error(bool flat, int cells) {
   phase.material = rubber;
   phase.fraction = Field(grid, 1);
   phase.tensor.field = Field(grid, static_cast<int>(components.size()));
-  phase.tensor.evolving.build_all(grid);
-  phase.tensor.stressed.build_all(grid);
+  build_all(grid, &phase.tensor.evolving);
+  build_all(grid, &phase.tensor.stressed);
   fill_everywhere(grid, phase.fraction[0], at_centre, fraction);
   for (int c = 0; c < phase.tensor.field.count(); ++c)
     fill_everywhere(grid, phase.tensor.field[c], components[c].at,

@@ -1,5 +1,6 @@
 // B stays positive definite in the sense of positive_definite.hpp, and is left alone where it is.
 #include "physics/positive_definite.hpp"
+#include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 
@@ -21,7 +22,7 @@ struct Body {
     phase.fraction = Field(grid, 1);
     phase.tensor.field = Field(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
     phase.tensor.rule = {0.5, 0.5, 0};
-    phase.tensor.evolving.build_all(grid);
+    build_all(grid, &phase.tensor.evolving);
     const Layout &layout = grid.layout();
     for (std::ptrdiff_t p = 0; p < layout.size; ++p) {
       phase.fraction.data()[p] = 1;
