@@ -17,7 +17,7 @@ struct TensorComponent {
   double rest() const { return a == b ? 1 : 0; }
   std::string name() const { return {"xyz"[a], "xyz"[b]}; }
 };
-/// In the order of their block: xx, yy, xy in 2-D (zz stays 1) and xx, yy, zz, yz, xz, xy in 3-D; off-diagonals lie on
+/// In the order of their field: xx, yy, xy in 2-D (zz stays 1) and xx, yy, zz, yz, xz, xy in 3-D; off-diagonals lie on
 /// edges, or all of it is `centred`.
 const std::vector<TensorComponent> &tensor_components(int dimension, bool centred = false);
 

@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-/// Kinematic viscosities in a block: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy),
+/// Kinematic viscosities in a field: at centres, then on edges normal to two directions (2-D: xy; 3-D: yz, xz, xy),
 /// then at centres what they lack for strain along a surface, and its unit normal.
 inline constexpr int viscosity_of_edge(int dimension, int a, int b) { return dimension == 2 ? 1 : 4 - a - b; }
 inline constexpr int viscosity_along_surface(int dimension) { return dimension == 2 ? 2 : 4; }

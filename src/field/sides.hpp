@@ -72,12 +72,12 @@ void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View fi
 /// Behind solid sides 0, at centres: for fractions of bodies that end there. Other sides are left as they are.
 void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width,
                         const OccupiedRows *rows = nullptr);
-/// All components of a left Cauchy-Green block.
+/// All components of a left Cauchy-Green field.
 void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
                              const OccupiedRows *rows = nullptr);
 /// The same where all components live at centres: the mirror image.
 void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, const OccupiedRows *rows);
-/// Components of a left Cauchy-Green block on planes of symmetry: 0, ghosts of the other directions included.
+/// Components of a left Cauchy-Green field on planes of symmetry: 0, ghosts of the other directions included.
 void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor);
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// What the kernel of the stress along surfaces reads, out of the blocks of velocity and viscosity.
+// What the kernel of the stress along surfaces reads, out of the fields of velocity and viscosity.
 #pragma once
 
 #include "field/local_viscosity.hpp"
@@ -13,14 +13,14 @@ EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Box &box,
   const int along = viscosity_along_surface(Dim), last = Dim - 1;
   const ConstView q = velocity[0];
   const Real3 &h = box.spacing();
-  const auto of_block = [j, k](const Field &block, int f) { return block[f].row(j, k); };
-  return {of_block(velocity, 0),
-          of_block(velocity, 1),
-          of_block(velocity, last),
-          of_block(viscosity, along),
-          of_block(viscosity, along + 1),
-          of_block(viscosity, along + 2),
-          of_block(viscosity, along + 1 + last),
+  const auto component = [j, k](const Field &field, int f) { return field[f].row(j, k); };
+  return {component(velocity, 0),
+          component(velocity, 1),
+          component(velocity, last),
+          component(viscosity, along),
+          component(viscosity, along + 1),
+          component(viscosity, along + 2),
+          component(viscosity, along + 1 + last),
           q.stride(0),
           q.stride(1),
           q.stride(last),

@@ -4,6 +4,7 @@
 #include "grid/box.hpp"
 
 #include <functional>
+#include <string>
 
 namespace eulastic {
 
