@@ -23,7 +23,7 @@ double difference(const GridSpec &grid, SolverSpec spec, double end, int steps, 
     EXPECT_EQ(s.run(end, steps), 0);
   }
   double sum = 0, reference = 0;
-  for (int a = 0; a < scene[0].grid.dimension(); ++a)
+  for (int a = 0; a < scene[0].domain.dimension(); ++a)
     for (int k = 0; k < grid.cells[2]; ++k)
       for (int j = 0; j < grid.cells[1]; ++j)
         for (int i = 0; i < grid.cells[0]; ++i) {
@@ -54,11 +54,11 @@ TEST(AcmAgainstSmac, TaylorGreenCarriedAlong) {
   const double k = 2 * pi;
   const auto start = [=](Scene &s) {
     State &state = s.solver.state();
-    set(s.grid, state.velocity[0], at_face[0],
+    set(s.domain, state.velocity[0], at_face[0],
         [=](double x, double y, double) { return 1 + std::sin(k * x) * std::cos(k * y); });
-    set(s.grid, state.velocity[1], at_face[1],
+    set(s.domain, state.velocity[1], at_face[1],
         [=](double x, double y, double) { return 1 - std::cos(k * x) * std::sin(k * y); });
-    set(s.grid, state.pressure[0], at_centre,
+    set(s.domain, state.pressure[0], at_centre,
         [=](double x, double y, double) { return 0.25 * (std::cos(2 * k * x) + std::cos(2 * k * y)); });
   };
   expect_second_order("Taylor-Green", 100, 1e-4, [&](int steps) { return difference(grid, spec, 0.25, steps, start); });

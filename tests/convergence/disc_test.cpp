@@ -17,10 +17,10 @@ struct History {
   double drift = 0;  // largest relative change of the volume
 };
 
-double mean(const Domain &grid, ConstView view) {
+double mean(const Domain &domain, ConstView view) {
   double sum = 0;
-  for_points(grid, view, at_face[0], [&](const double &q, double, double, double) { sum += q; });
-  return sum / (grid.domain_cells()[0] * grid.domain_cells()[1]);
+  for_points(domain, view, at_face[0], [&](const double &q, double, double, double) { sum += q; });
+  return sum / (domain.domain_cells()[0] * domain.domain_cells()[1]);
 }
 
 History strong_disc(int cells, PressureKind pressure) {
@@ -39,10 +39,10 @@ History strong_disc(int cells, PressureKind pressure) {
   disc.shear_modulus = 0.02;
   const std::vector<BodyPlace> places{{{10.56, 7.392, 0}, {}}};
   Phase phase;
-  EXPECT_EQ(fill_phase(scene.grid, disc, places, 1, &phase), 0);
+  EXPECT_EQ(fill_phase(scene.domain, disc, places, 1, &phase), 0);
   Solver &solver = scene.solver;
   solver.state().phases.push_back(std::move(phase));
-  solver.bodies().add_phase(scene.grid, places);
+  solver.bodies().add_phase(scene.domain, places);
   EXPECT_EQ(solver.prepare(), 0);
   History history;
   double volume = 0;
@@ -54,13 +54,13 @@ History strong_disc(int cells, PressureKind pressure) {
     const std::vector<Phase> *phases = nullptr;
     std::vector<BodyMeasure> bodies;
     EXPECT_EQ(solver.phases_now(&phases), 0);
-    EXPECT_EQ(solver.bodies().measure(scene.grid, *phases, solver.state().velocity, strain_energy, &bodies), 0);
+    EXPECT_EQ(solver.bodies().measure(scene.domain, *phases, solver.state().velocity, strain_energy, &bodies), 0);
     if (n == 0) volume = bodies[0].volume;
     history.drift = std::max(history.drift, std::fabs(bodies[0].volume / volume - 1));
     history.x.push_back(bodies[0].centroid[0]);
     history.y.push_back(bodies[0].centroid[1]);
     history.deformation.push_back(bodies[0].taylor_deformation);
-    history.bulk_velocity.push_back(mean(scene.grid, solver.state().velocity[0]));
+    history.bulk_velocity.push_back(mean(scene.domain, solver.state().velocity[0]));
   }
   return history;
 }

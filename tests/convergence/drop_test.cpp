@@ -14,10 +14,10 @@ constexpr double side = 4;  // of the periodic box, in radii
 // phi (x^2 - y^2) over the box, of the ellipse (1 + e) x 1/(1 + e): 0 for a disc.
 double elongation(const Scene &scene, const Phase &phase) {
   double sum = 0;
-  for_points(scene.grid, ConstView(phase.fraction[0]), at_centre, [&](const double &q, double x, double y, double) {
+  for_points(scene.domain, ConstView(phase.fraction[0]), at_centre, [&](const double &q, double x, double y, double) {
     sum += q * ((x - side / 2) * (x - side / 2) - (y - side / 2) * (y - side / 2));
   });
-  return sum * scene.grid.cell_volume();
+  return sum * scene.domain.cell_volume();
 }
 
 struct Run {

@@ -33,13 +33,13 @@ double advected_taylor_green(int cells, MethodKind method, PressureKind pressure
   };
   const auto v = [=](double x, double y, double) { return 1 - std::cos(k * x) * std::sin(k * y); };
   State &state = scene.solver.state();
-  set(scene.grid, state.velocity[0], at_face[0], u(0));
-  set(scene.grid, state.velocity[1], at_face[1], v);
-  set(scene.grid, state.pressure[0], at_centre,
+  set(scene.domain, state.velocity[0], at_face[0], u(0));
+  set(scene.domain, state.velocity[1], at_face[1], v);
+  set(scene.domain, state.pressure[0], at_centre,
       [=](double x, double y, double) { return 0.25 * (std::cos(2 * k * x) + std::cos(2 * k * y)); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(end, method == MethodKind::fast ? 5 * cells : cells * cells / 4), 0);
-  return rms_error(scene.grid, state.velocity[0], at_face[0], u(end));
+  return rms_error(scene.domain, state.velocity[0], at_face[0], u(end));
 }
 
 class AdvectedTaylorGreen : public ::testing::TestWithParam<std::pair<MethodKind, PressureKind>> {};
@@ -73,12 +73,12 @@ double channel(int cells, const SolverSpec &spec, double end, bool three_d, cons
   grid.boundary[1] = Boundary::wall;
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   State &state = scene.solver.state();
-  if (start) set(scene.grid, state.velocity[0], at_face[0], start);
+  if (start) set(scene.domain, state.velocity[0], at_face[0], start);
   EXPECT_EQ(scene.solver.prepare(), 0);
   const double nu = spec.fluid.kinematic_viscosity();
   const double S = cells * cells + (three_d ? 32 : 16);
   EXPECT_EQ(scene.run(end, static_cast<int>(std::ceil(end * 2 * nu * S / 0.5))), 0);
-  return rms_error(scene.grid, state.velocity[0], at_face[0], exact);
+  return rms_error(scene.domain, state.velocity[0], at_face[0], exact);
 }
 
 TEST(Channel, StartUpConvergesAtOrderTwo) {  // F3, g = H = nu = 1

@@ -29,7 +29,7 @@ Errors carry(
   for (int n = 0; n < steps; ++n) EXPECT_EQ(scene.advance(dt * factor((n + 0.5) * dt)), 0);
   Errors errors{scene.shape_error(level), 0, std::abs(scene.sum() / volume - 1), 0};
   const Real3 centre = scene.centroid();
-  for (int d = 0; d < scene.grid.dimension(); ++d)
+  for (int d = 0; d < scene.domain.dimension(); ++d)
     errors.centroid = std::max(errors.centroid, std::abs(centre[d] - start[d]));
   errors.width = scene.sum(spread) / width;
   EXPECT_LT(errors.volume, 1e-13);
@@ -87,7 +87,7 @@ TEST(InterfaceTranslation, SphereAlongTheDiagonal) {
 // Taylor's deformation D e^(2 i theta) of what is in the box, from its moments.
 std::complex<double> deformation(const InterfaceScene &scene) {
   const Real3 centre = scene.centroid();
-  const double h = scene.grid.spacing()[0];
+  const double h = scene.domain.spacing()[0];
   double volume = 0, xx = 0, yy = 0, xy = 0;
   scene.each_owned([&](int i, int j, int k) {
     const Real3 at = scene.position({i, j, k}, {true, true, true});

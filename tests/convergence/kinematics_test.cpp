@@ -16,7 +16,7 @@ constexpr Matrix identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 // A box full of solid in a velocity that nobody changes; ghosts included.
 struct Kinematics {
-  Domain grid;
+  Domain domain;
   Field velocity, next;
   Phase phase;
 
@@ -24,43 +24,43 @@ struct Kinematics {
   Kinematics(const Int3 &cells, const Matrix &B, Velocity v) {
     GridSpec spec;
     spec.cells = cells;
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    velocity = Field(grid, grid.dimension());
-    const auto &components = tensor_components(grid.dimension());
-    phase.fraction = Field(grid, 1);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+    velocity = Field(domain, domain.dimension());
+    const auto &components = tensor_components(domain.dimension());
+    phase.fraction = Field(domain, 1);
     phase.tensor.rule = reset_below_one_per_cent;
     phase.fraction.fill(0, 1.0);
-    phase.tensor.field = Field(grid, static_cast<int>(components.size()));
+    phase.tensor.field = Field(domain, static_cast<int>(components.size()));
     for (int c = 0; c < phase.tensor.field.count(); ++c)
       phase.tensor.field.fill(c, B[components[c].a][components[c].b]);
     next.copy_from(phase.tensor.field);
-    const Layout &layout = grid.layout();
-    for (int c = 0; c < grid.dimension(); ++c)
+    const Layout &layout = domain.layout();
+    for (int c = 0; c < domain.dimension(); ++c)
       for (int k = -layout.ghosts[2]; k < layout.cells[2] + layout.ghosts[2]; ++k)
         for (int j = -layout.ghosts[1]; j < layout.cells[1] + layout.ghosts[1]; ++j)
           for (int i = -layout.ghosts[0]; i < layout.cells[0] + layout.ghosts[0]; ++i)
-            velocity[c](i, j, k) =
-                v(c, Real3{position(grid, 0, c == 0, i), position(grid, 1, c == 1, j), position(grid, 2, c == 2, k)});
-    EXPECT_EQ(find_solid(grid, phase), 0);
+            velocity[c](i, j, k) = v(c, Real3{position(domain, 0, c == 0, i), position(domain, 1, c == 1, j),
+                                              position(domain, 2, c == 2, k)});
+    EXPECT_EQ(find_solid(domain, phase), 0);
   }
 
   void run(double end, int steps) {
-    GhostExchange exchange(grid);
+    GhostExchange exchange(domain);
     const double dt = end / steps;
     for (int n = 0; n < steps; ++n) {
-      ASSERT_EQ(transport_tensor(grid, {dt, false}, velocity, phase, phase.tensor.field, next), 0);
+      ASSERT_EQ(transport_tensor(domain, {dt, false}, velocity, phase, phase.tensor.field, next), 0);
       ASSERT_EQ(exchange.update_ghosts(next, Box::stencil_width), 0);
-      ASSERT_EQ(transport_tensor(grid, {dt, true}, velocity, phase, next, phase.tensor.field), 0);
+      ASSERT_EQ(transport_tensor(domain, {dt, true}, velocity, phase, next, phase.tensor.field), 0);
       ASSERT_EQ(exchange.update_ghosts(phase.tensor.field, Box::stencil_width), 0);
     }
   }
 
   /// Largest difference from a uniform B.
   double error(const Matrix &exact) const {
-    const auto &components = tensor_components(grid.dimension());
+    const auto &components = tensor_components(domain.dimension());
     double largest = 0;
     for (int c = 0; c < phase.tensor.field.count(); ++c)
-      for_points(grid, phase.tensor.field[c], components[c].at, [&](double value, double, double, double) {
+      for_points(domain, phase.tensor.field[c], components[c].at, [&](double value, double, double, double) {
         largest = std::max(largest, std::fabs(value - exact[components[c].a][components[c].b]));
       });
     return largest;

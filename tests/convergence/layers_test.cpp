@@ -52,15 +52,15 @@ std::vector<double> layer_velocity(const Layers &layers, int cells, int steps, d
   spec.sides[1][1].motion = {{1, 0, 0}, layers.omega, -pi / 2};
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   State &state = scene.solver.state();
-  set(scene.grid, state.velocity[0], at_face[0], [&](double, double y, double) { return layers.u(y, 0); });
+  set(scene.domain, state.velocity[0], at_face[0], [&](double, double y, double) { return layers.u(y, 0); });
   const double h = 1. / cells;
   Phase &phase = scene.add_phase(
       layers.G,
       [&](double, double y, double) { return std::min(1.0, std::max(0.0, (layers.solid - (y - h / 2)) / h)); }, true);
   if (layers.solid_mu != layers.mu) phase.material.viscosity = layers.solid_mu;
   const Staggering edge{true, true, false};
-  set(scene.grid, phase.tensor.field[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
-  set(scene.grid, phase.tensor.field[0], at_centre,
+  set(scene.domain, phase.tensor.field[2], edge, [&](double, double y, double) { return layers.shear(y, 0); });
+  set(scene.domain, phase.tensor.field[0], at_centre,
       [&](double, double y, double) { return 1 + std::pow(layers.shear(y, 0), 2); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(end, steps), 0);

@@ -31,7 +31,7 @@ double tube(double across, PressureKind pressure) {
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(0.4, 100), 0);
   double flow = 0;
-  for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
              [&](const double &u, double, double, double) { flow += u; });
   return flow / (4. * cells * cells) / (M_PI * std::pow(radius, 4) / 8) - 1;
 }
@@ -68,7 +68,7 @@ Turning turning(int cells, double viscosity = 1) {
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   const auto exact_speed = [&](double r) { return r < inner ? r : r > outer ? 0 : share * (outer * outer / r - r); };
   for (int d = 0; d < 2 && viscosity < 1; ++d)
-    set(scene.grid, scene.solver.state().velocity[d], at_face[d], [&](double x, double y, double) {
+    set(scene.domain, scene.solver.state().velocity[d], at_face[d], [&](double x, double y, double) {
       const double r = std::hypot(x - centre[0], y - centre[1]);
       return r > 0 ? (d == 0 ? centre[1] - y : x - centre[0]) / r * exact_speed(r) : 0;
     });
@@ -78,7 +78,7 @@ Turning turning(int cells, double viscosity = 1) {
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(viscosity < 1 ? scene.run(4, 200) : scene.run(1, 400), 0);
   double square = 0, points = 0;
-  for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
              [&](const double &u, double x, double y, double) {
                const double r = std::hypot(x - centre[0], y - centre[1]);
                if (r < inner || r > outer) return;
@@ -134,7 +134,7 @@ TEST(RigidCylinders, DragOfASquareArray) {
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(0.6, 200), 0);
   double flow = 0;
-  for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
              [&](const double &u, double, double, double) { flow += u / (48. * 48); });
   std::vector<RigidLoad> loads;
   EXPECT_EQ(scene.solver.rigid_loads(&loads), 0);
@@ -165,7 +165,7 @@ TEST(RigidWall, NothingPassesTwoCells) {
     EXPECT_EQ(scene.solver.prepare(), 0);
     EXPECT_EQ(scene.run(0.9, 600), 0);
     double through = 0;
-    for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+    for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
                [&](const double &u, double, double, double) { through += u / (32 * 16); });
     EXPECT_LT(std::fabs(through), pressure == PressureKind::smac ? 1e-13 : 1e-6);  // of .17 without the wall
     std::vector<RigidLoad> loads;

@@ -49,7 +49,7 @@ double slip_rate(int cells) {
   EXPECT_EQ(make(cells, stretch, membrane, 1e-3, &scene), 0);
   Field &B = scene.solver.state().phases[0].tensor.field;
   for (int c = 0; c < 2; ++c)
-    set(scene.grid, B[c], at_centre,
+    set(scene.domain, B[c], at_centre,
         [=](double, double, double) { return c == 0 ? stretch * stretch : 1 / (stretch * stretch); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   const auto energy = [&] {
@@ -68,11 +68,11 @@ double elongation(Scene &scene) {
   const std::vector<Phase> *phases = nullptr;
   EXPECT_EQ(scene.solver.phases_now(&phases), 0);
   double sum = 0;
-  for_points(scene.grid, ConstView((*phases)[0].fraction[0]), at_centre,
+  for_points(scene.domain, ConstView((*phases)[0].fraction[0]), at_centre,
              [&](const double &q, double x, double y, double) {
                sum += q * ((x - side / 2) * (x - side / 2) - (y - side / 2) * (y - side / 2));
              });
-  return sum * scene.grid.cell_volume();
+  return sum * scene.domain.cell_volume();
 }
 
 // Of E_b = 1, an ellipse whose axes are as 1.21.

@@ -50,14 +50,16 @@ Result run_wave(const Wave &wave, int cells, int steps, const Method &method) {
       return V * std::sin(k * (s[b] - (wave.walls ? 0 : wave.mean * t)));
     };
   };
-  set(scene.grid, state.velocity[a], at_face[a], shape(A, 0));
-  if (wave.mean != 0) set(scene.grid, state.velocity[b], at_face[b], [&](double, double, double) { return wave.mean; });
+  set(scene.domain, state.velocity[a], at_face[a], shape(A, 0));
+  if (wave.mean != 0)
+    set(scene.domain, state.velocity[b], at_face[b], [&](double, double, double) { return wave.mean; });
   scene.add_phase(G, [](double, double, double) { return 1.0; });
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(end, steps), 0);
   Result result;
   for (Int3 at{}; at[b] < cells; ++at[b]) result.u.push_back(state.velocity[a](at[0], at[1], at[2]));
-  result.error = rms_error(scene.grid, state.velocity[a], at_face[a], shape(A * amplitude(wave, mu, G, end), end)) / A;
+  result.error =
+      rms_error(scene.domain, state.velocity[a], at_face[a], shape(A * amplitude(wave, mu, G, end), end)) / A;
   return result;
 }
 

@@ -81,7 +81,7 @@ std::array<double, 3> layers(int cells, const Material &material) {
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(60, (material.c3 > 0 ? 450 : 150) * cells), 0);  // below the elastic limit
   const State &state = scene.solver.state();
-  const double u_error = rms_error(scene.grid, state.velocity[0], at_face[0], [=](double, double y, double) {
+  const double u_error = rms_error(scene.domain, state.velocity[0], at_face[0], [=](double, double y, double) {
     return y > solid ? g * (y - solid) * (1 - y) / (2 * mu) : 0;
   });
   double shear_error = 0, wall_error = 0;  // the stress is rho g (y_m - y), y_m = (Ls + H)/2, where B evolves
@@ -120,7 +120,7 @@ std::array<double, 4> recovery(int cells) {
   grid.cells = {cells, cells, 1};
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, fast_spec(0.1)), 0);
   State &state = scene.solver.state();
-  set(scene.grid, state.velocity[0], at_face[0],
+  set(scene.domain, state.velocity[0], at_face[0],
       [](double, double y, double) { return std::sin(6.28318530717958648 * y); });
   scene.add_phase(1, [=](double x, double y, double) {
     return std::min(1.0, std::max(0.0, 0.5 - cells * (std::hypot(x - 0.5, y - 0.5) - 0.2)));

@@ -89,7 +89,7 @@ Force through_the_box(int cells, bool travels, int steps) {
   if (travels)
     ball.motion.velocity = {1, 0, 0};
   else
-    set(scene.grid, scene.solver.state().velocity[0], at_face[0], [](double, double, double) { return -1; });
+    set(scene.domain, scene.solver.state().velocity[0], at_face[0], [](double, double, double) { return -1; });
   add_rigid(&scene, {ball});
   return force_on_first(&scene, 0.6, steps);
 }
@@ -133,7 +133,7 @@ TEST(TravellingCylinder, ForceIsThatOfTheMomentum) {
     add_rigid(&scene, {ball});
     const auto momentum = [&] {
       double sum = 0;
-      for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+      for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
                  [&](const double &u, double, double, double) { sum += u; });
       return sum / (double(cells) * cells);
     };
@@ -173,7 +173,7 @@ Torque turning(int cells, bool turns, bool file) {
   paddle.semi_axes = {0.25, 0.12, 1};
   (turns ? paddle : vessel).motion.angular_velocity = {0, 0, turns ? 1. : -1.};
   for (int d = 0; d < 2 && !turns; ++d)
-    set(scene.grid, scene.solver.state().velocity[d], at_face[d],
+    set(scene.domain, scene.solver.state().velocity[d], at_face[d],
         [&](double x, double y, double) { return d == 0 ? y - centre[1] : centre[0] - x; });
   add_rigid(&scene, {paddle, vessel}, file);
   EXPECT_EQ(scene.solver.prepare(), 0);

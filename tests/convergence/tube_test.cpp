@@ -33,13 +33,13 @@ Errors tube(int cells) {
   vessel.shear_modulus = 1;
   vessel.centre = {0, 0.5, 0.5};
   Phase phase;
-  EXPECT_EQ(fill_phase(scene.grid, vessel, {{vessel.centre, {}}}, 1, &phase), 0);
+  EXPECT_EQ(fill_phase(scene.domain, vessel, {{vessel.centre, {}}}, 1, &phase), 0);
   scene.solver.state().phases.push_back(std::move(phase));
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(5, 150 * cells / 5), 0);
   const double largest = g * radius * radius / (4 * nu);
   double square = 0, points = 0, flow = 0;
-  for_points(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  for_points(scene.domain, scene.solver.state().velocity[0], at_face[0],
              [&](const double &u, double, double y, double z) {
                const double r2 = (y - 0.5) * (y - 0.5) + (z - 0.5) * (z - 0.5), s = 1 - r2 / (radius * radius);
                flow += u;

@@ -114,44 +114,44 @@ struct ShearErrors {
 // What linear shear of rate 1 leaves unbalanced is let go until nothing moves any more: errors of u over its change
 // across both layers.
 ShearErrors shear_errors_across(double lambda, int cells) {
-  Domain grid;
-  EXPECT_EQ(grid.create(PETSC_COMM_SELF, box_across(cells)), 0);
-  GhostExchange exchange(grid);
+  Domain domain;
+  EXPECT_EQ(domain.create(PETSC_COMM_SELF, box_across(cells)), 0);
+  GhostExchange exchange(domain);
   std::unique_ptr<PressureSolver> solver;
-  EXPECT_EQ(SmacSolver::create(grid, exchange, &solver), 0);
+  EXPECT_EQ(SmacSolver::create(domain, exchange, &solver), 0);
   std::vector<Phase> phases(1);
-  phases[0].empty(grid, false);
+  phases[0].empty(domain, false);
   phases[0].material.viscosity = lambda;
-  const double h = grid.spacing()[0], root = std::sqrt(5.);
-  fill_everywhere(grid, phases[0].fraction[0], at_centre, [&](const Point &x) {
+  const double h = domain.spacing()[0], root = std::sqrt(5.);
+  fill_everywhere(domain, phases[0].fraction[0], at_centre, [&](const Point &x) {
     return layers_across(x[0] - 2 * std::floor(x[0] / 2), x[1] - std::floor(x[1]), h);
   });
-  EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
-  LocalViscosity viscosity(grid);
-  Field linear(grid, 2), v(grid, 2), star(grid, 2), pressure(grid, 1);
-  Field divergence(grid, 1), increment(grid, 1);
-  EXPECT_EQ(compute_viscosity(grid, {}, {}, phases, &viscosity), 0);
-  fill_everywhere(grid, linear[0], at_face[0], [=](const Point &x) { return 0.4 * (x[0] + 2 * x[1]); });
-  fill_everywhere(grid, linear[1], at_face[1], [=](const Point &x) { return -0.2 * (x[0] + 2 * x[1]); });
-  SuperTimeStepping work{Field(grid, 2), {}, Field(grid, 2), Field(grid, 2)};
+  EXPECT_EQ(phases[0].rows.find(domain, phases[0].fraction[0]), 0);
+  LocalViscosity viscosity(domain);
+  Field linear(domain, 2), v(domain, 2), star(domain, 2), pressure(domain, 1);
+  Field divergence(domain, 1), increment(domain, 1);
+  EXPECT_EQ(compute_viscosity(domain, {}, {}, phases, &viscosity), 0);
+  fill_everywhere(domain, linear[0], at_face[0], [=](const Point &x) { return 0.4 * (x[0] + 2 * x[1]); });
+  fill_everywhere(domain, linear[1], at_face[1], [=](const Point &x) { return -0.2 * (x[0] + 2 * x[1]); });
+  SuperTimeStepping work{Field(domain, 2), {}, Field(domain, 2), Field(domain, 2)};
   const double dt = 0.1, viscous = 1 / (4 * std::max(lambda, 1.0) / (h * h));
   for (int n = 0; n < 60; ++n) {
     const ConstView p = pressure[0];
     for (int a = 0; a < 2; ++a)
-      for_points(grid, work.rate[a], at_face[a], [&, at = 0](double &rate, double, double, double) mutable {
+      for_points(domain, work.rate[a], at_face[a], [&, at = 0](double &rate, double, double, double) mutable {
         const int i = at % cells, j = at / cells;
         rate = (p(i - (a == 0), j - (a == 1), 0) - p(i, j, 0)) / h;
         ++at;
       });
-    EXPECT_EQ(add_viscous_force(grid, viscosity, 1, linear, work.rate), 0);
-    EXPECT_EQ(add_viscous_force(grid, viscosity, 1, v, work.rate), 0);
-    EXPECT_EQ(super_time_step(grid, exchange, {}, viscosity, 0, dt, rkl_stages(dt, viscous), v, work, star), 0);
+    EXPECT_EQ(add_viscous_force(domain, viscosity, 1, linear, work.rate), 0);
+    EXPECT_EQ(add_viscous_force(domain, viscosity, 1, v, work.rate), 0);
+    EXPECT_EQ(super_time_step(domain, exchange, {}, viscosity, 0, dt, rkl_stages(dt, viscous), v, work, star), 0);
     EXPECT_EQ(exchange.update_ghosts(star, 1), 0);
-    EXPECT_EQ(compute_divergence(grid, 1, star, divergence), 0);
+    EXPECT_EQ(compute_divergence(domain, 1, star, divergence), 0);
     EXPECT_EQ(exchange.update_ghosts(divergence, 1), 0);
     EXPECT_EQ(solver->solve(dt, divergence, pressure, increment), 0);
-    EXPECT_EQ(correct_velocity(grid, 1, dt, 0, increment, divergence, star, pressure), 0);
-    EXPECT_EQ(rotate_pressure(grid, viscosity.fields, 0.5, divergence, pressure), 0);
+    EXPECT_EQ(correct_velocity(domain, 1, dt, 0, increment, divergence, star, pressure), 0);
+    EXPECT_EQ(rotate_pressure(domain, viscosity.fields, 0.5, divergence, pressure), 0);
     v.swap(star);
     EXPECT_EQ(exchange.update_ghosts(v, 2), 0);
   }
@@ -164,8 +164,8 @@ ShearErrors shear_errors_across(double lambda, int cells) {
   };
   const auto exact = [&](double x, double y) { return 2 / root * departure((x + 2 * y) / root); };
   const double change = 2 / root * 2 * length;
-  return {largest_error(grid, v[0], at_face[0], [&](const Point &x) { return exact(x[0], x[1]); }) / change,
-          rms_error(grid, v[0], at_face[0], [&](double x, double y, double) { return exact(x, y); }) / change};
+  return {largest_error(domain, v[0], at_face[0], [&](const Point &x) { return exact(x[0], x[1]); }) / change,
+          rms_error(domain, v[0], at_face[0], [&](double x, double y, double) { return exact(x, y); }) / change};
 }
 
 TEST(ViscousLayers, SteadyShearAcrossTheGrid) {
@@ -194,16 +194,16 @@ ModeErrors mode_errors(double lambda, int cells) {
   const double root = std::sqrt(5.), period = 2 / root, h = 2. / cells, amplitude = 1e-6;
   const Mode mode(lambda, period);
   const Function exact = [&](double x, double y, double) { return amplitude * mode((x + 2 * y) / root); };
-  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  set(scene.domain, scene.solver.state().velocity[0], at_face[0],
       [&](double x, double y, double z) { return 2 / root * exact(x, y, z); });
-  set(scene.grid, scene.solver.state().velocity[1], at_face[1],
+  set(scene.domain, scene.solver.state().velocity[1], at_face[1],
       [&](double x, double y, double z) { return -1 / root * exact(x, y, z); });
   add_layer(scene, lambda, [&](double x, double y, double) { return layers_across(x, y, h); });
   EXPECT_EQ(scene.solver.prepare(), 0);
   const auto energy = [&] {
     double sum = 0;
     for (int c = 0; c < 2; ++c)
-      for_points(scene.grid, scene.solver.state().velocity[c], at_face[c],
+      for_points(scene.domain, scene.solver.state().velocity[c], at_face[c],
                  [&](double q, double, double, double) { sum += q * q; });
     return sum;
   };
@@ -214,7 +214,7 @@ ModeErrors mode_errors(double lambda, int cells) {
   ModeErrors errors{};
   errors.rate = std::fabs(std::log(before / energy()) / (mode.rate * end) - 1);
   const double decay = std::exp(-mode.rate * end);
-  errors.profile = rms_error(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  errors.profile = rms_error(scene.domain, scene.solver.state().velocity[0], at_face[0],
                              [&](double x, double y, double z) { return 2 / root * decay * exact(x, y, z); }) /
                    (2 / root * decay * amplitude);
   return errors;

@@ -13,10 +13,10 @@ using namespace eulastic::test;
 namespace {
 
 struct Sweeper : PoissonScene {
-  WorkSpace work{grid};
+  WorkSpace work{domain};
   AcmSweepSolver solver;
   Sweeper(MPI_Comm comm, const GridSpec &spec, const AcmSweepOptions &options) : PoissonScene(comm, spec) {
-    EXPECT_EQ(solver.create(grid, *exchange, options, work), 0);
+    EXPECT_EQ(solver.create(domain, *exchange, options, work), 0);
   }
   // Solves to `relative` times the rms of the divergence.
   void solve(double relative) {
@@ -28,7 +28,7 @@ struct Sweeper : PoissonScene {
 // Cells and ghosts of `s` that differ in any bit from the periodic or mirror image in the solution `one` of one rank.
 int differences(const PoissonScene &s, const PoissonScene &one) {
   int count = 0;
-  const Layout &own = s.grid.layout();
+  const Layout &own = s.domain.layout();
   const int gz = std::min(1, own.ghosts[2]);
   for (int k = -gz; k < own.cells[2] + gz; ++k)
     for (int j = -1; j < own.cells[1] + 1; ++j)
@@ -36,8 +36,8 @@ int differences(const PoissonScene &s, const PoissonScene &one) {
         const Int3 local{i, j, k};
         Int3 image{};
         for (int d = 0; d < 3; ++d) {
-          const int n = s.grid.domain_cells()[d], g = own.begin[d] + local[d];
-          image[d] = !s.grid.is_wall(d) ? (g + n) % n : g < 0 ? -1 - g : g >= n ? 2 * n - 1 - g : g;
+          const int n = s.domain.domain_cells()[d], g = own.begin[d] + local[d];
+          image[d] = !s.domain.is_wall(d) ? (g + n) % n : g < 0 ? -1 - g : g >= n ? 2 * n - 1 - g : g;
         }
         const double a = s.increment[0](i, j, k), b = one.increment[0](image[0], image[1], image[2]);
         count += std::memcmp(&a, &b, sizeof a) != 0;
@@ -144,7 +144,7 @@ TEST(AcmSweeps, AgreesWithTheExactSolver) {
       Sweeper sweeps(run_communicator(), spec, {});
       PoissonScene exact(run_communicator(), spec);
       std::unique_ptr<PressureSolver> smac;
-      ASSERT_EQ(SmacSolver::create(exact.grid, *exact.exchange, &smac), 0);
+      ASSERT_EQ(SmacSolver::create(exact.domain, *exact.exchange, &smac), 0);
       const auto f = [&](int i, int j, int k) { return smooth_and_rough(cells, 0.9, i, j, k); };
       sweeps.set(f);
       exact.set(f);
@@ -153,7 +153,7 @@ TEST(AcmSweeps, AgreesWithTheExactSolver) {
       const double error =
           sweeps.rms([&](int i, int j, int k) { return sweeps.increment[0](i, j, k) - exact.increment[0](i, j, k); });
       EXPECT_LE(error, 1e-8 * sweeps.rms_divergence() / sweeps.dt * std::pow(2.3 / M_PI, 2)) << name(spec);
-      EXPECT_LE(std::abs(global_sum(sweeps.grid, sweeps.increment[0])), 1e-12 * sweeps.grid.domain_cell_count());
+      EXPECT_LE(std::abs(global_sum(sweeps.domain, sweeps.increment[0])), 1e-12 * sweeps.domain.domain_cell_count());
     }
 }
 
@@ -202,13 +202,13 @@ TEST(AcmSweeps, MemoryIsAllThatARestartNeeds) {
     restarted.solver.clear_memory();
     Field &to = *restarted.solver.memory();
     for (int f = 0; f < from.count(); ++f)
-      for (const Segment &s : on.grid.rows()) std::copy_n(from[f].row(s.j, s.k), s.size(), to[f].row(s.j, s.k));
+      for (const Segment &s : on.domain.rows()) std::copy_n(from[f].row(s.j, s.k), s.size(), to[f].row(s.j, s.k));
     for (Sweeper *s : {&on, &restarted}) {
       s->set(at(5));
       s->solve(1e-3);
     }
-    EXPECT_EQ(hash_points(on.grid, on.increment[0], at_centre, 1),
-              hash_points(on.grid, restarted.increment[0], at_centre, 1))
+    EXPECT_EQ(hash_points(on.domain, on.increment[0], at_centre, 1),
+              hash_points(on.domain, restarted.increment[0], at_centre, 1))
         << name(spec);
   }
 }
@@ -236,10 +236,10 @@ TEST(AcmSweeps, WithoutMultigridItIsTheConjugateResidualMethod) {
         one.solve(0);
         plain = one.solver.residual_rms();
         std::vector<double> left;
-        for (const Segment &s : one.grid.rows())
+        for (const Segment &s : one.domain.rows())
           for (int i = 0; i < s.i_end; ++i) left.push_back(one.residual(i, s.j, s.k));
         auto value = left.begin();
-        for (const Segment &s : one.grid.rows())
+        for (const Segment &s : one.domain.rows())
           for (int i = 0; i < s.i_end; ++i) one.divergence[0](i, s.j, s.k) = *value++;
       }
       Sweeper start(run_communicator(), spec, {1, 0, false});
@@ -259,7 +259,7 @@ TEST(AcmSweeps, SurvivesNothingToDoAndNotANumber) {
       s.solve(0);
       EXPECT_LT(s.rms(s.increment[0]), 1e-10);
       s.set(noise);
-      if (s.grid.layout().begin == Int3{0, 0, 0}) s.divergence[0](1, 1, 0) = std::nan("");
+      if (s.domain.layout().begin == Int3{0, 0, 0}) s.divergence[0](1, 1, 0) = std::nan("");
       s.solve(0);
       EXPECT_TRUE(std::isnan(s.increment[0](0, 0, 0)));
     }

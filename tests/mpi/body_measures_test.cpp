@@ -32,7 +32,7 @@ TEST(BodyMeasures, SameBitsOnAnyRanks) {
       scene.strain();
       all[c] = scene.measure();
       FlowMeasures flow;
-      ASSERT_EQ(measure_phases(scene.grid, scene.phases, &flow), 0);
+      ASSERT_EQ(measure_phases(scene.domain, scene.phases, &flow), 0);
       double energy = 0;
       for (const BodyMeasure &body : all[c]) energy += body.elastic_energy;
       EXPECT_GT(std::abs(energy), 1e-3);
@@ -121,12 +121,12 @@ TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
       spec.shear_modulus = 1;
       BodyScene scene(run_communicator(), box({48, 48, flat ? 1 : 48}, {1, 1, 1}));
       scene.add(spec, {{{.1, .5, .5}, turned}});
-      GhostExchange exchange(scene.grid);
+      GhostExchange exchange(scene.domain);
       ASSERT_EQ(exchange.update_ghosts(scene.phases[0].tensor.field, 1), 0);
       const BodyMeasure body = scene.measure()[0];
       EXPECT_GT(body.taylor_deformation, .3);
       EXPECT_NEAR(body.rest_deformation, (longer - 1) / (longer + 1), 1e-3);
-      scene.phases[0].tensor.field = tensor_at_rest(scene.grid);  // without the stretch it is the shape's
+      scene.phases[0].tensor.field = tensor_at_rest(scene.domain);  // without the stretch it is the shape's
       EXPECT_NEAR(scene.measure()[0].rest_deformation, body.taylor_deformation, 1e-14);
     }
   }
@@ -159,14 +159,14 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   BodyScene scene(run_communicator(), spec), silent(run_communicator(), spec);
   const Real3 start{1.9, 0.05, 0.8}, step{0.05, -0.03, 0.04};
   for (BodyScene *s : {&scene, &silent}) s->add(sphere, {{start, {}}});
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   for (int n = 1; n <= 100; ++n) {
     Real3 centre{};
     for (int d = 0; d < 3; ++d) centre[d] = wrap(start[d] + n * step[d], spec.length[d]);
     for (BodyScene *s : {&scene, &silent}) {
       s->move(sphere, {{centre, {}}});
-      ASSERT_EQ(carry_labels(s->grid, exchange, &s->phases[0]), 0);
-      ASSERT_EQ(s->tracker.follow(s->grid, s->phases), 0);
+      ASSERT_EQ(carry_labels(s->domain, exchange, &s->phases[0]), 0);
+      ASSERT_EQ(s->tracker.follow(s->domain, s->phases), 0);
     }
     const BodyMeasure body = scene.measure()[0];
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(body.centroid[d], start[d] + n * step[d], 2e-3) << n;
@@ -174,8 +174,8 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   }
   std::vector<Int3> references, others;
   std::vector<double> volumes;
-  ASSERT_EQ(scene.tracker.known(scene.grid, &references, &volumes), 0);
-  ASSERT_EQ(silent.tracker.known(silent.grid, &others, &volumes), 0);
+  ASSERT_EQ(scene.tracker.known(scene.domain, &references, &volumes), 0);
+  ASSERT_EQ(silent.tracker.known(silent.domain, &others, &volumes), 0);
   EXPECT_EQ(references, others);
   references.resize(1);
   ASSERT_EQ(MPI_Bcast(references[0].data(), 3, MPI_INT, 0, run_communicator()), 0);
@@ -183,7 +183,7 @@ TEST(BodyMeasures, FollowAcrossSeamsWhateverTheInterval) {
   // A restart: a new tracker with the carried references measures the same.
   const BodyMeasure last = scene.measure()[0];
   scene.tracker = BodyTracker();
-  scene.tracker.add_phase(scene.grid, {{start, {}}});
+  scene.tracker.add_phase(scene.domain, {{start, {}}});
   scene.tracker.set_known(references, {});
   EXPECT_EQ(scene.measure()[0].centroid, last.centroid);
 }
@@ -193,9 +193,9 @@ TEST(BodyMeasures, SlabsThatFillTheBoxStay) {
   slab.interval = {0.2, 0.5};
   BodyScene scene(run_communicator(), box({12, 10, 7}, {1.2, 1.0, 0.7}));
   Places places;
-  ASSERT_EQ(place_bodies(slab, scene.grid.domain_shape(), &places), "");
+  ASSERT_EQ(place_bodies(slab, scene.domain.domain_shape(), &places), "");
   scene.add(slab, places);
-  for (int n = 0; n < 5; ++n) ASSERT_EQ(scene.tracker.follow(scene.grid, scene.phases), 0);
+  for (int n = 0; n < 5; ++n) ASSERT_EQ(scene.tracker.follow(scene.domain, scene.phases), 0);
   const BodyMeasure body = scene.measure()[0];
   EXPECT_NEAR(body.volume, 0.3 * 1.2 * 0.7, 1e-14);
   EXPECT_NEAR(body.centroid[0], 0.6, 1e-13);

@@ -36,16 +36,16 @@ PetscErrorCode build(MPI_Comm comm, const Case &c, Scene *scene) {
   PetscCall(scene->create(comm, grid, spec));
   const Real3 &L = grid.length;
   for (int d = 0; d < 2; ++d)
-    set(scene->grid, scene->solver.state().velocity[d], at_face[d],
+    set(scene->domain, scene->solver.state().velocity[d], at_face[d],
         [&](double x, double y, double) { return 0.1 * std::sin(6.283185307179586 * (d == 0 ? y / L[1] : x / L[0])); });
   Phase &phase = scene->add_phase(0.7, [&](double x, double y, double) {
     return std::hypot(x - 0.85 * L[0], y - 0.8 * L[1]) < 0.9 ? 1.0 : 0.0;  // over the corner of the high walls
   });
-  phase.label = Field(scene->grid, 1);
-  for (const Segment &row : scene->grid.rows())
+  phase.label = Field(scene->domain, 1);
+  for (const Segment &row : scene->domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i)
       phase.label[0](i, row.j, row.k) = phase.fraction[0](i, row.j, row.k) > 0 ? 1 : 0;
-  scene->solver.bodies().add_phase(scene->grid, {BodyPlace{}});
+  scene->solver.bodies().add_phase(scene->domain, {BodyPlace{}});
   PetscCall(scene->solver.prepare());
   PetscFunctionReturn(0);
 }
@@ -74,8 +74,8 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
   ASSERT_EQ(build(run_communicator(), GetParam(), &writer), 0);
   ASSERT_EQ(advance(&writer, 7, &hash), 0);
   std::vector<double> volumes(writer.solver.domain().rank() == writer.solver.domain().ranks() - 1 ? 1 : 0, 1.5);
-  ASSERT_EQ(writer.solver.bodies().follow(writer.grid, writer.solver.state().phases), 0);  // it goes to its owner,
-  writer.solver.bodies().set_first_volumes(volumes);                                       // the last rank
+  ASSERT_EQ(writer.solver.bodies().follow(writer.domain, writer.solver.state().phases), 0);  // it goes to its owner,
+  writer.solver.bodies().set_first_volumes(volumes);                                         // the last rank
   ASSERT_EQ(save_state(&writer.solver, position, "-option value\n", path), 0);
   ASSERT_EQ(advance(&writer, 9, &expected), 0);  // writing has changed nothing
 
@@ -102,7 +102,7 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
     EXPECT_EQ(scene->solver.bodies().first_volumes(), owned);
     ASSERT_EQ(advance(scene, 9, &hash), 0);
     EXPECT_EQ(hash, expected);
-    ASSERT_EQ(scene->solver.bodies().follow(scene->grid, scene->solver.state().phases), 0);
+    ASSERT_EQ(scene->solver.bodies().follow(scene->domain, scene->solver.state().phases), 0);
     EXPECT_EQ(scene->solver.bodies().first_volumes(), owned);
     EXPECT_EQ(scene->solver.sweeps(), writer.solver.sweeps());
     EXPECT_EQ(scene->solver.stages(), writer.solver.stages());
@@ -135,7 +135,7 @@ TEST(CheckpointFile, RefusesAnotherScene) {
   ASSERT_EQ(file.open(run_communicator(), path), 0);
   EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("the grid needs"),
             std::string::npos);
-  reader.solver.bodies().add_phase(reader.grid, {BodyPlace{}});
+  reader.solver.bodies().add_phase(reader.domain, {BodyPlace{}});
   EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("another scene"),
             std::string::npos);
 }

@@ -60,11 +60,11 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
   Outcome outcome;
   const ParseResult parsed = parse_line(options);
   EXPECT_EQ(parsed.error, "");
-  Domain grid;
+  Domain domain;
   Solver solver;
   std::string reason;
-  EXPECT_EQ(grid.create(comm, parsed.config.grid), 0);
-  EXPECT_EQ(build_scene(comm == PETSC_COMM_SELF ? test::with_all_places(parsed.config) : parsed.config, grid, &solver,
+  EXPECT_EQ(domain.create(comm, parsed.config.grid), 0);
+  EXPECT_EQ(build_scene(comm == PETSC_COMM_SELF ? test::with_all_places(parsed.config) : parsed.config, domain, &solver,
                         &reason),
             0);
   EXPECT_EQ(reason, "");
@@ -152,24 +152,24 @@ TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
   double energy[2];
   for (const bool merge : {false, true}) {
     const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
-    Domain grid;
+    Domain domain;
     Solver solver;
     std::string reason;
-    ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);
-    ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+    ASSERT_EQ(domain.create(run_communicator(), parsed.config.grid), 0);
+    ASSERT_EQ(build_scene(parsed.config, domain, &solver, &reason), 0);
     ASSERT_EQ(advance(&solver, 8, .012), 0);
     if (!merge) {
       // Moves bead 2 by hand, in the middle of the run.
       std::vector<Phase> &phases = solver.state().phases;
-      GhostExchange exchange(grid);
+      GhostExchange exchange(domain);
       ASSERT_EQ(exchange.update_ghosts(phases[0].label, contact_reach), 0);
-      add_colour(grid, 0, &phases);
-      move_bodies(grid, {{2, 0, 1}}, &phases);
+      add_colour(domain, 0, &phases);
+      move_bodies(domain, {{2, 0, 1}}, &phases);
       ASSERT_EQ(solver.prepare(), 0);
     }
     ASSERT_EQ(advance(&solver, 8, .012), 0);
     energy[merge] = 0;
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         energy[merge] += std::pow(solver.state().velocity[0](i, row.j, row.k), 2);
     EXPECT_EQ(solver.state().phases.size(), 1u) << "it moves back, nobody is near";
@@ -194,11 +194,11 @@ TEST(Collision, BodiesThatOverlapAtTheStartAreBothWhole) {
   for (const bool merge : {false, true}) {
     const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
     ASSERT_EQ(parsed.error, "");
-    Domain grid;
+    Domain domain;
     Solver solver;
     std::string reason;
-    ASSERT_EQ(grid.create(run_communicator(), parsed.config.grid), 0);
-    ASSERT_EQ(build_scene(parsed.config, grid, &solver, &reason), 0);
+    ASSERT_EQ(domain.create(run_communicator(), parsed.config.grid), 0);
+    ASSERT_EQ(build_scene(parsed.config, domain, &solver, &reason), 0);
     for (const double volume : volumes(solver)) {
       if (merge) {
         EXPECT_LT(volume, 0.9999 * 3.14159265358979 * 0.36);

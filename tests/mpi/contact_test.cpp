@@ -45,7 +45,7 @@ std::vector<T> of_all(MPI_Comm comm, const std::vector<T> &mine) {
 }
 
 struct Marks {
-  Domain grid;
+  Domain domain;
   std::vector<Phase> phases;
   std::string crowded;
 
@@ -53,16 +53,16 @@ struct Marks {
     GridSpec spec;
     spec.cells = cells;
     if (walls) spec.boundary[1] = Boundary::wall;
-    EXPECT_EQ(grid.create(comm, spec), 0);
+    EXPECT_EQ(domain.create(comm, spec), 0);
   }
   void add(const std::vector<Block> &blocks) {
     Phase phase;
     SpeciesSpec spec;
     spec.name = "bead";
-    EXPECT_EQ(fill_phase(grid, spec, {}, 1, &phase), 0);
+    EXPECT_EQ(fill_phase(domain, spec, {}, 1, &phase), 0);
     phase.separate = true;
-    const Int3 &begin = grid.layout().begin, &n = grid.domain_cells();
-    for (const Segment &row : grid.rows())
+    const Int3 &begin = domain.layout().begin, &n = domain.domain_cells();
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         for (std::size_t b = 0; b < blocks.size(); ++b) {
           const int x[3] = {begin[0] + i, begin[1] + row.j, begin[2] + row.k};
@@ -75,31 +75,31 @@ struct Marks {
           phase.fraction[0](i, row.j, row.k) = 0.25 + 0.001 * (x[0] + 100 * (x[1] + 100 * x[2])) / 1e4;
           phase.label[0](i, row.j, row.k) = double(b) + 1;
         }
-    const auto &components = tensor_components(grid.dimension());
+    const auto &components = tensor_components(domain.dimension());
     for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const Staggering at = components[c].at;
-      for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-        for (int j = 0; j < grid.points_end(1, at[1]); ++j)
-          for (int i = 0; i < grid.points_end(0, at[0]); ++i)
+      for (int k = 0; k < domain.points_end(2, at[2]); ++k)
+        for (int j = 0; j < domain.points_end(1, at[1]); ++j)
+          for (int i = 0; i < domain.points_end(0, at[0]); ++i)
             phase.tensor.field[c](i, j, k) =
                 2 + c + 1e-3 * (begin[0] + i) + 1e-5 * (begin[1] + j) + 1e-7 * (begin[2] + k);
     }
     phases.push_back(std::move(phase));
   }
   std::vector<NearBodies> near() {
-    GhostExchange exchange(grid);
+    GhostExchange exchange(domain);
     EXPECT_EQ(exchange.update_ghosts(phases[0].label, contact_reach), 0);
     EXPECT_EQ(exchange.update_ghosts(phases[0].fraction, contact_reach), 0);
     std::vector<NearBodies> pairs;
-    find_near_in_phase(grid, {phases[0].label[0], phases[0].fraction[0]}, 0, contact_reach, &pairs);
-    return of_all(grid.comm(), pairs);
+    find_near_in_phase(domain, {phases[0].label[0], phases[0].fraction[0]}, 0, contact_reach, &pairs);
+    return of_all(domain.comm(), pairs);
   }
   std::vector<BodyMove> separate() {
-    GhostExchange exchange(grid);
+    GhostExchange exchange(domain);
     Separation result;
-    EXPECT_EQ(separate_bodies(grid, exchange, {}, &phases, &result), 0);
+    EXPECT_EQ(separate_bodies(domain, exchange, {}, &phases, &result), 0);
     crowded = result.crowded;
-    const std::vector<BodyMove> moves = of_all(grid.comm(), result.moves);
+    const std::vector<BodyMove> moves = of_all(domain.comm(), result.moves);
     std::set<int> changed;
     for (const BodyMove &move : moves) changed.insert({move.from, move.to});
     EXPECT_EQ(result.changed, changed);
@@ -166,8 +166,8 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
     const Phase &from = marks.phases[0], &to = marks.phases[1], &old = before.phases[0];
     EXPECT_EQ(to.species, "bead");
     EXPECT_EQ(to.colour, 1);
-    const Domain &grid = marks.grid;
-    for (const Segment &row : grid.rows())
+    const Domain &domain = marks.domain;
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const double label = old.label[0](i, row.j, row.k), phi = old.fraction[0](i, row.j, row.k);
         ASSERT_EQ(from.label[0](i, row.j, row.k), label == 2 ? 0 : label);
@@ -176,19 +176,19 @@ TEST(Contact, AMovedBodyKeepsEveryValue) {
         ASSERT_EQ(to.fraction[0](i, row.j, row.k), label == 2 ? phi : 0);
       }
     // B where a cell of the body touches the point; elsewhere it is of nobody.
-    const auto &components = tensor_components(grid.dimension());
-    const Int3 &begin = grid.layout().begin;
+    const auto &components = tensor_components(domain.dimension());
+    const Int3 &begin = domain.layout().begin;
     const Block &body = blocks[1];
     for (int c = 0; c < to.tensor.field.count(); ++c) {
       const Staggering at = components[c].at;
-      for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-        for (int j = 0; j < grid.points_end(1, at[1]); ++j)
-          for (int i = 0; i < grid.points_end(0, at[0]); ++i) {
+      for (int k = 0; k < domain.points_end(2, at[2]); ++k)
+        for (int j = 0; j < domain.points_end(1, at[1]); ++j)
+          for (int i = 0; i < domain.points_end(0, at[0]); ++i) {
             const int x[3] = {begin[0] + i, begin[1] + j, begin[2] + k};
             bool touches = true;
             for (int d = 0; d < 3; ++d) {
               const bool next = x[d] >= body.begin[d] && x[d] < body.end[d] + at[d];
-              const bool seam = at[d] && !grid.is_wall(d) && x[d] == 0 && body.end[d] == cells[d];
+              const bool seam = at[d] && !domain.is_wall(d) && x[d] == 0 && body.end[d] == cells[d];
               touches = touches && (next || seam);
             }
             if (touches) {
@@ -209,9 +209,9 @@ TEST(Contact, RemainsOfABodyOverwriteNobody) {
   Marks marks(run_communicator(), {40, 20, 1}, true);
   marks.add({{{3, 5, 0}, {7, 9, 1}}, {{9, 5, 0}, {13, 9, 1}}, {{22, 5, 0}, {26, 9, 1}}});
   ASSERT_EQ(marks.separate().size(), 1u);  // bead 2 goes
-  const Int3 &begin = marks.grid.layout().begin;
+  const Int3 &begin = marks.domain.layout().begin;
   const auto for_each = [&](auto &&visit) {
-    for (const Segment &row : marks.grid.rows())
+    for (const Segment &row : marks.domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) visit(begin[0] + i, begin[1] + row.j, i, row.j, row.k);
   };
   // Bead 2 now has a thin tail up to x = 24, over bead 3 in the other phase; bead 1 has come near bead 3: both in phase
@@ -227,7 +227,7 @@ TEST(Contact, RemainsOfABodyOverwriteNobody) {
     for (const Phase &phase : marks.phases)
       for_each(
           [&](int, int, int i, int j, int k) { (*all)[int(phase.label[0](i, j, k))] += phase.fraction[0](i, j, k); });
-    MPI_Allreduce(MPI_IN_PLACE, all->data(), 4, MPI_DOUBLE, MPI_SUM, marks.grid.comm());
+    MPI_Allreduce(MPI_IN_PLACE, all->data(), 4, MPI_DOUBLE, MPI_SUM, marks.domain.comm());
   };
   volumes(&first);
   const std::vector<BodyMove> moves = marks.separate();

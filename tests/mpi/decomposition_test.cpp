@@ -18,73 +18,73 @@ void check(const GridSpec &spec) {
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " x " << spec.cells[1] << " x " << spec.cells[2] << " as "
                                     << spec.processors[0] << " x " << spec.processors[1] << " x "
                                     << spec.processors[2]);
-  Domain grid;
-  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
-  const Layout &own = grid.layout();
+  Domain domain;
+  ASSERT_EQ(domain.create(run_communicator(), spec), 0);
+  const Layout &own = domain.layout();
 
   PetscInt x, y, z, nx, ny, nz;
-  ASSERT_EQ(DMDAGetCorners(grid.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
+  ASSERT_EQ(DMDAGetCorners(domain.dm(), &x, &y, &z, &nx, &ny, &nz), 0);
   EXPECT_EQ(own.begin, (Int3{int(x), int(y), int(z)}));
   // The face on a high side is a point of the DMDA, and belongs to the rank that touches the side.
   EXPECT_EQ((Int3{int(nx), int(ny), int(nz)}),
-            (Int3{grid.points_end(0, true), grid.points_end(1, true), grid.points_end(2, true)}));
+            (Int3{domain.points_end(0, true), domain.points_end(1, true), domain.points_end(2, true)}));
   PetscInt dimension, points[3], dof, width;
   DMBoundaryType type[3];
   DMDAStencilType stencil;
-  ASSERT_EQ(DMDAGetInfo(grid.dm(), &dimension, &points[0], &points[1], &points[2], nullptr, nullptr, nullptr, &dof,
+  ASSERT_EQ(DMDAGetInfo(domain.dm(), &dimension, &points[0], &points[1], &points[2], nullptr, nullptr, nullptr, &dof,
                         &width, &type[0], &type[1], &type[2], &stencil),
             0);
-  EXPECT_EQ(dimension, grid.dimension());
+  EXPECT_EQ(dimension, domain.dimension());
   EXPECT_EQ(dof, 1);
   EXPECT_EQ(stencil, DMDA_STENCIL_BOX);
   EXPECT_LE(width, own.ghosts[0]);
-  for (int d = 0; d < grid.dimension(); ++d) {
-    EXPECT_EQ(points[d], spec.cells[d] + grid.is_wall(d));
-    EXPECT_EQ(type[d], grid.is_wall(d) ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_PERIODIC);
+  for (int d = 0; d < domain.dimension(); ++d) {
+    EXPECT_EQ(points[d], spec.cells[d] + domain.is_wall(d));
+    EXPECT_EQ(type[d], domain.is_wall(d) ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_PERIODIC);
   }
 
   const auto layout_of = [&spec](const Domain &domain, int rank) {
     return domain.split().box_of(rank, spec, domain.spec().ghosts).layout();
   };
-  const Layout mine = layout_of(grid, grid.rank());
+  const Layout mine = layout_of(domain, domain.rank());
   EXPECT_EQ(mine.begin, own.begin);
   EXPECT_EQ(mine.cells, own.cells);
   EXPECT_EQ(mine.size, own.size);
   EXPECT_EQ(mine.offset(1, 2, 3), own.offset(1, 2, 3));
 
-  const Domain planned = Domain::planned(spec, grid.ranks());
-  EXPECT_EQ(layout_of(planned, grid.rank()).begin, own.begin);
-  EXPECT_EQ(layout_of(planned, grid.rank()).size, own.size);
+  const Domain planned = Domain::planned(spec, domain.ranks());
+  EXPECT_EQ(layout_of(planned, domain.rank()).begin, own.begin);
+  EXPECT_EQ(layout_of(planned, domain.rank()).size, own.size);
 
   // What the split says of another rank is what that rank says of itself.
-  std::vector<int> sizes(grid.ranks());
+  std::vector<int> sizes(domain.ranks());
   const int size = static_cast<int>(own.size);
   MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, run_communicator());
 
-  const Int3 &n = grid.domain_cells();
+  const Int3 &n = domain.domain_cells();
   std::vector<int> times(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   int wrong_owner = 0;
-  for (int rank = 0; rank < grid.ranks(); ++rank) {
-    const Layout layout = layout_of(grid, rank);
+  for (int rank = 0; rank < domain.ranks(); ++rank) {
+    const Layout layout = layout_of(domain, rank);
     EXPECT_EQ(layout.size, sizes[rank]);
     for (int k = layout.begin[2]; k < layout.begin[2] + layout.cells[2]; ++k)
       for (int j = layout.begin[1]; j < layout.begin[1] + layout.cells[1]; ++j)
         for (int i = layout.begin[0]; i < layout.begin[0] + layout.cells[0]; ++i) {
           ++times.at(i + n[0] * (j + static_cast<std::size_t>(n[1]) * k));
-          wrong_owner += grid.owner(i, j, k) != rank;
+          wrong_owner += domain.owner(i, j, k) != rank;
         }
     // Index N belongs to the owner of N - 1.
     const Int3 end{layout.begin[0] + layout.cells[0], layout.begin[1] + layout.cells[1],
                    layout.begin[2] + layout.cells[2]};
-    wrong_owner += end == n && grid.owner(n[0], n[1], n[2]) != rank;
-    wrong_owner += end[1] == n[1] && grid.owner(layout.begin[0], n[1], layout.begin[2]) != rank;
+    wrong_owner += end == n && domain.owner(n[0], n[1], n[2]) != rank;
+    wrong_owner += end[1] == n[1] && domain.owner(layout.begin[0], n[1], layout.begin[2]) != rank;
     for (int d = 0; d < 3; ++d) {
-      const int part = n[d] / grid.processors(d);
-      if (spec.cells[d] < 256 * grid.processors(d) || d > 0) {
+      const int part = n[d] / domain.processors(d);
+      if (spec.cells[d] < 256 * domain.processors(d) || d > 0) {
         EXPECT_TRUE(layout.cells[d] == part || layout.cells[d] == part + 1) << "uneven";
       } else {
         EXPECT_EQ(layout.begin[d] % 256, 0);
-        EXPECT_LT(std::abs(layout.cells[d] - double(n[d]) / grid.processors(d)), 256 + 1e-9);
+        EXPECT_LT(std::abs(layout.cells[d] - double(n[d]) / domain.processors(d)), 256 + 1e-9);
       }
     }
   }
@@ -121,21 +121,21 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       spec.cells = cells;
       spec.boundary = {x, Boundary::wall, Boundary::periodic};
       if (!Domain::why_not(spec, world_size()).empty()) continue;
-      Domain grid;
-      ASSERT_EQ(grid.create(run_communicator(), spec), 0);
-      Field before(grid, 1), after(grid, 1);
-      const Int3 &begin = grid.layout().begin;
+      Domain domain;
+      ASSERT_EQ(domain.create(run_communicator(), spec), 0);
+      Field before(domain, 1), after(domain, 1);
+      const Int3 &begin = domain.layout().begin;
       const auto truth = [&](int i, int j, int k) {
         return begin[0] + i + double(cells[0]) * (begin[1] + j + double(cells[1]) * (begin[2] + k));
       };
-      for (const Segment &s : grid.rows())
+      for (const Segment &s : domain.rows())
         for (int i = 0; i < s.size(); ++i) before[0](i, s.j, s.k) = truth(i, s.j, s.k);
       DmHandle cell_dm;
-      ASSERT_EQ(grid.create_cell_dm(DMDA_STENCIL_BOX, 1, cell_dm.put()), 0);
+      ASSERT_EQ(domain.create_cell_dm(DMDA_STENCIL_BOX, 1, cell_dm.put()), 0);
       VecHandle global, natural;
       ASSERT_EQ(DMCreateGlobalVector(cell_dm.get(), global.put()), 0);
       ASSERT_EQ(DMDACreateNaturalVector(cell_dm.get(), natural.put()), 0);
-      ASSERT_EQ(to_global(grid, before[0], global.get()), 0);
+      ASSERT_EQ(to_global(domain, before[0], global.get()), 0);
       ASSERT_EQ(DMDAGlobalToNaturalBegin(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
       ASSERT_EQ(DMDAGlobalToNaturalEnd(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
       PetscInt first, end;
@@ -144,8 +144,8 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
       ASSERT_EQ(VecGetArrayRead(natural.get(), &values), 0);
       for (PetscInt n = first; n < end; ++n) EXPECT_EQ(values[n - first], n);
       ASSERT_EQ(VecRestoreArrayRead(natural.get(), &values), 0);
-      ASSERT_EQ(from_global(grid, global.get(), after[0]), 0);
-      for (const Segment &s : grid.rows())
+      ASSERT_EQ(from_global(domain, global.get(), after[0]), 0);
+      for (const Segment &s : domain.rows())
         for (int i = 0; i < s.size(); ++i) EXPECT_EQ(after[0](i, s.j, s.k), truth(i, s.j, s.k));
       ++tried;
     }

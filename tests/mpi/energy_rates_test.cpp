@@ -21,7 +21,7 @@ Function wild(double a) {
 }
 
 struct CellBlock {
-  Domain grid;
+  Domain domain;
   BoxSides walls{};
   Field velocity;
   std::vector<Phase> phases;
@@ -31,64 +31,64 @@ struct CellBlock {
     spec.cells = {7, 13, flat ? 1 : 9};
     spec.length = {1, 2, 1.5};
     for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = has_walls[d] ? Boundary::wall : Boundary::periodic;
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    velocity = Field(grid, grid.dimension());
-    for (int c = 0; c < grid.dimension(); ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
+    EXPECT_EQ(domain.create(comm, spec), 0);
+    velocity = Field(domain, domain.dimension());
+    for (int c = 0; c < domain.dimension(); ++c) set(domain, velocity[c], at_face[c], wild(c + 1));
   }
 
   void move_walls(const Real3 &speed) {
-    for (int d = 0; d < grid.dimension(); ++d)
+    for (int d = 0; d < domain.dimension(); ++d)
       for (int side = 0; side < 2; ++side)
         for (int c = 0; c < 3; ++c)
           if (c != d) walls[d][side].motion.velocity[c] = speed[c] * (1 - 3 * side + d);
   }
 
   void add_phase(const Material &material, double seed) {
-    const auto &components = tensor_components(grid.dimension());
+    const auto &components = tensor_components(domain.dimension());
     Phase &phase = phases.emplace_back();
     phase.material = material;
-    phase.fraction = Field(grid, 1);
-    phase.tensor.field = Field(grid, static_cast<int>(components.size()));
+    phase.fraction = Field(domain, 1);
+    phase.tensor.field = Field(domain, static_cast<int>(components.size()));
     phase.tensor.rule.centre = 0.5;
-    build_all(grid, &phase.tensor.evolving);
-    build_all(grid, &phase.tensor.stressed);
-    set(grid, phase.fraction[0], at_centre,
+    build_all(domain, &phase.tensor.evolving);
+    build_all(domain, &phase.tensor.stressed);
+    set(domain, phase.fraction[0], at_centre,
         [&](double x, double y, double z) { return std::fabs(wild(seed)(x, y, z)); });
     for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const double unit = components[c].a == components[c].b;
-      set(grid, phase.tensor.field[c], components[c].at,
+      set(domain, phase.tensor.field[c], components[c].at,
           [&](double x, double y, double z) { return unit + 0.4 * wild(seed + c)(x, y, z); });
     }
   }
 
   void fill_ghosts() {
-    GhostExchange exchange(grid);
+    GhostExchange exchange(domain);
     EXPECT_EQ(exchange.update_ghosts(velocity, 2), 0);
-    fill_wall_ghosts_velocity(grid, walls, 0, velocity, 2);
+    fill_wall_ghosts_velocity(domain, walls, 0, velocity, 2);
     for (Phase &phase : phases) {
       EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);
       EXPECT_EQ(exchange.update_ghosts(phase.tensor.field, 2), 0);
-      fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-      fill_wall_ghosts_tensor(grid, walls, phase.tensor.field, 2);
+      fill_wall_ghosts_even(domain, at_centre, phase.fraction[0], 2);
+      fill_wall_ghosts_tensor(domain, walls, phase.tensor.field, 2);
     }
   }
 
   // Sum of v . (mu lap v + div sigma_e) over all faces but those on walls, where v = 0.
   double power_of_forces(double viscosity) {
-    Field force(grid, grid.dimension());
-    EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
+    Field force(domain, domain.dimension());
+    EXPECT_EQ(compute_elastic_force(domain, 1, phases, force), 0);
     double power = 0;
-    for (int c = 0; c < grid.dimension(); ++c)
-      for (const Segment &row : grid.rows())
+    for (int c = 0; c < domain.dimension(); ++c)
+      for (const Segment &row : domain.rows())
         for (int i = 0; i < row.i_end; ++i) {
           const double *p = &velocity[c](i, row.j, row.k);
           double sum = force[c](i, row.j, row.k);
-          for (int d = 0; d < grid.dimension(); ++d)
+          for (int d = 0; d < domain.dimension(); ++d)
             sum += viscosity * (p[velocity[c].stride(d)] - 2 * *p + p[-velocity[c].stride(d)]) /
-                   (grid.spacing()[d] * grid.spacing()[d]);
-          if (*p != 0) power += *p * sum * grid.cell_volume();
+                   (domain.spacing()[d] * domain.spacing()[d]);
+          if (*p != 0) power += *p * sum * domain.cell_volume();
         }
-    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, grid.comm());
+    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, domain.comm());
     return power;
   }
 };
@@ -101,10 +101,10 @@ struct Measures {
 Measures measure(CellBlock &box, double viscosity) {
   Measures m;
   box.fill_ghosts();
-  EXPECT_EQ(measure_flow(box.grid, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
-  EXPECT_EQ(measure_phases(box.grid, box.phases, &m.flow), 0);
+  EXPECT_EQ(measure_flow(box.domain, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
+  EXPECT_EQ(measure_phases(box.domain, box.phases, &m.flow), 0);
   const EnergyNumbers numbers{1.3, viscosity, {0.3, 0.2, 0}, &box.walls};
-  EXPECT_EQ(measure_energy_rates(box.grid, box.velocity, box.phases, numbers, &m.rates), 0);
+  EXPECT_EQ(measure_energy_rates(box.domain, box.velocity, box.phases, numbers, &m.rates), 0);
   return m;
 }
 

@@ -32,8 +32,8 @@ std::uint64_t run_hash(MPI_Comm comm, const Int3 &cells, PressureKind pressure, 
   spec.sides[1][1].motion.velocity = {1, 0, 0};
   spec.fluid.body_force.force = {1, 0, 0};
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
-  const double h = scene.grid.spacing()[1];
-  const bool flat = scene.grid.dimension() == 2;
+  const double h = scene.domain.spacing()[1];
+  const bool flat = scene.domain.dimension() == 2;
   scene.add_phase(
       2, [=](double, double y, double) { return std::min(1.0, std::max(0.0, (0.33 - (y - h / 2)) / h)); }, true);
   scene.add_phase(1, [=](double x, double y, double z) {

@@ -21,41 +21,41 @@ struct Flow {
     spec.cells = cells;
     spec.length = length;
     for (int d = 0; d < 3; ++d) spec.boundary[d] = has_walls[d] ? Boundary::wall : Boundary::periodic;
-    grid.create(comm, spec);
-    velocity = Field(grid, grid.dimension());
+    domain.create(comm, spec);
+    velocity = Field(domain, domain.dimension());
   }
 
   void set(View q, const Staggering &s, const Function &field) const {
-    const Real3 &h = grid.spacing();
-    const auto at = [&](int d, int index) { return (grid.layout().begin[d] + index + (s[d] ? 0.0 : 0.5)) * h[d]; };
-    for (const Segment &row : grid.rows())
+    const Real3 &h = domain.spacing();
+    const auto at = [&](int d, int index) { return (domain.layout().begin[d] + index + (s[d] ? 0.0 : 0.5)) * h[d]; };
+    for (const Segment &row : domain.rows())
       for (int i = 0; i < row.i_end; ++i) q(i, row.j, row.k) = field(at(0, i), at(1, row.j), at(2, row.k));
   }
 
   void add_phase(double shear_modulus, const Function &fraction, const std::array<double, 3> &diagonal) {
-    const int components = static_cast<int>(tensor_components(grid.dimension()).size());
+    const int components = static_cast<int>(tensor_components(domain.dimension()).size());
     Phase phase;
     phase.material.shear_modulus = shear_modulus;
-    phase.fraction = Field(grid, 1);
-    phase.tensor.field = Field(grid, components);
+    phase.fraction = Field(domain, 1);
+    phase.tensor.field = Field(domain, components);
     set(phase.fraction[0], at_centre, fraction);
-    for (int c = 0; c < grid.dimension(); ++c) phase.tensor.field.fill(c, diagonal[c]);
-    for (int c = grid.dimension(); c < components; ++c) phase.tensor.field.fill(c, 7.0);  // off-diagonal: no energy
+    for (int c = 0; c < domain.dimension(); ++c) phase.tensor.field.fill(c, diagonal[c]);
+    for (int c = domain.dimension(); c < components; ++c) phase.tensor.field.fill(c, 7.0);  // off-diagonal: no energy
     phases.push_back(std::move(phase));
   }
 
   FlowMeasures measure(const std::array<Function, 3> &field, const FlowNumbers &numbers) {
-    for (int c = 0; c < grid.dimension(); ++c) set(velocity[c], at_face[c], field[c]);
-    GhostExchange exchange(grid);
+    for (int c = 0; c < domain.dimension(); ++c) set(velocity[c], at_face[c], field[c]);
+    GhostExchange exchange(domain);
     exchange.update_ghosts(velocity, 1);
-    fill_wall_ghosts_velocity(grid, walls, 0, velocity, 1);
+    fill_wall_ghosts_velocity(domain, walls, 0, velocity, 1);
     FlowMeasures measures;
-    EXPECT_EQ(measure_flow(grid, velocity, numbers, &measures), 0);
-    EXPECT_EQ(measure_phases(grid, phases, &measures), 0);
+    EXPECT_EQ(measure_flow(domain, velocity, numbers, &measures), 0);
+    EXPECT_EQ(measure_phases(domain, phases, &measures), 0);
     return measures;
   }
 
-  Domain grid;
+  Domain domain;
   BoxSides walls{};
   Field velocity;
   std::vector<Phase> phases;
@@ -129,16 +129,16 @@ TEST(FlowMeasures, DissipationIsThePowerOfTheDiscreteViscousForce) {
       return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z); };
     };
     const FlowMeasures m = flow.measure({wild(1), wild(2), wild(3)}, {1, 1, 0, 0});
-    const Domain &grid = flow.grid;
+    const Domain &domain = flow.domain;
     double power = 0;
     for (int c = 0; c < 3; ++c) {
       const ConstView q = flow.velocity[c];
-      for (const Segment &row : grid.rows())
+      for (const Segment &row : domain.rows())
         for (int i = 0; i < row.i_end; ++i)
           for (int d = 0; d < 3; ++d) {
-            const double *p = &q(i, row.j, row.k), h = grid.spacing()[d];
+            const double *p = &q(i, row.j, row.k), h = domain.spacing()[d];
             // On its own walls v is 0 and the row below is free.
-            if (*p != 0) power -= *p * (p[q.stride(d)] - 2 * *p + p[-q.stride(d)]) / (h * h) * grid.cell_volume();
+            if (*p != 0) power -= *p * (p[q.stride(d)] - 2 * *p + p[-q.stride(d)]) / (h * h) * domain.cell_volume();
           }
     }
     MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, run_communicator());

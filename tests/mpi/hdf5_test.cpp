@@ -21,13 +21,13 @@ TEST_P(Fields, RoundTrip) {
   const Staggering places[] = {at_centre, at_face[0], at_face[1], {true, true, false}};
   for (const Staggering &place : places) {
     SCOPED_TRACE(location_name(place));
-    Field block(scene.grid, 2);
+    Field block(scene.domain, 2);
     scene.fill(block[0], place);
     const std::string path = directory / ("field_" + location_name(place) + ".h5");
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
     const ConstView view = block[0];
-    ASSERT_EQ(out.write_field(scene.grid, {"q", place, stored, high_wall}, {view}), 0);
+    ASSERT_EQ(out.write_field(scene.domain, {"q", place, stored, high_wall}, {view}), 0);
     EXPECT_FALSE(fs::exists(path)) << "visible before it is complete";
     ASSERT_EQ(out.commit(), 0);
     EXPECT_TRUE(fs::exists(path));
@@ -45,16 +45,16 @@ TEST_P(Fields, RoundTrip) {
     Hdf5File in;
     std::string location;
     ASSERT_EQ(in.open(run_communicator(), path), 0);
-    ASSERT_EQ(in.read_field(scene.grid, "q", place, block[1]), 0);
+    ASSERT_EQ(in.read_field(scene.domain, "q", place, block[1]), 0);
     ASSERT_EQ(in.read_attribute("q", "location", &location), 0);
     EXPECT_EQ(location, location_name(place));
-    const Domain &grid = scene.grid;
-    for (int k = 0; k < grid.cells()[2]; ++k)
-      for (int j = 0; j < grid.points_end(1, high_wall && place[1]); ++j)
-        for (int i = 0; i < grid.points_end(0, high_wall && place[0]); ++i)
+    const Domain &domain = scene.domain;
+    for (int k = 0; k < domain.cells()[2]; ++k)
+      for (int j = 0; j < domain.points_end(1, high_wall && place[1]); ++j)
+        for (int i = 0; i < domain.points_end(0, high_wall && place[0]); ++i)
           ASSERT_EQ(block[1](i, j, k), block[0](i, j, k)) << i << " " << j << " " << k;
-    if (!high_wall && place[0] && grid.touches_high(0)) {
-      EXPECT_EQ(block[1](grid.cells()[0], 0, 0), 0.0) << "not in the file";
+    if (!high_wall && place[0] && domain.touches_high(0)) {
+      EXPECT_EQ(block[1](domain.cells()[0], 0, 0), 0.0) << "not in the file";
     }
   }
 }
@@ -70,14 +70,14 @@ TEST(Hdf5, ChecksumIsThatOfOneRank) {
   for (int alone = 0; alone < 2; ++alone) {
     if (alone && world_rank() > 0) continue;
     const NumberedFields scene({5, 13, 7}, true, alone ? PETSC_COMM_SELF : run_communicator());
-    Field block(scene.grid, 1);
+    Field block(scene.domain, 1);
     scene.fill(block[0], at_face[1]);
     Hdf5File out, in;
     const std::string path = directory / ("alone_" + std::to_string(alone) + ".h5");
-    ASSERT_EQ(out.create(scene.grid.comm(), path), 0);
-    ASSERT_EQ(out.write_field(scene.grid, {"q", at_face[1], Stored::float64, true}, {block[0]}), 0);
+    ASSERT_EQ(out.create(scene.domain.comm(), path), 0);
+    ASSERT_EQ(out.write_field(scene.domain, {"q", at_face[1], Stored::float64, true}, {block[0]}), 0);
     ASSERT_EQ(out.commit(), 0);
-    ASSERT_EQ(in.open(scene.grid.comm(), path), 0);
+    ASSERT_EQ(in.open(scene.domain.comm(), path), 0);
     ASSERT_EQ(in.read_attribute("q", "checksum", &sums[alone]), 0);
   }
   if (world_rank() == 0) {
@@ -89,12 +89,12 @@ TEST(Hdf5, DamageIsAnError) {
   const SharedDirectory directory;
   const std::string path = directory / "damaged.h5";
   const NumberedFields scene({5, 13, 7});
-  Field block(scene.grid, 1);
+  Field block(scene.domain, 1);
   scene.fill(block[0], at_centre);
   {
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
-    ASSERT_EQ(out.write_field(scene.grid, {"q"}, {block[0]}), 0);
+    ASSERT_EQ(out.write_field(scene.domain, {"q"}, {block[0]}), 0);
     ASSERT_EQ(out.write_array("numbers", {3}, std::vector<double>{1, 2, 3}), 0);
     ASSERT_EQ(out.commit(), 0);
   }
@@ -117,10 +117,10 @@ TEST(Hdf5, DamageIsAnError) {
     std::vector<hsize_t> shape;
     std::vector<double> numbers;
     PetscCall(in.open(run_communicator(), path));
-    PetscCall(in.read_field(scene.grid, "q", at_centre, block[0]));
+    PetscCall(in.read_field(scene.domain, "q", at_centre, block[0]));
     PetscCall(in.read_array("numbers", &shape, &numbers));
     EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
-    const BodyRange own = BodyRange::of(3, world_rank(), scene.grid.ranks());
+    const BodyRange own = BodyRange::of(3, world_rank(), scene.domain.ranks());
     std::vector<double> mine(own.size());
     PetscCall(in.read_share("numbers", 3, own.begin, &mine));
     EXPECT_EQ(mine, (std::vector<double>{numbers.begin() + own.begin, numbers.begin() + own.end}));
@@ -145,28 +145,28 @@ TEST(Hdf5, WrongInputIsNamed) {
   const SharedDirectory directory;
   const std::string path = directory / "small.h5";
   const NumberedFields scene({5, 13, 7}), other({5, 14, 7}), periodic({4, 13, 7}, false);
-  Field block(other.grid, 1), narrow(periodic.grid, 1);
+  Field block(other.domain, 1), narrow(periodic.domain, 1);
   {
-    Field source(scene.grid, 1);
+    Field source(scene.domain, 1);
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
-    ASSERT_EQ(out.write_field(scene.grid, {"q"}, {source[0]}), 0);
+    ASSERT_EQ(out.write_field(scene.domain, {"q"}, {source[0]}), 0);
     ASSERT_EQ(out.write_array("numbers", {2, 2}, std::vector<long>{1, 2, 3, 4}), 0);
     ASSERT_EQ(out.write_attribute("/", "version", std::string("1.2")), 0);
     ASSERT_EQ(out.commit(), 0);
   }
   Hdf5File in;
   ASSERT_EQ(in.open(run_communicator(), path), 0);
-  const auto reading = [&](const Domain &grid, const char *name, const Staggering &s, Field &to) {
-    return error_of([&] { return in.read_field(grid, name, s, to[0]); });
+  const auto reading = [&](const Domain &domain, const char *name, const Staggering &s, Field &to) {
+    return error_of([&] { return in.read_field(domain, name, s, to[0]); });
   };
-  EXPECT_EQ(reading(other.grid, "q", at_centre, block),
+  EXPECT_EQ(reading(other.domain, "q", at_centre, block),
             path + ": dataset q is 7 x 13 x 5, the grid needs 7 x 14 x 5 (nz, ny, nx)");
-  EXPECT_EQ(reading(other.grid, "p", at_centre, block), path + ": there is no dataset p");
-  EXPECT_EQ(reading(other.grid, "numbers", at_centre, block),
+  EXPECT_EQ(reading(other.domain, "p", at_centre, block), path + ": there is no dataset p");
+  EXPECT_EQ(reading(other.domain, "numbers", at_centre, block),
             path + ": dataset numbers is 2 x 2, the grid needs 7 x 14 x 5 (nz, ny, nx)");
   // One point more is the high wall only where there is one and the field is staggered towards it.
-  EXPECT_NE(reading(periodic.grid, "q", at_face[0], narrow), "no error");
+  EXPECT_NE(reading(periodic.domain, "q", at_face[0], narrow), "no error");
   double number;
   EXPECT_EQ(error_of([&] { return in.read_attribute("/", "time", &number); }),
             path + ": there is no attribute time of /");
@@ -203,7 +203,7 @@ TEST(Hdf5, AFullDiskIsAnError) {
   const SharedDirectory directory;
   const std::string path = directory / "full.h5";
   const NumberedFields scene({13, 17, 19});
-  const Field block(scene.grid, 1);
+  const Field block(scene.domain, 1);
   {
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
@@ -212,7 +212,7 @@ TEST(Hdf5, AFullDiskIsAnError) {
       const FullDisk full_disk(10000);
       error = error_of([&] {
         PetscFunctionBeginUser;
-        PetscCall(out.write_field(scene.grid, {"q"}, {block[0]}));
+        PetscCall(out.write_field(scene.domain, {"q"}, {block[0]}));
         PetscCall(out.commit());
         PetscFunctionReturn(0);
       });

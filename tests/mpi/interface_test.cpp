@@ -64,18 +64,18 @@ Position two_balls(const GridSpec &spec) {
 void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt) {
   static const char *const orders[2][6] = {{"xy", "yx", "xy", "yx", "xy", "yx"},
                                            {"xyz", "zyx", "yzx", "xzy", "zxy", "yxz"}};
-  const Domain &grid = scene.grid;
-  const Int3 n = grid.cells();
-  const int dimension = grid.dimension(), margin = dimension == 3 ? 1 : 0;
-  Field work(grid, 2);
+  const Domain &domain = scene.domain;
+  const Int3 n = domain.cells();
+  const int dimension = domain.dimension(), margin = dimension == 3 ? 1 : 0;
+  Field work(domain, 2);
   scene.each_owned([&](int i, int j, int k) { work[1](i, j, k) = scene.fraction[0](i, j, k) > 0.5; });
   for (const char *name = orders[dimension - 2][scene.step++ % 6]; *name; ++name) {
     const int d = *name - 'x';
-    const double rate = dt / grid.spacing()[d];
+    const double rate = dt / domain.spacing()[d];
     const View phi = scene.fraction[0], flux = work[0], solid = work[1];
     const ConstView velocity = scene.velocity[d];
     ASSERT_EQ(exchange.update_ghosts(scene.fraction, 2), 0);
-    fill_wall_ghosts_even(grid, at_centre, phi, 2);
+    fill_wall_ghosts_even(domain, at_centre, phi, 2);
     std::ptrdiff_t stride[3];
     for (int e = 0; e < 3; ++e) stride[e] = phi.stride((d + e) % dimension);
     for (int k = 0; k < n[2] + margin; ++k)
@@ -113,8 +113,8 @@ bool on_first_rank() {
 double largest_courant_sum(const InterfaceScene &scene) {
   Real3 largest{};
   scene.each_owned([&](int i, int j, int k) {
-    for (int d = 0; d < scene.grid.dimension(); ++d)
-      largest[d] = std::max(largest[d], std::abs(scene.velocity[d](i, j, k)) / scene.grid.spacing()[d]);
+    for (int d = 0; d < scene.domain.dimension(); ++d)
+      largest[d] = std::max(largest[d], std::abs(scene.velocity[d](i, j, k)) / scene.domain.spacing()[d]);
   });
   return largest[0] + largest[1] + largest[2];
 }
@@ -138,7 +138,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
             scene->set_fraction(two_balls(spec));
             ASSERT_EQ(scene->set_velocity(random_potential(spec, 1)), 0);
           }
-          GhostExchange exchange(whole.grid);
+          GhostExchange exchange(whole.domain);
           const double dt = 0.45 / largest_courant_sum(whole);
           for (int step = 0; step < 6; ++step) {
             ASSERT_EQ(part.advance(dt), 0);
@@ -146,7 +146,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
           }
           int errors = 0;
           part.each_owned([&](int i, int j, int k) {
-            const Int3 &begin = part.grid.layout().begin;
+            const Int3 &begin = part.domain.layout().begin;
             const double a = part.fraction[0](i, j, k), b = whole.fraction[0](begin[0] + i, begin[1] + j, begin[2] + k);
             errors += std::memcmp(&a, &b, sizeof a) != 0;
           });
@@ -198,14 +198,14 @@ TEST(InterfaceMirror, GivesTheMirroredBits) {
           const Int3 p = mirrored({i, j, k}, at_centre);
           b.fraction[0](p[0], p[1], p[2]) = a.fraction[0](i, j, k);
         });
-        for (int c = 0; c < a.grid.dimension(); ++c)
-          for (int k = 0; k < a.grid.points_end(2, c == 2); ++k)
-            for (int j = 0; j < a.grid.points_end(1, c == 1); ++j)
-              for (int i = 0; i < a.grid.points_end(0, c == 0); ++i) {
+        for (int c = 0; c < a.domain.dimension(); ++c)
+          for (int k = 0; k < a.domain.points_end(2, c == 2); ++k)
+            for (int j = 0; j < a.domain.points_end(1, c == 1); ++j)
+              for (int i = 0; i < a.domain.points_end(0, c == 0); ++i) {
                 const Int3 p = mirrored({i, j, k}, at_face[c]);
                 const double v = a.velocity[c](i, j, k);
                 b.velocity[c](p[0], p[1], p[2]) = mirror >> c & 1 ? 0.0 - v : v;
-                if (!a.grid.is_wall(c) && p[c] == cells[c]) {  // the face N of a periodic direction is face 0
+                if (!a.domain.is_wall(c) && p[c] == cells[c]) {  // the face N of a periodic direction is face 0
                   Int3 first = p;
                   first[c] = 0;
                   b.velocity[c](first[0], first[1], first[2]) = b.velocity[c](p[0], p[1], p[2]);

@@ -20,7 +20,7 @@ struct KspScene : PoissonScene {
       : PoissonScene(comm, spec), options(given) {
     for (const auto &[name, value] : options)
       EXPECT_EQ(PetscOptionsSetValue(nullptr, ("-pressure_" + name).c_str(), value.c_str()), 0);
-    EXPECT_EQ(solver.create(grid, *exchange), 0);
+    EXPECT_EQ(solver.create(domain, *exchange), 0);
   }
   ~KspScene() {
     for (const auto &[name, value] : options) PetscOptionsClearValue(nullptr, ("-pressure_" + name).c_str());
@@ -67,11 +67,11 @@ GridSpec box(const Int3 &cells, int walls, const Real3 &sides = {1, 1, 1}) {
 }
 
 // Of -lap, but for 0.
-double smallest_eigenvalue(const Domain &grid) {
+double smallest_eigenvalue(const Domain &domain) {
   double smallest = HUGE_VAL;
-  for (int d = 0; d < grid.dimension(); ++d) {
-    const double angle = (grid.is_wall(d) ? 1 : 2) * M_PI / grid.domain_cells()[d];
-    smallest = std::min(smallest, std::pow(2 * std::sin(angle / 2) / grid.spacing()[d], 2));
+  for (int d = 0; d < domain.dimension(); ++d) {
+    const double angle = (domain.is_wall(d) ? 1 : 2) * M_PI / domain.domain_cells()[d];
+    smallest = std::min(smallest, std::pow(2 * std::sin(angle / 2) / domain.spacing()[d], 2));
   }
   return smallest;
 }
@@ -83,11 +83,11 @@ double largest(double value) {
 
 // Largest |a - b|, ghosts, edges and corners included; infinite if anything is NaN.
 double difference(const PoissonScene &s, ConstView a, ConstView b) {
-  const int gz = std::min(1, s.grid.layout().ghosts[2]);
+  const int gz = std::min(1, s.domain.layout().ghosts[2]);
   double worst = 0;
-  for (int k = -gz; k < s.grid.cells()[2] + gz; ++k)
-    for (int j = -1; j < s.grid.cells()[1] + 1; ++j)
-      for (int i = -1; i < s.grid.cells()[0] + 1; ++i) {
+  for (int k = -gz; k < s.domain.cells()[2] + gz; ++k)
+    for (int j = -1; j < s.domain.cells()[1] + 1; ++j)
+      for (int i = -1; i < s.domain.cells()[0] + 1; ++i) {
         const double error = std::abs(a(i, j, k) - b(i, j, k));
         worst = error <= worst ? worst : std::isfinite(error) ? error : HUGE_VAL;
       }
@@ -118,16 +118,16 @@ TEST(Ksp, EqualsSmacOnAllBoundariesAndDecompositions) {
           EXPECT_LE(s.iterations(), 25) << name(spec);  // thin slabs of unequal cells take most
           EXPECT_LE(s.rms_residual(), 1.01e-10 * s.rms_divergence()) << name(spec);
           // 16, 24, 12 can be halved twice; four ranks along z cannot share three layers, nor can others lopsided.
-          const bool geometric = cells[0] == 16 && sides[1] < 2 && s.grid.processors(2) < 4 && spec.starts[0].empty();
+          const bool geometric = cells[0] == 16 && sides[1] < 2 && s.domain.processors(2) < 4 && spec.starts[0].empty();
           EXPECT_EQ(s.preconditioner(), geometric ? PCMG : PCGAMG) << name(spec);
           std::unique_ptr<PressureSolver> smac;
-          Field exact(s.grid, 1);
-          ASSERT_EQ(SmacSolver::create(s.grid, *s.exchange, &smac), 0);
+          Field exact(s.domain, 1);
+          ASSERT_EQ(SmacSolver::create(s.domain, *s.exchange, &smac), 0);
           ASSERT_EQ(smac->solve(s.dt, s.divergence, s.pressure, exact), 0);
-          const double bound = 1.01e-10 * s.rms_divergence() / (s.dt * smallest_eigenvalue(s.grid));
+          const double bound = 1.01e-10 * s.rms_divergence() / (s.dt * smallest_eigenvalue(s.domain));
           const ConstView a = s.increment[0], b = exact[0];
           EXPECT_LE(s.rms([&](int i, int j, int k) { return a(i, j, k) - b(i, j, k); }), bound) << name(spec);
-          EXPECT_LE(difference(s, a, b), bound * std::sqrt(s.grid.domain_cell_count())) << name(spec);
+          EXPECT_LE(difference(s, a, b), bound * std::sqrt(s.domain.domain_cell_count())) << name(spec);
         }
 }
 
@@ -215,10 +215,10 @@ TEST(Ksp, IgnoresTheMean) {
   for (const int walls : {0, 7}) {
     KspScene s(box({16, 12, 20}, walls));
     s.set([](int i, int j, int k) { return 5 + noise(i, j, k); }, false);
-    const double mean = global_sum(s.grid, s.divergence[0]) / s.grid.domain_cell_count();
+    const double mean = global_sum(s.domain, s.divergence[0]) / s.domain.domain_cell_count();
     EXPECT_EQ(s.solve(), 0);
     EXPECT_LE(s.rms([&](int i, int j, int k) { return s.residual(i, j, k) - mean; }), 1e-9);
-    EXPECT_LE(std::abs(global_sum(s.grid, s.increment[0])) / s.grid.domain_cell_count(), 1e-16);
+    EXPECT_LE(std::abs(global_sum(s.domain, s.increment[0])) / s.domain.domain_cell_count(), 1e-16);
     for (const double constant : {0.0, 5.0, 0.1}) {
       s.set([&](int, int, int) { return constant; }, false);
       EXPECT_EQ(s.solve(), 0) << constant;

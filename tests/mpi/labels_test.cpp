@@ -19,15 +19,15 @@ TEST(Labels, FollowTwoCloseBodiesAroundTheBox) {
                                     {{wrap(16 + 0.5 * n, 28), wrap(6 + 0.25 * n, 15), z}, {}}};
     };
     scene.add(sphere, places_at(0));
-    GhostExchange exchange(scene.grid);
+    GhostExchange exchange(scene.domain);
     for (int n = 1; n <= 112; ++n) {
       Phase fresh;
-      ASSERT_EQ(fill_phase(scene.grid, sphere, places_at(n), 1, &fresh), 0);
+      ASSERT_EQ(fill_phase(scene.domain, sphere, places_at(n), 1, &fresh), 0);
       scene.move(sphere, places_at(n));
-      ASSERT_EQ(carry_labels(scene.grid, exchange, &scene.phases[0]), 0);
+      ASSERT_EQ(carry_labels(scene.domain, exchange, &scene.phases[0]), 0);
       const ConstView expected = std::as_const(fresh.label)[0], label = std::as_const(scene.phases[0].label)[0];
       int wrong = 0;
-      for (const Segment &row : scene.grid.rows())
+      for (const Segment &row : scene.domain.rows())
         for (int i = row.i_begin; i < row.i_end; ++i) {
           const bool solid = fresh.fraction[0](i, row.j, row.k) > label_threshold;
           wrong += label(i, row.j, row.k) != (solid ? expected(i, row.j, row.k) : 0);
@@ -42,17 +42,18 @@ TEST(Labels, ABodyOfLessThanACellKeepsItsNameWhenItLeavesItsCell) {
   const int n = 12;
   BodyScene scene(run_communicator(), box({6, n, 1}, {6, double(n), 1}));
   scene.add(species(Shape::sphere, 0.4), {{{2.5, 0.5, 0.5}, {}}});
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   Phase &phase = scene.phases[0];
-  const int first = scene.grid.layout().begin[1];
+  const int first = scene.domain.layout().begin[1];
   for (int place = 1; place <= n; ++place) {
-    for (const Segment &row : scene.grid.rows())
+    for (const Segment &row : scene.domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
-        phase.fraction[0](i, row.j, 0) = scene.grid.layout().begin[0] + i == 2 && first + row.j == place % n ? .11 : 0;
-    ASSERT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
-    ASSERT_EQ(carry_labels(scene.grid, exchange, &phase), 0);
+        phase.fraction[0](i, row.j, 0) =
+            scene.domain.layout().begin[0] + i == 2 && first + row.j == place % n ? .11 : 0;
+    ASSERT_EQ(phase.rows.find(scene.domain, phase.fraction[0]), 0);
+    ASSERT_EQ(carry_labels(scene.domain, exchange, &phase), 0);
     int wrong = 0;
-    for (const Segment &row : scene.grid.rows())
+    for (const Segment &row : scene.domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i)
         wrong += phase.label[0](i, row.j, 0) != (phase.fraction[0](i, row.j, 0) > 0 ? 1 : 0);
     EXPECT_EQ(wrong, 0) << place;
@@ -70,20 +71,20 @@ TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
   BodyScene world(comms[0], box({nx, ny, nz}, {30, 13, 12})), alone(comms[1], box({nx, ny, nz}, {30, 13, 12}));
   for (BodyScene *scene : {&world, &alone}) {
     scene->add(species(Shape::sphere, 4), {{{5, 6.5, 6}, {}}, {{16, 6.5, 6}, {}}});
-    GhostExchange exchange(scene->grid);
+    GhostExchange exchange(scene->domain);
     for (int n = 1; n <= 150; ++n) {
       const double first = 5 + 0.4 * n, second = 16 + 0.4 * n;
       Phase &phase = scene->phases[0];
-      const Layout &layout = scene->grid.layout();
+      const Layout &layout = scene->domain.layout();
       const auto global = [&](int i, const Segment &row) {
         return Int3{layout.begin[0] + i, layout.begin[1] + row.j, layout.begin[2] + row.k};
       };
-      for (const Segment &row : scene->grid.rows())
+      for (const Segment &row : scene->domain.rows())
         for (int i = row.i_begin; i < row.i_end; ++i)
           phase.fraction[0](i, row.j, row.k) = phi_of(first, global(i, row)) + phi_of(second, global(i, row));
-      ASSERT_EQ(carry_labels(scene->grid, exchange, &phase), 0);
+      ASSERT_EQ(carry_labels(scene->domain, exchange, &phase), 0);
       int wrong = 0;
-      for (const Segment &row : scene->grid.rows())
+      for (const Segment &row : scene->domain.rows())
         for (int i = row.i_begin; i < row.i_end; ++i) {
           const double a = phi_of(first, global(i, row)), b = phi_of(second, global(i, row));
           wrong += a + b > 0.2 && phase.label[0](i, row.j, row.k) != (a > b ? 1 : 2);
@@ -91,8 +92,8 @@ TEST(Labels, SmearedBodiesDoNotLeaveTheirLabelsBehind) {
       EXPECT_EQ(wrong, 0) << n;
     }
   }
-  const Layout &layout = world.grid.layout();
-  for (const Segment &row : world.grid.rows())
+  const Layout &layout = world.domain.layout();
+  for (const Segment &row : world.domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i)
       ASSERT_EQ(world.phases[0].label[0](i, row.j, row.k),
                 alone.phases[0].label[0](layout.begin[0] + i, layout.begin[1] + row.j, layout.begin[2] + row.k));
@@ -109,15 +110,15 @@ TEST(Labels, NewCellsAloneAreNamedAndOldOnesStay) {
   scene.add(sphere, places_at(0));
   Phase before;
   before.copy_from(scene.phases[0]);
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   scene.move(sphere, places_at(0.5));
-  ASSERT_EQ(label_new_cells(scene.grid, exchange, &scene.phases[0]), 0);
+  ASSERT_EQ(label_new_cells(scene.domain, exchange, &scene.phases[0]), 0);
   Phase fresh;
-  ASSERT_EQ(fill_phase(scene.grid, sphere, places_at(0.5), 1, &fresh), 0);
+  ASSERT_EQ(fill_phase(scene.domain, sphere, places_at(0.5), 1, &fresh), 0);
   const ConstView old = std::as_const(before.label)[0], label = std::as_const(scene.phases[0].label)[0],
                   expected = std::as_const(fresh.label)[0], phi = std::as_const(fresh.fraction)[0];
   long counts[2] = {0, 0};  // named anew, wrong
-  for (const Segment &row : scene.grid.rows())
+  for (const Segment &row : scene.domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) {
       const bool is_new = old(i, row.j, row.k) == 0 && phi(i, row.j, row.k) > label_threshold;
       counts[0] += is_new;

@@ -52,7 +52,7 @@ End run(MPI_Comm comm, const Case &c) {
   spec.fluid.density = 0.1;
   spec.sides[1][1].motion.velocity = {1.5, 0, 0};
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
-  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  set(scene.domain, scene.solver.state().velocity[0], at_face[0],
       [&](double, double y, double) { return 1.5 * y / grid.length[1]; });
   SpeciesSpec capsule;
   capsule.name = "capsule";
@@ -64,10 +64,10 @@ End run(MPI_Comm comm, const Case &c) {
   const double z = flat ? 0.125 : grid.length[2] / 2;
   const std::vector<BodyPlace> places{{{0.6, capsule.radius + c.away, z}, {}}, {{3.2, 2.2, z}, {}}};
   Phase phase;
-  EXPECT_EQ(fill_phase(scene.grid, capsule, places, 1, &phase), 0);
+  EXPECT_EQ(fill_phase(scene.domain, capsule, places, 1, &phase), 0);
   phase.separate = true;
   scene.solver.state().phases.push_back(std::move(phase));
-  scene.solver.bodies().add_phase(scene.grid, places);
+  scene.solver.bodies().add_phase(scene.domain, places);
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.advance(12, 2), 0);
   End end;

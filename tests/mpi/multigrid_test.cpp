@@ -15,30 +15,30 @@ namespace {
 struct Cycle : PoissonScene {
   Field solution, scratch;
 
-  Cycle(MPI_Comm comm, const GridSpec &spec) : PoissonScene(comm, spec), solution(grid, 1), scratch(grid, 1) {
+  Cycle(MPI_Comm comm, const GridSpec &spec) : PoissonScene(comm, spec), solution(domain, 1), scratch(domain, 1) {
     Multigrid multigrid;
-    EXPECT_EQ(multigrid.create(grid), 0);
+    EXPECT_EQ(multigrid.create(domain), 0);
     set(noise);
     EXPECT_EQ(exchange->update_ghosts(divergence, Multigrid::halo), 0);
     EXPECT_EQ(multigrid.apply(divergence, solution, scratch), 0);
   }
-  int stages_of_a_pass() const { return StagePass::depth(grid, grid.split(), 1, 3); }
+  int stages_of_a_pass() const { return StagePass::depth(domain, domain.split(), 1, 3); }
 };
 
 // Cells, and ghosts within the domain, that differ in any bit from those of `one` rank.
 int differences(const Cycle &s, const Cycle &one) {
   int count = 0;
-  const Layout &own = s.grid.layout();
+  const Layout &own = s.domain.layout();
   Int3 low{}, high{};
   for (int d = 0; d < 3; ++d) {
-    const bool ghosts = d < s.grid.dimension();
-    low[d] = ghosts && !s.grid.touches_low(d) ? -1 : 0;
-    high[d] = own.cells[d] + (ghosts && !s.grid.touches_high(d));
+    const bool ghosts = d < s.domain.dimension();
+    low[d] = ghosts && !s.domain.touches_low(d) ? -1 : 0;
+    high[d] = own.cells[d] + (ghosts && !s.domain.touches_high(d));
   }
   for (int k = low[2]; k < high[2]; ++k)
     for (int j = low[1]; j < high[1]; ++j)
       for (int i = low[0]; i < high[0]; ++i) {
-        const Int3 local{i, j, k}, &cells = s.grid.domain_cells();
+        const Int3 local{i, j, k}, &cells = s.domain.domain_cells();
         Int3 image{};
         for (int d = 0; d < 3; ++d) image[d] = (own.begin[d] + local[d] + cells[d]) % cells[d];
         const double a = s.solution[0](i, j, k), b = one.solution[0](image[0], image[1], image[2]);
@@ -89,7 +89,7 @@ TEST(MultigridCycle, SameBitsWhereRanksAreJoined) {
         EXPECT_EQ(differences(many, one), 0) << name(spec) << "split along "
                                              << "xyz"[d];
         bool joined = false;
-        const auto levels = Multigrid::plan(many.grid);
+        const auto levels = Multigrid::plan(many.domain);
         for (std::size_t l = 1; l < levels.size(); ++l)
           joined |= levels[l]->box().domain_cells() == levels[l - 1]->box().domain_cells() &&
                     levels[l]->partition().ranks() > 1;

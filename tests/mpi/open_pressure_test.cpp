@@ -19,22 +19,22 @@ struct OpenScene : PoissonScene {
   std::unique_ptr<PressureSolver> solver;
   WorkSpace work;
 
-  OpenScene(MPI_Comm comm, const GridSpec &spec, Kind kind) : PoissonScene(comm, spec), work(grid) {
+  OpenScene(MPI_Comm comm, const GridSpec &spec, Kind kind) : PoissonScene(comm, spec), work(domain) {
     if (kind == Kind::smac) {
-      EXPECT_EQ(SmacSolver::create(grid, *exchange, &solver), 0);
+      EXPECT_EQ(SmacSolver::create(domain, *exchange, &solver), 0);
     } else if (kind == Kind::ksp) {
       auto ksp = std::make_unique<KspSolver>();
-      EXPECT_EQ(ksp->create(grid, *exchange), 0);
+      EXPECT_EQ(ksp->create(domain, *exchange), 0);
       solver = std::move(ksp);
     } else {
       auto sweeps = std::make_unique<AcmSweepSolver>();
       const bool coarse = kind != Kind::descent;
-      EXPECT_EQ(sweeps->create(grid, *exchange, {coarse ? 60 : 4000, kind == Kind::remembering ? 2 : 0, coarse}, work),
-                0);
+      EXPECT_EQ(
+          sweeps->create(domain, *exchange, {coarse ? 60 : 4000, kind == Kind::remembering ? 2 : 0, coarse}, work), 0);
       solver = std::move(sweeps);
     }
     set(noise, false);
-    fill_ghosts_of_increment(grid, divergence[0], 1);
+    fill_ghosts_of_increment(domain, divergence[0], 1);
   }
   void solve(double tolerance) {
     solver->set_target(tolerance * rms_divergence());
@@ -45,8 +45,8 @@ struct OpenScene : PoissonScene {
 // Owned cells and the ghosts behind sides.
 int differences(const OpenScene &s, const OpenScene &one) {
   int count = 0;
-  const Layout &own = s.grid.layout();
-  for (const Segment &row : s.grid.rows())
+  const Layout &own = s.domain.layout();
+  for (const Segment &row : s.domain.rows())
     for (int i = 0; i < row.i_end; ++i) {
       const double a = s.increment[0](i, row.j, row.k);
       const double b = one.increment[0](own.begin[0] + i, own.begin[1] + row.j, own.begin[2] + row.k);

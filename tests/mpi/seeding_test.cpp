@@ -15,25 +15,25 @@ using namespace eulastic;
 namespace {
 
 // Of what moves on this rank, without labels and what is known of bodies.
-std::uint64_t flow_hash(const Domain &grid, const State &state) {
+std::uint64_t flow_hash(const Domain &domain, const State &state) {
   std::uint64_t sum = 0, salt = 0;
-  for (int d = 0; d < state.velocity.count(); ++d) sum += hash_points(grid, state.velocity[d], at_face[d], ++salt);
-  sum += hash_points(grid, state.pressure[0], at_centre, ++salt);
+  for (int d = 0; d < state.velocity.count(); ++d) sum += hash_points(domain, state.velocity[d], at_face[d], ++salt);
+  sum += hash_points(domain, state.pressure[0], at_centre, ++salt);
   for (const Phase &phase : state.phases) {
-    sum += hash_points(grid, phase.fraction[0], at_centre, ++salt);
+    sum += hash_points(domain, phase.fraction[0], at_centre, ++salt);
     for (int c = 0; c < phase.tensor.field.count(); ++c)
-      sum += hash_points(grid, phase.tensor.field[c], phase.tensor.components()[c].at, ++salt);
+      sum += hash_points(domain, phase.tensor.field[c], phase.tensor.components()[c].at, ++salt);
   }
   return sum;
 }
 
 PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t hash[2], std::uint64_t *flow = nullptr) {
   PetscFunctionBeginUser;
-  Domain grid;
+  Domain domain;
   Solver solver;
   std::string reason;
-  PetscCall(grid.create(comm, config.grid));
-  PetscCall(build_scene(config, grid, &solver, &reason));
+  PetscCall(domain.create(comm, config.grid));
+  PetscCall(build_scene(config, domain, &solver, &reason));
   EXPECT_EQ(reason, "");
   PetscCall(state_hash(&solver, &hash[0]));
   FlowExtremes extremes;
@@ -44,7 +44,7 @@ PetscErrorCode first_steps(MPI_Comm comm, const Config &config, std::uint64_t ha
   PetscCall(state_hash(&solver, &hash[1]));
   EXPECT_EQ(solver.bodies().bodies() > 0, config.body_series);
   EXPECT_EQ(bool(solver.state().phases[1].label), config.body_series);
-  if (flow) *flow = flow_hash(grid, solver.state());
+  if (flow) *flow = flow_hash(domain, solver.state());
   PetscFunctionReturn(0);
 }
 
@@ -86,22 +86,22 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
       "-time_end 1 -grid_cells 80,80,80 -grid_length 200,200,200 -species ball -ball_shape sphere -ball_radius 1 "
       "-ball_shear_modulus 1 -ball_placement lattice -ball_count 30,30,30 -ball_jitter 1");
   ASSERT_EQ(result.error, "");
-  Domain grid;
-  ASSERT_EQ(grid.create(run_communicator(), result.config.grid), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(run_communicator(), result.config.grid), 0);
   const Places all = test::with_all_places(result.config).places[0], &mine = result.config.places[0];
-  EXPECT_EQ(int(mine.known.size()), BodyRange::of(27000, test::world_rank(), grid.ranks()).size());
+  EXPECT_EQ(int(mine.known.size()), BodyRange::of(27000, test::world_rank(), domain.ranks()).size());
   Places near;
-  ASSERT_EQ(bring_near(grid.comm(), grid, result.config.species[0], mine, &near), 0);
+  ASSERT_EQ(bring_near(domain.comm(), domain, result.config.species[0], mine, &near), 0);
   double most = 1;
-  for (int d = 0; d < 3; ++d) most *= std::min(1.0, (grid.cells()[d] + 2 * (0.4 + 1) + 2) / 80.0);
+  for (int d = 0; d < 3; ++d) most *= std::min(1.0, (domain.cells()[d] + 2 * (0.4 + 1) + 2) / 80.0);
   EXPECT_LE(double(near.known.size()), most * 27000);
   // Nobody is left out: every body with its centre in a cell of this rank is there.
   unsigned long sums[2] = {0, near.known.size()};
   for (const NumberedPlace &place : all.known) {
     bool here = true;
     for (int d = 0; d < 3; ++d) {
-      const int cell = static_cast<int>(place.centre[d] / 2.5) - grid.layout().begin[d];
-      here = here && cell >= 0 && cell < grid.cells()[d];
+      const int cell = static_cast<int>(place.centre[d] / 2.5) - domain.layout().begin[d];
+      here = here && cell >= 0 && cell < domain.cells()[d];
     }
     sums[0] += here;
     const auto found = std::lower_bound(near.known.begin(), near.known.end(), place.index,

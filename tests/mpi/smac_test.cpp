@@ -28,23 +28,23 @@ double noise(int i, int j, int k) {
 
 // One solution with all that belongs to it.
 struct Solution {
-  Domain grid;
+  Domain domain;
   std::unique_ptr<GhostExchange> exchange;
   std::unique_ptr<PressureSolver> solver;
   Field divergence, pressure, increment;
 
   Solution(MPI_Comm comm, const GridSpec &spec, const Function &f) {
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    exchange = std::make_unique<GhostExchange>(grid);
-    divergence = Field(grid, 1);
-    pressure = Field(grid, 1);
-    increment = Field(grid, 1);
-    const Layout &own = grid.layout();
+    EXPECT_EQ(domain.create(comm, spec), 0);
+    exchange = std::make_unique<GhostExchange>(domain);
+    divergence = Field(domain, 1);
+    pressure = Field(domain, 1);
+    increment = Field(domain, 1);
+    const Layout &own = domain.layout();
     for (int k = 0; k < own.cells[2]; ++k)
       for (int j = 0; j < own.cells[1]; ++j)
         for (int i = 0; i < own.cells[0]; ++i)
           divergence[0](i, j, k) = f(own.begin[0] + i, own.begin[1] + j, own.begin[2] + k);
-    EXPECT_EQ(SmacSolver::create(grid, *exchange, &solver), 0);
+    EXPECT_EQ(SmacSolver::create(domain, *exchange, &solver), 0);
     solve();
   }
   void solve() {
@@ -54,7 +54,7 @@ struct Solution {
   // g(i, j, k) of local cells, with `ghosts` layers more where they exist.
   template <class G>
   void each(int ghosts, const G &g) const {
-    const Layout &own = grid.layout();
+    const Layout &own = domain.layout();
     const int gz = std::min(ghosts, own.ghosts[2]);
     for (int k = -gz; k < own.cells[2] + gz; ++k)
       for (int j = -ghosts; j < own.cells[1] + ghosts; ++j)
@@ -67,12 +67,12 @@ double largest(double value) {
   return value;
 }
 
-double mean(const Domain &grid, ConstView field) {
+double mean(const Domain &domain, ConstView field) {
   ExactSums sum(1);
-  for (const Segment &s : grid.rows()) sum.add_row(0, field.row(s.j, s.k), s.size(), grid.layout().begin[0]);
+  for (const Segment &s : domain.rows()) sum.add_row(0, field.row(s.j, s.k), s.size(), domain.layout().begin[0]);
   double value = 0;
-  EXPECT_EQ(sum.reduce(grid.comm(), &value), 0);
-  return value / grid.domain_cell_count();
+  EXPECT_EQ(sum.reduce(domain.comm(), &value), 0);
+  return value / domain.domain_cell_count();
 }
 
 // r = lap(increment) - (divergence - <divergence>) / dt, infinite if anything is NaN; f = divergence / dt.
@@ -82,10 +82,10 @@ struct Residual {
 };
 
 Residual residual(const Solution &s) {
-  const Real3 &h = s.grid.spacing();
+  const Real3 &h = s.domain.spacing();
   const ConstView q = s.increment[0], f = s.divergence[0];
-  const double average = mean(s.grid, f);
-  const bool flat = s.grid.dimension() == 2;
+  const double average = mean(s.domain, f);
+  const bool flat = s.domain.dimension() == 2;
   double r_max = 0, f_max = 0, q_max = 0;
   s.each(0, [&](int i, int j, int k) {
     double laplacian = (q(i - 1, j, k) - 2 * q(i, j, k) + q(i + 1, j, k)) / (h[0] * h[0]) +
@@ -109,8 +109,8 @@ int differences(const Solution &s, const Solution &one) {
     const Int3 local{i, j, k};
     Int3 image{};
     for (int d = 0; d < 3; ++d) {
-      const int n = s.grid.domain_cells()[d], g = s.grid.layout().begin[d] + local[d];
-      image[d] = !s.grid.is_wall(d) ? (g + n) % n : g < 0 ? -1 - g : g >= n ? 2 * n - 1 - g : g;
+      const int n = s.domain.domain_cells()[d], g = s.domain.layout().begin[d] + local[d];
+      image[d] = !s.domain.is_wall(d) ? (g + n) % n : g < 0 ? -1 - g : g >= n ? 2 * n - 1 - g : g;
     }
     const double a = s.increment[0](i, j, k), b = one.increment[0](image[0], image[1], image[2]);
     count += std::memcmp(&a, &b, sizeof a) != 0;
@@ -162,12 +162,12 @@ protected:
 };
 
 TEST(SmacAvailability, CreateFailsExactlyWithoutFftw) {
-  Domain grid;
-  ASSERT_EQ(grid.create(run_communicator(), all_boundaries({12, 12, 12})[0]), 0);
-  GhostExchange exchange(grid);
+  Domain domain;
+  ASSERT_EQ(domain.create(run_communicator(), all_boundaries({12, 12, 12})[0]), 0);
+  GhostExchange exchange(domain);
   std::unique_ptr<PressureSolver> solver;
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-  const PetscErrorCode code = SmacSolver::create(grid, exchange, &solver);
+  const PetscErrorCode code = SmacSolver::create(domain, exchange, &solver);
   PetscPopErrorHandler();
   EXPECT_EQ(code == 0, SmacSolver::available());
   EXPECT_EQ(solver != nullptr, SmacSolver::available());
@@ -186,7 +186,7 @@ TEST_F(Smac, RandomRightHandSideOnAllBoundariesAndDecompositions) {
       for (const GridSpec &shared : decompositions) {
         const Solution many(run_communicator(), shared, noise);
         EXPECT_LT(residual(many).relative, 1e-13) << name(shared);
-        EXPECT_LT(std::abs(mean(many.grid, many.increment[0])), 1e-16) << name(shared);
+        EXPECT_LT(std::abs(mean(many.domain, many.increment[0])), 1e-16) << name(shared);
         EXPECT_EQ(differences(many, one), 0) << name(shared);
       }
     }
@@ -230,7 +230,7 @@ TEST_F(Smac, SolvesEigenmodesExactly) {
       const Solution s(run_communicator(), spec, [&](int i, int j, int k) { return eigenvalue * dt * mode(i, j, k); });
       double worst = 0;
       s.each(0, [&](int i, int j, int k) {
-        const Int3 &begin = s.grid.layout().begin;
+        const Int3 &begin = s.domain.layout().begin;
         const double error = std::abs(s.increment[0](i, j, k) - mode(begin[0] + i, begin[1] + j, begin[2] + k));
         worst = error <= worst ? worst : std::isfinite(error) ? error : HUGE_VAL;
       });
@@ -244,9 +244,9 @@ TEST_F(Smac, IgnoresTheMeanAndRepeatsItself) {
   for (const GridSpec &spec : all_boundaries({13, 12, 12})) {
     Solution s(run_communicator(), spec, [](int i, int j, int k) { return 5 + noise(i, j, k); });
     EXPECT_LT(residual(s).relative, 1e-13) << name(spec);
-    const std::uint64_t first = hash_points(s.grid, s.increment[0], at_centre, 1);
+    const std::uint64_t first = hash_points(s.domain, s.increment[0], at_centre, 1);
     s.solve();
-    EXPECT_EQ(hash_points(s.grid, s.increment[0], at_centre, 1), first) << name(spec);
+    EXPECT_EQ(hash_points(s.domain, s.increment[0], at_centre, 1), first) << name(spec);
     Solution constant(run_communicator(), spec, [](int, int, int) { return 5.0; });
     double worst = 0;
     constant.each(1, [&](int i, int j, int k) { worst = std::max(worst, std::abs(constant.increment[0](i, j, k))); });

@@ -16,12 +16,12 @@ using namespace test;
 
 // One phase, then two that share cells.
 Phase make_phase(const NumberedFields &scene, const std::string &name, double fraction, int label) {
-  const auto &components = tensor_components(scene.grid.dimension());
+  const auto &components = tensor_components(scene.domain.dimension());
   Phase phase;
   phase.species = name;
-  phase.fraction = Field(scene.grid, 1);
-  phase.tensor.field = Field(scene.grid, static_cast<int>(components.size()));
-  phase.label = Field(scene.grid, 1);
+  phase.fraction = Field(scene.domain, 1);
+  phase.tensor.field = Field(scene.domain, static_cast<int>(components.size()));
+  phase.label = Field(scene.domain, 1);
   phase.fraction.fill(0, fraction);
   phase.label.fill(0, label);
   for (int c = 0; c < phase.tensor.field.count(); ++c) scene.fill(phase.tensor.field[c], components[c].at, c);
@@ -62,7 +62,7 @@ void check_index(const SharedDirectory &directory, int snapshots) {
 }
 
 // Every link leads to the dataset of its name, of a shape that cells have, and the list names each snapshot.
-void check_vtkhdf(const SharedDirectory &directory, const Domain &grid, int snapshots) {
+void check_vtkhdf(const SharedDirectory &directory, const Domain &domain, int snapshots) {
   const std::string series = text_of(directory / "snapshots.vtkhdf.series");
   for (int n = 0; n < snapshots; ++n) {
     const std::string name = "snapshot_00000" + std::to_string(n);
@@ -75,9 +75,9 @@ void check_vtkhdf(const SharedDirectory &directory, const Domain &grid, int snap
     ASSERT_EQ(file.read_attribute("VTKHDF", "WholeExtent", &extent), 0);
     ASSERT_EQ(file.read_attribute("VTKHDF", "Spacing", &spacing), 0);
     EXPECT_EQ(type, "ImageData");
-    const Int3 &cells = grid.domain_cells();
+    const Int3 &cells = domain.domain_cells();
     EXPECT_EQ(extent, (std::vector<double>{0, double(cells[0]), 0, double(cells[1]), 0, double(cells[2])}));
-    EXPECT_EQ(spacing, std::vector<double>(grid.spacing().begin(), grid.spacing().end()));
+    EXPECT_EQ(spacing, std::vector<double>(domain.spacing().begin(), domain.spacing().end()));
     for (const char *field : {"velocity", "pressure", "body", "left_cauchy_green_xy"}) {
       std::vector<hsize_t> shape, own_shape;
       const auto values = whole(directory / (name + ".vtkhdf"), std::string("VTKHDF/CellData/") + field, &shape);
@@ -91,11 +91,11 @@ void check_vtkhdf(const SharedDirectory &directory, const Domain &grid, int snap
 void check_snapshot(const Int3 &cells, int phase_count) {
   const SharedDirectory directory;
   const NumberedFields scene(cells);
-  const int dimension = scene.grid.dimension();
-  Field velocity(scene.grid, dimension), pressure(scene.grid, 1), read(scene.grid, 1);
+  const int dimension = scene.domain.dimension();
+  Field velocity(scene.domain, dimension), pressure(scene.domain, 1), read(scene.domain, 1);
   for (int c = 0; c < dimension; ++c) scene.fill(velocity[c], at_face[c], c);
   scene.fill(pressure[0], at_centre);
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   ASSERT_EQ(exchange.update_ghosts(velocity, 1), 0);
   std::vector<Phase> phases;
   phases.push_back(make_phase(scene, "cell", 0.5, 3));
@@ -103,12 +103,12 @@ void check_snapshot(const Int3 &cells, int phase_count) {
 
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
-  SnapshotFields fields(scene.grid);
-  SnapshotWriter writer(scene.grid, directory / "", SnapshotFormat::vtkhdf);
+  SnapshotFields fields(scene.domain);
+  SnapshotWriter writer(scene.domain, directory / "", SnapshotFormat::vtkhdf);
   for (int n = 0; n < 2; ++n)
     ASSERT_EQ(writer.write(0.5 * n, 10 * n, fields.collect(selection, velocity, pressure, phases)), 0);
   check_index(directory, 2);
-  check_vtkhdf(directory, scene.grid, 2);
+  check_vtkhdf(directory, scene.domain, 2);
 
   Hdf5File file;
   ASSERT_EQ(file.open(run_communicator(), directory / "snapshot_000001.h5"), 0);
@@ -120,15 +120,15 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   ASSERT_EQ(file.read_attribute("/", "length", &length), 0);
   EXPECT_EQ(time, 0.5);
   EXPECT_EQ(step, 10);
-  EXPECT_EQ(spacing, std::vector<double>(scene.grid.spacing().begin(), scene.grid.spacing().end()));
+  EXPECT_EQ(spacing, std::vector<double>(scene.domain.spacing().begin(), scene.domain.spacing().end()));
   EXPECT_EQ(length, (std::vector<double>{1, 2, 3}));
 
   const auto first_value = [&](const std::string &name, const Staggering &s) {
     read.fill(0, -1);
-    EXPECT_EQ(file.read_field(scene.grid, name, s, read[0]), 0) << name;
+    EXPECT_EQ(file.read_field(scene.domain, name, s, read[0]), 0) << name;
     return read[0](0, 0, 0);
   };
-  const Int3 &begin = scene.grid.layout().begin;
+  const Int3 &begin = scene.domain.layout().begin;
   const double here = value_at(begin[0], begin[1], begin[2]);
   const char *const faces[] = {"velocity_x", "velocity_y", "velocity_z"};
   for (int c = 0; c < dimension; ++c) EXPECT_EQ(first_value(faces[c], at_face[c]), here + 0.25 * c);
@@ -172,12 +172,12 @@ void check_snapshot(const Int3 &cells, int phase_count) {
 TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   const SharedDirectory directory;
   const NumberedFields scene({5, 13, 7});
-  const Field pressure(scene.grid, 1);
+  const Field pressure(scene.domain, 1);
   SnapshotField field;
   field.format.name = "pressure";
   field.components = {pressure[0]};
-  SnapshotWriter first(scene.grid, directory / "", SnapshotFormat::vtkhdf),
-      second(scene.grid, directory / "", SnapshotFormat::vtkhdf);
+  SnapshotWriter first(scene.domain, directory / "", SnapshotFormat::vtkhdf),
+      second(scene.domain, directory / "", SnapshotFormat::vtkhdf);
   for (int n = 0; n < 4; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
   ASSERT_EQ(second.resume(1, true), 0);
   ASSERT_EQ(second.write(0.25, 9, {field}), 0);
@@ -192,7 +192,7 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
 TEST(Snapshot, AColourIsPartOfItsSpecies) {
   const SharedDirectory directory;
   const NumberedFields scene({7, 13, 1});
-  const Field velocity(scene.grid, 2), pressure(scene.grid, 1);
+  const Field velocity(scene.domain, 2), pressure(scene.domain, 1);
   std::vector<Phase> phases;
   phases.push_back(make_phase(scene, "cell", 0.5, 3));
   phases.push_back(make_phase(scene, "cell", 0.75, 4));
@@ -200,7 +200,7 @@ TEST(Snapshot, AColourIsPartOfItsSpecies) {
   phases[1].tensor.field.fill(0, 8);
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
-  SnapshotFields fields(scene.grid);
+  SnapshotFields fields(scene.domain);
   int known = 0;
   for (const SnapshotField &field : fields.collect(selection, velocity, pressure, phases)) {
     const std::string &name = field.format.name;

@@ -48,10 +48,10 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps, double force =
   spec.sides[1][1].motion = {{0.2, 0, -0.1}, 2, 0.3};
   spec.sides[2][0].motion.velocity = {-0.1, 0.05, 0};
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
-  const bool flat = scene.grid.dimension() == 2;
+  const bool flat = scene.domain.dimension() == 2;
   const Real3 &L = grid.length;
-  for (int a = 0; a < scene.grid.dimension(); ++a)
-    set(scene.grid, scene.solver.state().velocity[a], at_face[a],
+  for (int a = 0; a < scene.domain.dimension(); ++a)
+    set(scene.domain, scene.solver.state().velocity[a], at_face[a],
         [&, b = (a + 1) % (flat ? 2 : 3)](double x, double y, double z) {
           return 0.2 * std::sin(6.283185307179586 * std::array<double, 3>{x, y, z}[b] / L[b]);
         });

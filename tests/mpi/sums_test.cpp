@@ -38,39 +38,39 @@ void for_each_split(const Int3 &cells, int walls, const std::function<void(const
     for (int py = 1; py <= ranks; ++py) {
       const GridSpec spec = box(cells, walls, {px, py, 0});
       if (!Domain::why_not(spec, ranks).empty()) continue;
-      Domain grid;
-      ASSERT_EQ(grid.create(run_communicator(), spec), 0);
+      Domain domain;
+      ASSERT_EQ(domain.create(run_communicator(), spec), 0);
       SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on "
-                                        << grid.processors(0) << " x " << grid.processors(1) << " x "
-                                        << grid.processors(2) << ", walls " << walls);
-      visit(grid);
+                                        << domain.processors(0) << " x " << domain.processors(1) << " x "
+                                        << domain.processors(2) << ", walls " << walls);
+      visit(domain);
     }
 }
 
 // Owned points of a field of this staggering, the high wall included; the rest is NaN.
-Field fields_on(const Domain &grid, const std::array<bool, 3> &staggering, int count) {
-  Field block(grid, count);
-  const Int3 &begin = grid.layout().begin;
+Field fields_on(const Domain &domain, const std::array<bool, 3> &staggering, int count) {
+  Field block(domain, count);
+  const Int3 &begin = domain.layout().begin;
   for (int f = 0; f < count; ++f) {
     block.fill(f, std::nan(""));
-    for (int k = 0; k < grid.points_end(2, staggering[2]); ++k)
-      for (int j = 0; j < grid.points_end(1, staggering[1]); ++j)
-        for (int i = 0; i < grid.points_end(0, staggering[0]); ++i)
+    for (int k = 0; k < domain.points_end(2, staggering[2]); ++k)
+      for (int j = 0; j < domain.points_end(1, staggering[1]); ++j)
+        for (int i = 0; i < domain.points_end(0, staggering[0]); ++i)
           block[f](i, j, k) = value(f, begin[0] + i, begin[1] + j, begin[2] + k);
   }
   return block;
 }
 
-std::array<double, 3> sums_on(const Domain &grid, std::uint64_t seed) {
-  const Field block = fields_on(grid, {}, 3);
-  std::vector<Segment> rows = grid.rows();
-  std::shuffle(rows.begin(), rows.end(), std::mt19937_64(seed + grid.rank()));
+std::array<double, 3> sums_on(const Domain &domain, std::uint64_t seed) {
+  const Field block = fields_on(domain, {}, 3);
+  std::vector<Segment> rows = domain.rows();
+  std::shuffle(rows.begin(), rows.end(), std::mt19937_64(seed + domain.rank()));
   ExactSums sums(3);
   for (const Segment &row : rows)
     for (int s = 0; s < 3; ++s)
-      sums.add_row(s, block[s].row(row.j, row.k), row.size(), grid.layout().begin[0] + row.i_begin);
+      sums.add_row(s, block[s].row(row.j, row.k), row.size(), domain.layout().begin[0] + row.i_begin);
   std::array<double, 3> result{};
-  EXPECT_EQ(sums.reduce(grid.comm(), result.data()), 0);
+  EXPECT_EQ(sums.reduce(domain.comm(), result.data()), 0);
   return result;
 }
 
@@ -80,11 +80,11 @@ TEST(GlobalSums, SameBitsOnAnyRanksInAnyOrder) {
     ASSERT_EQ(whole.create(PETSC_COMM_SELF, box(cells)), 0);
     const std::array<double, 3> expected = sums_on(whole, 0);
     EXPECT_NE(expected[0], expected[1]);
-    for_each_split(cells, 0, [&](const Domain &grid) {
+    for_each_split(cells, 0, [&](const Domain &domain) {
       // x is split between blocks where there are enough of them, else its sums are another rounding.
-      if (grid.processors(0) > 1 && cells[0] < 256 * grid.processors(0)) return;
+      if (domain.processors(0) > 1 && cells[0] < 256 * domain.processors(0)) return;
       for (const std::uint64_t seed : {1, 7}) {
-        const std::array<double, 3> result = sums_on(grid, seed);
+        const std::array<double, 3> result = sums_on(domain, seed);
         EXPECT_EQ(std::memcmp(result.data(), expected.data(), sizeof expected), 0);
       }
     });
@@ -119,10 +119,10 @@ TEST(GlobalSums, ReduceStartsAnew) {
   }
 }
 
-std::uint64_t global_hash(const Domain &grid, const Field &block, const std::array<bool, 3> &staggering,
+std::uint64_t global_hash(const Domain &domain, const Field &block, const std::array<bool, 3> &staggering,
                           std::uint64_t salt = 3) {
-  std::uint64_t hash = hash_points(grid, block[0], staggering, salt);
-  MPI_Allreduce(MPI_IN_PLACE, &hash, 1, MPI_UINT64_T, MPI_SUM, grid.comm());
+  std::uint64_t hash = hash_points(domain, block[0], staggering, salt);
+  MPI_Allreduce(MPI_IN_PLACE, &hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm());
   return hash;
 }
 
@@ -134,19 +134,19 @@ TEST(StateHash, SameOnAnyRanksForEveryStaggeringAndBoundary) {
         Domain whole;
         ASSERT_EQ(whole.create(PETSC_COMM_SELF, box(cells, walls)), 0);
         const std::uint64_t expected = global_hash(whole, fields_on(whole, staggering, 1), staggering);
-        for_each_split(cells, walls, [&](const Domain &grid) {
-          EXPECT_EQ(global_hash(grid, fields_on(grid, staggering, 1), staggering), expected);
+        for_each_split(cells, walls, [&](const Domain &domain) {
+          EXPECT_EQ(global_hash(domain, fields_on(domain, staggering, 1), staggering), expected);
         });
       }
 }
 
 // Visits the points this rank has of a field of this staggering, as local indices.
 template <class Visit>
-int for_each_point(const Domain &grid, const std::array<bool, 3> &staggering, const Visit &visit) {
+int for_each_point(const Domain &domain, const std::array<bool, 3> &staggering, const Visit &visit) {
   int points = 0;
-  for (int k = 0; k < grid.points_end(2, staggering[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, staggering[1]); ++j)
-      for (int i = 0; i < grid.points_end(0, staggering[0]); ++i, ++points) visit(i, j, k);
+  for (int k = 0; k < domain.points_end(2, staggering[2]); ++k)
+    for (int j = 0; j < domain.points_end(1, staggering[1]); ++j)
+      for (int i = 0; i < domain.points_end(0, staggering[0]); ++i, ++points) visit(i, j, k);
   return points;
 }
 
@@ -154,44 +154,44 @@ constexpr std::array<bool, 3> on_z_edges{true, true, false};
 
 // The global hash is a sum over ranks, so that a change on one rank is a change of the whole.
 TEST(StateHash, SeesEveryBitOfEveryPointAndNothingElse) {
-  for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
-    Field block = fields_on(grid, on_z_edges, 1);
+  for_each_split({5, 9, 7}, 7, [&](const Domain &domain) {
+    Field block = fields_on(domain, on_z_edges, 1);
     const View q = block[0];
-    const std::uint64_t before = hash_points(grid, q, on_z_edges, 3);
-    EXPECT_NE(hash_points(grid, q, on_z_edges, 4), before);
+    const std::uint64_t before = hash_points(domain, q, on_z_edges, 3);
+    EXPECT_NE(hash_points(domain, q, on_z_edges, 4), before);
     int unseen = 0;
-    int points = for_each_point(grid, on_z_edges, [&](int i, int j, int k) {
+    int points = for_each_point(domain, on_z_edges, [&](int i, int j, int k) {
       for (int bit = 0; bit < 64; ++bit) {
         const double kept = q(i, j, k);
         std::uint64_t word;
         std::memcpy(&word, &kept, sizeof word);
         word ^= 1ull << bit;
         std::memcpy(&q(i, j, k), &word, sizeof word);
-        unseen += hash_points(grid, q, on_z_edges, 3) == before;
+        unseen += hash_points(domain, q, on_z_edges, 3) == before;
         q(i, j, k) = kept;
       }
     });
     EXPECT_EQ(unseen, 0);
-    EXPECT_EQ(hash_points(grid, q, on_z_edges, 3), before);
-    MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPI_INT, MPI_SUM, grid.comm());
+    EXPECT_EQ(hash_points(domain, q, on_z_edges, 3), before);
+    MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPI_INT, MPI_SUM, domain.comm());
     EXPECT_EQ(points, 6 * 10 * 7);  // the wall planes once
 
-    Field other(grid, 1);  // the same points, other ghosts and padding
-    for_each_point(grid, on_z_edges, [&](int i, int j, int k) { other[0](i, j, k) = q(i, j, k); });
-    EXPECT_EQ(hash_points(grid, other[0], on_z_edges, 3), before);
+    Field other(domain, 1);  // the same points, other ghosts and padding
+    for_each_point(domain, on_z_edges, [&](int i, int j, int k) { other[0](i, j, k) = q(i, j, k); });
+    EXPECT_EQ(hash_points(domain, other[0], on_z_edges, 3), before);
   });
 }
 
 // Two points that exchange their values, wherever they live.
 TEST(StateHash, SeesASwap) {
-  for_each_split({5, 9, 7}, 7, [&](const Domain &grid) {
-    Field block = fields_on(grid, on_z_edges, 1);
-    const Int3 &begin = grid.layout().begin;
-    const std::uint64_t before = global_hash(grid, block, on_z_edges);
+  for_each_split({5, 9, 7}, 7, [&](const Domain &domain) {
+    Field block = fields_on(domain, on_z_edges, 1);
+    const Int3 &begin = domain.layout().begin;
+    const std::uint64_t before = global_hash(domain, block, on_z_edges);
     const auto set = [&](const Int3 &at, const Int3 &from) {
       const Int3 p{at[0] - begin[0], at[1] - begin[1], at[2] - begin[2]};
       for (int d = 0; d < 3; ++d)
-        if (p[d] < 0 || p[d] >= grid.points_end(d, on_z_edges[d])) return;
+        if (p[d] < 0 || p[d] >= domain.points_end(d, on_z_edges[d])) return;
       block[0](p[0], p[1], p[2]) = value(0, from[0], from[1], from[2]);
     };
     std::mt19937 random(9);
@@ -201,11 +201,11 @@ TEST(StateHash, SeesASwap) {
       if (a == b) continue;
       set(a, b);
       set(b, a);
-      EXPECT_NE(global_hash(grid, block, on_z_edges), before);
+      EXPECT_NE(global_hash(domain, block, on_z_edges), before);
       set(a, a);
       set(b, b);
     }
-    EXPECT_EQ(global_hash(grid, block, on_z_edges), before);
+    EXPECT_EQ(global_hash(domain, block, on_z_edges), before);
   });
 }
 

@@ -54,37 +54,37 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
   spec.cells = {16, boundary == Boundary::wall ? 63 : 60, planes};
   spec.length = {1.6, 6, planes * 0.1};
   spec.boundary = {Boundary::periodic, boundary, Boundary::periodic};
-  Domain grid;
-  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
-  GhostExchange exchange(grid);
+  Domain domain;
+  ASSERT_EQ(domain.create(run_communicator(), spec), 0);
+  GhostExchange exchange(domain);
   const double viscosity = 0.7, dt = 0.02, first = 1.3, slope = -40, start = 0.25;
-  SuperTimeStepping work{Field(grid, 3), Field(grid, 3), Field(grid, 3), Field(grid, 3)};
-  Field velocity(grid, 3), result(grid, 3);
+  SuperTimeStepping work{Field(domain, 3), Field(domain, 3), Field(domain, 3), Field(domain, 3)};
+  Field velocity(domain, 3), result(domain, 3);
   std::vector<Phase> phases(1);
-  build_all(grid, &phases[0].tensor.stressed);
+  build_all(domain, &phases[0].tensor.stressed);
   std::array<std::array<Wave, 3>, 3> waves;
   const auto mode = [&](int c, const Segment &row, int i) {
-    const Int3 &begin = grid.layout().begin;
+    const Int3 &begin = domain.layout().begin;
     return waves[c][0](begin[0] + i) * waves[c][1](begin[1] + row.j) * waves[c][2](begin[2] + row.k);
   };
   for (int c = 0; c < 3; ++c)
     for (int d = 0; d < 3; ++d)
-      waves[c][d] = {spec.cells[d], 1 + (c + d) % 3, grid.spacing()[d], grid.is_wall(d), c == d};
+      waves[c][d] = {spec.cells[d], 1 + (c + d) % 3, domain.spacing()[d], domain.is_wall(d), c == d};
   for (int c = 0; c < 3; ++c)
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) {
         velocity[c](i, row.j, row.k) = start * mode(c, row, i);
         work.rate[c](i, row.j, row.k) = first * mode(c, row, i);
         work.slope[c](i, row.j, row.k) = slope * mode(c, row, i);
       }
-  ASSERT_EQ(super_time_step(grid, exchange, {}, viscosity, 0, dt, stages, phases, velocity, work, result), 0);
+  ASSERT_EQ(super_time_step(domain, exchange, {}, viscosity, 0, dt, stages, phases, velocity, work, result), 0);
   for (int c = 0; c < 3; ++c) {
     double eigenvalue = 0;
     for (const Wave &wave : waves[c]) eigenvalue += viscosity * wave.eigenvalue();
     const double grown = start + stages_of_a_number(stages, dt, eigenvalue, first - 0.5 * dt * slope, slope);
     double worst = 0;
-    for (const Segment &row : grid.rows()) {
-      if (c == 1 && row.j == 0 && grid.touches_low(1)) continue;  // on the wall: whoever fills its ghosts sets these
+    for (const Segment &row : domain.rows()) {
+      if (c == 1 && row.j == 0 && domain.touches_low(1)) continue;  // on the wall: whoever fills its ghosts sets these
       for (int i = row.i_begin; i < row.i_end; ++i)
         worst = std::max(worst, std::abs(result[c](i, row.j, row.k) - grown * mode(c, row, i)));
     }

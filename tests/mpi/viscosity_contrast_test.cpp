@@ -23,7 +23,7 @@ Function wild(double a) {
 
 // Random flow between sides of several kinds, and a phase of another viscosity everywhere.
 struct CellBlock {
-  Domain grid;
+  Domain domain;
   BoxSides sides{};
   Fluid fluid;
   std::vector<Phase> phases{1};
@@ -35,8 +35,8 @@ struct CellBlock {
     spec.cells = {7, 13, flat ? 1 : 9};
     spec.length = {1, 2, 1.5};
     for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = bounded[d] ? Boundary::wall : Boundary::periodic;
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    const int dim = grid.dimension();
+    EXPECT_EQ(domain.create(comm, spec), 0);
+    const int dim = domain.dimension();
     sides[0][0].motion.velocity = {0, 0.7, flat ? 0 : -0.3};
     sides[1][0].kind = SideKind::symmetry;
     sides[1][1].motion.velocity = {-0.4, 0, flat ? 0 : 0.5};
@@ -44,47 +44,47 @@ struct CellBlock {
     fluid.density = 1.3;
     fluid.viscosity = 0.2;
     phases[0].material.viscosity = contrast * fluid.viscosity;
-    velocity = Field(grid, dim);
-    viscosity = LocalViscosity(grid);
-    for (int c = 0; c < dim; ++c) set(grid, velocity[c], at_face[c], wild(c + 1));
-    GhostExchange exchange(grid);
+    velocity = Field(domain, dim);
+    viscosity = LocalViscosity(domain);
+    for (int c = 0; c < dim; ++c) set(domain, velocity[c], at_face[c], wild(c + 1));
+    GhostExchange exchange(domain);
     EXPECT_EQ(exchange.update_ghosts(velocity, 2), 0);
-    fill_wall_ghosts_velocity(grid, sides, 0, velocity, 2);
+    fill_wall_ghosts_velocity(domain, sides, 0, velocity, 2);
     Phase &phase = phases[0];
-    phase.fraction = Field(grid, 1);
-    phase.tensor.field = tensor_at_rest(grid);
-    set(grid, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
-    EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
+    phase.fraction = Field(domain, 1);
+    phase.tensor.field = tensor_at_rest(domain);
+    set(domain, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
+    EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);
-    fill_wall_ghosts_even(grid, at_centre, phase.fraction[0], 2);
-    EXPECT_EQ(compute_viscosity(grid, fluid, sides, phases, &viscosity), 0);
+    fill_wall_ghosts_even(domain, at_centre, phase.fraction[0], 2);
+    EXPECT_EQ(compute_viscosity(domain, fluid, sides, phases, &viscosity), 0);
   }
 
   // Sum of v . div tau over all faces but those on sides, where v = 0.
   double power_of_force() {
-    Field force(grid, grid.dimension());
-    EXPECT_EQ(add_viscous_force(grid, viscosity, fluid.density, velocity, force), 0);
+    Field force(domain, domain.dimension());
+    EXPECT_EQ(add_viscous_force(domain, viscosity, fluid.density, velocity, force), 0);
     double power = 0;
-    for (int c = 0; c < grid.dimension(); ++c)
-      for (const Segment &row : grid.rows())
+    for (int c = 0; c < domain.dimension(); ++c)
+      for (const Segment &row : domain.rows())
         for (int i = 0; i < row.i_end; ++i)
-          power += velocity[c](i, row.j, row.k) * force[c](i, row.j, row.k) * grid.cell_volume();
-    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, grid.comm());
+          power += velocity[c](i, row.j, row.k) * force[c](i, row.j, row.k) * domain.cell_volume();
+    MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, domain.comm());
     return power;
   }
   FlowMeasures flow() const {
     FlowMeasures measures;
-    EXPECT_EQ(measure_flow(grid, velocity, {fluid.density, fluid.viscosity, 0, 0, &viscosity.fields}, &measures), 0);
+    EXPECT_EQ(measure_flow(domain, velocity, {fluid.density, fluid.viscosity, 0, 0, &viscosity.fields}, &measures), 0);
     return measures;
   }
   EnergyRates rates() const {
     EnergyRates rates;
     const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, &viscosity.fields};
-    EXPECT_EQ(measure_energy_rates(grid, velocity, phases, numbers, &rates), 0);
+    EXPECT_EQ(measure_energy_rates(domain, velocity, phases, numbers, &rates), 0);
     return rates;
   }
   std::vector<WallStress> stresses() const {
-    return wall_shear_stress(grid, sides, 0, {grid, fluid.viscosity, fluid.density, &viscosity.fields}, velocity,
+    return wall_shear_stress(domain, sides, 0, {domain, fluid.viscosity, fluid.density, &viscosity.fields}, velocity,
                              phases);
   }
 };
@@ -112,7 +112,7 @@ TEST(ViscosityContrast, MeasuresHaveTheBitsOfOneRank) {
       for (const WallStress &wall : box.stresses())
         for (const std::vector<double> &values_of_wall : wall.components)
           for (const double value : values_of_wall) largest = std::max(largest, std::fabs(value));
-      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, box.grid.comm());
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, box.domain.comm());
       values[alone][0] = box.flow().viscous_dissipation;
       values[alone][1] = box.rates().wall_power;
       values[alone][2] = largest;
@@ -152,7 +152,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps) {
   spec.sides[2][0].kind = SideKind::symmetry;
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
   const double height = grid.length[1];
-  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  set(scene.domain, scene.solver.state().velocity[0], at_face[0],
       [&](double, double y, double) { return 0.4 * y / height; });
   const auto ball = [&](Real3 centre, double radius) {
     if (c.cells[2] == 1) centre[2] = 0.25;

@@ -36,15 +36,15 @@ void write_stl(const std::string &path) {  // a tetrahedron askew
   file << "endsolid\n";
 }
 
-Phase fill(const Domain &grid, const std::string &path) {
+Phase fill(const Domain &domain, const std::string &path) {
   SpeciesSpec spec;
   spec.name = "part";
   spec.shape = Shape::voxels;
   spec.voxels.path = path;
   Phase phase;
   Places places;
-  EXPECT_EQ(fill_phase(grid, spec, {}, 5, &phase), 0);
-  EXPECT_EQ(fill_voxels(grid, spec, 5, &phase, &places), 0);
+  EXPECT_EQ(fill_phase(domain, spec, {}, 5, &phase), 0);
+  EXPECT_EQ(fill_voxels(domain, spec, 5, &phase, &places), 0);
   EXPECT_EQ(places.known.size(), 1u);
   return phase;
 }
@@ -94,18 +94,18 @@ TEST(Voxels, ErrorsOfOneRankAreEverybodys) {
     file.write(reinterpret_cast<const char *>(&two), sizeof two);
   }
   MPI_Barrier(run_communicator());
-  Domain grid;
+  Domain domain;
   GridSpec spec;
   spec.cells = {20, 16, 12};
-  ASSERT_EQ(grid.create(run_communicator(), spec), 0);
+  ASSERT_EQ(domain.create(run_communicator(), spec), 0);
   SpeciesSpec species;
   species.name = "part";
   species.shape = Shape::voxels;
   species.voxels.path = room / "v.nrrd";
   Phase phase;
   Places places;
-  ASSERT_EQ(fill_phase(grid, species, {}, 1, &phase), 0);
-  const std::string wrong = test::error_of([&] { return fill_voxels(grid, species, 1, &phase, &places); });
+  ASSERT_EQ(fill_phase(domain, species, {}, 1, &phase), 0);
+  const std::string wrong = test::error_of([&] { return fill_voxels(domain, species, 1, &phase, &places); });
   EXPECT_NE(wrong.find("-part_voxels: "), std::string::npos) << wrong;
   EXPECT_NE(wrong.find("voxel [8, 16, 22] is 2"), std::string::npos) << wrong;
 }

@@ -14,7 +14,7 @@ std::tuple<Int3, Filling, MethodKind, PressureKind> last_of;
 
 PetscErrorCode add_red_cells(test::Scene &scene) {
   PetscFunctionBeginUser;
-  const DomainShape &grid = scene.grid.domain_shape();
+  const DomainShape &grid = scene.domain.domain_shape();
   SpeciesSpec species;
   species.name = "rbc";
   species.shape = Shape::biconcave;
@@ -24,11 +24,11 @@ PetscErrorCode add_red_cells(test::Scene &scene) {
   species.count = {grid.cells[0] / 64, grid.cells[1] / 32, grid.cells[2] / 64};
   Places places;
   const std::string problem = place_bodies(species, grid, &places);
-  PetscCheck(problem.empty(), scene.grid.comm(), PETSC_ERR_USER, "%s", problem.c_str());
+  PetscCheck(problem.empty(), scene.domain.comm(), PETSC_ERR_USER, "%s", problem.c_str());
   Phase phase;
-  PetscCall(fill_phase(scene.grid, species, places, 1, &phase));
+  PetscCall(fill_phase(scene.domain, species, places, 1, &phase));
   scene.solver.state().phases.push_back(std::move(phase));
-  scene.solver.bodies().add_phase(scene.grid, places);
+  scene.solver.bodies().add_phase(scene.domain, places);
   PetscFunctionReturn(0);
 }
 
@@ -46,7 +46,7 @@ PetscErrorCode FilledBox::create(const Int3 &cells, Filling filling, const Metho
   spec.fluid.body_force.force = {2e-4, 0, 0};
   PetscCall(scene.create(PETSC_COMM_WORLD, grid, spec));
   for (int a = 0; a < 3; ++a)
-    test::set(scene.grid, scene.solver.state().velocity[a], at_face[a], [&](double x, double y, double z) {
+    test::set(scene.domain, scene.solver.state().velocity[a], at_face[a], [&](double x, double y, double z) {
       const int d = (a + 1) % 3;
       return 0.01 * std::sin(6.283185307179586 / grid.length[d] * std::array<double, 3>{x, y, z}[d]);
     });

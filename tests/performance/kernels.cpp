@@ -15,7 +15,7 @@ using namespace eulastic;
 namespace {
 
 struct Block {
-  Domain grid;
+  Domain domain;
   Field fields;
   std::vector<Segment> rows;
   std::vector<double> rate, carried[3];
@@ -25,10 +25,10 @@ struct Block {
   Block() {
     GridSpec spec;
     spec.cells = {64, 16, 16};
-    (void)grid.create(PETSC_COMM_SELF, spec);
-    fields = Field(grid, 10);
+    (void)domain.create(PETSC_COMM_SELF, spec);
+    fields = Field(domain, 10);
     for (std::size_t i = 0; i < fields.bytes() / sizeof(double); ++i) fields.data()[i] = 1 + 0.1 * std::sin(0.37 * i);
-    rows = grid.rows();
+    rows = domain.rows();
     rate.resize(64);
     for (auto &row : carried)
       for (int i = 0; i < 64; ++i) row.push_back(std::sin(0.9 * i));
@@ -47,13 +47,13 @@ EULASTIC_CLONES void weno5(Block &b) {
 }
 
 EULASTIC_CLONES void viscous(Block &b) {
-  const InverseSquares h = b.grid.inverse_squares();
+  const InverseSquares h = b.domain.inverse_squares();
   for (const Segment &s : b.rows)
     kernels::fluid_rate<3>(s, b.rate.data(), b.fields[0], h, b.fields[3], 1, 64, 1, b.carried[0].data());
 }
 
 EULASTIC_CLONES void rkl_stage(Block &b) {
-  const InverseSquares h = b.grid.inverse_squares();
+  const InverseSquares h = b.domain.inverse_squares();
   const kernels::RklStage stage{0.5, 0.3, 1e-6, 0.01, 0};
   for (const Segment &s : b.rows)
     kernels::rkl_stage<3, false>(s, stage, b.fields[0], b.fields[1], b.fields[1], h, b.fields[2]);
@@ -61,7 +61,7 @@ EULASTIC_CLONES void rkl_stage(Block &b) {
 
 // The sums of a sweep along D and the step before, whose Laplacian is D before - D; without what is done once a row.
 EULASTIC_CLONES void sweep_sums(Block &b) {
-  const InverseSquares h = b.grid.inverse_squares();
+  const InverseSquares h = b.domain.inverse_squares();
   const std::ptrdiff_t sy = b.fields[0].sy, sz = b.fields[0].sz;
   for (const Segment &s : b.rows) {
     const double *D = b.fields[0].row(s.j, s.k), *before = b.fields[1].row(s.j, s.k);
@@ -121,7 +121,7 @@ EULASTIC_CLONES void stretch_shear(Block &b) {
 
 void kernel(benchmark::State &state, void (*work)(Block &), double flops_per_cell) {
   Block block;
-  const double cells = block.grid.cell_count() * performance::sum_over_ranks(1);  // a block on every rank
+  const double cells = block.domain.cell_count() * performance::sum_over_ranks(1);  // a block on every rank
   performance::measure(state, {cells, 0, flops_per_cell}, [&] {
     std::fill(block.rate.begin(), block.rate.end(), 0.0);
     work(block);

@@ -16,7 +16,7 @@ using performance::FilledBox;
 namespace {
 
 struct Fields {
-  const Domain &grid;
+  const Domain &domain;
   const Field &velocity, &fraction, &tensor;
   Field &next;  // ten
   double dt;
@@ -36,7 +36,7 @@ EULASTIC_INLINE void move(const Fields &t, const Points &points, ConstView q, in
 EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Staggering &at, int first, int last) {
   alignas(64) double rate[kernels::Batch::points], carried[3][kernels::Batch::points];
   const double *const velocity[3] = {carried[0], carried[1], carried[2]};
-  const Int3 n = t.grid.cells();
+  const Int3 n = t.domain.cells();
   const auto work = [&](kernels::Batch &batch) EULASTIC_BODY {
     for (int d = 0; d < 3; ++d) {
       const ConstView face = t.velocity[d];
@@ -61,7 +61,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
 // q - dt v.grad q of three velocities, phi and six components of B, each where it lives.
 EULASTIC_CLONES void advect(const Fields &t, const RowPart &part, RowScratch &scratch) {
   double *rate = scratch.row(0);
-  const int n = t.grid.cells()[0];
+  const int n = t.domain.cells()[0];
   const Field &v = t.velocity;
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const Segment row{0, n, j, k};
@@ -97,7 +97,7 @@ EULASTIC_CLONES void stretch(const Fields &t, const RowPart &part, RowScratch &s
   const ConstView v0 = t.velocity[0];
   const std::ptrdiff_t stride[3] = {1, v0.sy, v0.sz};
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
-    const Segment row{0, t.grid.cells()[0], j, k};
+    const Segment row{0, t.domain.cells()[0], j, k};
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       const kernels::Directions d{stride[a], stride[b], stride[c], t.inverse[a], t.inverse[b], t.inverse[c]};
@@ -127,19 +127,19 @@ void part(benchmark::State &state, double bytes, double flops, Task task) {
   FilledBox *box =
       performance::box(performance::cells_of(state), performance::Filling::all, method_preset(MethodKind::classic));
   if (!box) return state.SkipWithError("no scene");
-  const Domain &grid = box->scene.grid;
+  const Domain &domain = box->scene.domain;
   State &now = box->scene.solver.state();
-  Field next(grid, 10);
-  const Real3 &h = grid.spacing();
-  const Fields fields{grid, now.velocity, now.phases[0].fraction,        now.phases[0].tensor.field,
-                      next, box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
-  performance::measure(state, {grid.domain_cell_count(), bytes, flops}, [&] { return task(fields, now.phases); });
+  Field next(domain, 10);
+  const Real3 &h = domain.spacing();
+  const Fields fields{domain, now.velocity, now.phases[0].fraction,        now.phases[0].tensor.field,
+                      next,   box->dt,      {1 / h[0], 1 / h[1], 1 / h[2]}};
+  performance::measure(state, {domain.domain_cell_count(), bytes, flops}, [&] { return task(fields, now.phases); });
 }
 
 void advection(benchmark::State &state) {
   part(state, advection_bytes, advection_flops, [](const Fields &fields, const auto &) {
-    in_row_parts(fields.grid, [&](const RowPart &rows) {
-      RowScratch scratch(fields.grid, 1);
+    in_row_parts(fields.domain, [&](const RowPart &rows) {
+      RowScratch scratch(fields.domain, 1);
       advect(fields, rows, scratch);
     });
     return 0;
@@ -149,8 +149,8 @@ void advection(benchmark::State &state) {
 
 void oldroyd_rate(benchmark::State &state) {
   part(state, stretch_bytes, stretch_flops, [](const Fields &fields, const auto &) {
-    in_row_parts(fields.grid, [&](const RowPart &rows) {
-      RowScratch scratch(fields.grid, 1);
+    in_row_parts(fields.domain, [&](const RowPart &rows) {
+      RowScratch scratch(fields.domain, 1);
       stretch(fields, rows, scratch);
     });
     return 0;
@@ -161,7 +161,7 @@ void oldroyd_rate(benchmark::State &state) {
 void elastic_force(benchmark::State &state) {
   part(state, elastic_bytes, 3 * kernels::NeoHookean::flops(3),
        [](const Fields &fields, const std::vector<Phase> &phases) {
-         return compute_elastic_force(fields.grid, 1, phases, fields.next);
+         return compute_elastic_force(fields.domain, 1, phases, fields.next);
        });
 }
 

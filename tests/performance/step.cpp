@@ -16,7 +16,7 @@ Method classic(PressureKind pressure = PressureKind::acm) {
 void step(benchmark::State &state, Filling filling, const Method &method) {
   performance::FilledBox *box = performance::box(performance::cells_of(state), filling, method);
   if (!box) return state.SkipWithError("no scene");
-  const double count = box->scene.grid.domain_cell_count();
+  const double count = box->scene.domain.domain_cell_count();
   performance::measure(state, {count}, [&] { return box->scene.solver.step(box->dt); });
   if (filling != Filling::none)
     state.counters["solid_share"] =

@@ -31,37 +31,37 @@ inline SpeciesSpec species(Shape shape, double radius, const Real3 &semi_axes = 
 
 // One phase of bodies and a velocity field on a grid of `comm`.
 struct BodyScene {
-  Domain grid;
+  Domain domain;
   std::vector<Phase> phases;
   Field velocity;
   BodyTracker tracker;
 
   BodyScene(MPI_Comm comm, const GridSpec &spec) {
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    velocity = Field(grid, grid.dimension());
+    EXPECT_EQ(domain.create(comm, spec), 0);
+    velocity = Field(domain, domain.dimension());
   }
   void add(const SpeciesSpec &spec, const Places &places) {
     phases.emplace_back();
-    EXPECT_EQ(fill_phase(grid, spec, places, 1 + tracker.bodies(), &phases.back()), 0);
-    tracker.add_phase(grid, places);
+    EXPECT_EQ(fill_phase(domain, spec, places, 1 + tracker.bodies(), &phases.back()), 0);
+    tracker.add_phase(domain, places);
   }
   /// Only the fraction moves to `places`: what an interface scheme does.
   void move(const SpeciesSpec &spec, const Places &places) {
     Phase moved;
-    EXPECT_EQ(fill_phase(grid, spec, places, 1, &moved), 0);
+    EXPECT_EQ(fill_phase(domain, spec, places, 1, &moved), 0);
     phases[0].fraction.swap(moved.fraction);
   }
   template <class Function>  // velocity component d at x, ghosts included
   void set_velocity(Function &&function) {
-    for (int d = 0; d < grid.dimension(); ++d)
-      for (int k = -grid.layout().ghosts[2]; k < grid.cells()[2] + grid.layout().ghosts[2]; ++k)
-        for (int j = -3; j < grid.cells()[1] + 3; ++j)
-          for (int i = -3; i < grid.cells()[0] + 3; ++i) {
+    for (int d = 0; d < domain.dimension(); ++d)
+      for (int k = -domain.layout().ghosts[2]; k < domain.cells()[2] + domain.layout().ghosts[2]; ++k)
+        for (int j = -3; j < domain.cells()[1] + 3; ++j)
+          for (int i = -3; i < domain.cells()[0] + 3; ++i) {
             const Int3 local{i, j, k};
             Real3 x{};
             for (int e = 0; e < 3; ++e) {
-              const int n = grid.domain_cells()[e], global = (grid.layout().begin[e] + local[e] + n) % n;
-              x[e] = (global + (e == d ? 0.0 : 0.5)) * grid.spacing()[e];
+              const int n = domain.domain_cells()[e], global = (domain.layout().begin[e] + local[e] + n) % n;
+              x[e] = (global + (e == d ? 0.0 : 0.5)) * domain.spacing()[e];
             }
             velocity[d](i, j, k) = function(d, x);
           }
@@ -69,17 +69,17 @@ struct BodyScene {
   /// B_xx of every body by 1 + sin(7 x)/2: strains that differ from cell to cell.
   void strain() {
     for (Phase &phase : phases)
-      for (const Segment &row : grid.rows())
+      for (const Segment &row : domain.rows())
         for (int i = 0; i < row.i_end; ++i)
           if (phase.fraction[0](i, row.j, row.k) > 0)
-            phase.tensor.field[0](i, row.j, row.k) *= 1 + std::sin(7 * (grid.layout().begin[0] + i)) / 2;
+            phase.tensor.field[0](i, row.j, row.k) *= 1 + std::sin(7 * (domain.layout().begin[0] + i)) / 2;
   }
   // Of all bodies, on every rank.
   std::vector<BodyMeasure> measure() {
     std::vector<BodyMeasure> owned, all;
     const int bodies = tracker.bodies();
-    EXPECT_EQ(tracker.measure(grid, phases, velocity, strain_energy, &owned), 0);
-    EXPECT_EQ(all_bodies(grid.comm(), bodies, bodies, owned, &all), 0);
+    EXPECT_EQ(tracker.measure(domain, phases, velocity, strain_energy, &owned), 0);
+    EXPECT_EQ(all_bodies(domain.comm(), bodies, bodies, owned, &all), 0);
     return all;
   }
 };

@@ -71,17 +71,17 @@ inline Position ellipsoid(const Real3 &centre, const Real3 &axes, int dimension)
 
 class InterfaceScene {
 public:
-  Domain grid;
+  Domain domain;
   Field velocity, fraction;
   long step = 0;
 
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec) {
     PetscFunctionBeginUser;
-    PetscCall(grid.create(comm, spec));
-    velocity = Field(grid, grid.dimension());
-    fraction = Field(grid, 1);
-    exchange_ = std::make_unique<GhostExchange>(grid);
-    transport_ = std::make_unique<InterfaceTransport>(grid, work_);
+    PetscCall(domain.create(comm, spec));
+    velocity = Field(domain, domain.dimension());
+    fraction = Field(domain, 1);
+    exchange_ = std::make_unique<GhostExchange>(domain);
+    transport_ = std::make_unique<InterfaceTransport>(domain, work_);
     PetscCall(work_.reserve(InterfaceTransport::work_fields));
     PetscFunctionReturn(0);
   }
@@ -90,9 +90,9 @@ public:
   Real3 position(const Int3 &local, const std::array<bool, 3> &at) const {
     Real3 x{};
     for (int d = 0; d < 3; ++d) {
-      const int n = grid.domain_cells()[d], g = grid.layout().begin[d] + local[d];
-      const int wrapped = grid.is_wall(d) ? g : ((g % n) + n) % n;
-      x[d] = (wrapped + (at[d] ? 0.5 : 0.0)) * grid.spacing()[d];
+      const int n = domain.domain_cells()[d], g = domain.layout().begin[d] + local[d];
+      const int wrapped = domain.is_wall(d) ? g : ((g % n) + n) % n;
+      x[d] = (wrapped + (at[d] ? 0.5 : 0.0)) * domain.spacing()[d];
     }
     return x;
   }
@@ -100,22 +100,22 @@ public:
   void set_fraction(const Position &level) {
     each_owned([&](int i, int j, int k) {
       fraction[0](i, j, k) =
-          cell_fraction(level, position({i, j, k}, {true, true, true}), grid.spacing(), grid.dimension());
+          cell_fraction(level, position({i, j, k}, {true, true, true}), domain.spacing(), domain.dimension());
     });
   }
 
   PetscErrorCode set_velocity(const Potential &potential) {
-    const Real3 &h = grid.spacing();
+    const Real3 &h = domain.spacing();
     PetscFunctionBeginUser;
-    for (int a = 0; a < grid.dimension(); ++a)
+    for (int a = 0; a < domain.dimension(); ++a)
       for (int e = 0; e < 2; ++e) {  // u_a = d_b A_c - d_c A_b
         const int b = (a + 1 + e) % 3, c = 3 - a - b;
-        if (!potential[c] || b >= grid.dimension()) continue;
+        if (!potential[c] || b >= domain.dimension()) continue;
         std::array<bool, 3> edge{};
         edge[c] = true;
-        for (int k = 0; k < grid.points_end(2, a == 2); ++k)
-          for (int j = 0; j < grid.points_end(1, a == 1); ++j)
-            for (int i = 0; i < grid.points_end(0, a == 0); ++i) {
+        for (int k = 0; k < domain.points_end(2, a == 2); ++k)
+          for (int j = 0; j < domain.points_end(1, a == 1); ++j)
+            for (int i = 0; i < domain.points_end(0, a == 0); ++i) {
               Int3 next{i, j, k};
               ++next[b];
               const double difference = potential[c](position(next, edge)) - potential[c](position({i, j, k}, edge));
@@ -129,13 +129,13 @@ public:
   PetscErrorCode update_velocity_ghosts() {
     PetscFunctionBeginUser;
     PetscCall(exchange_->update_ghosts(velocity, 3));
-    fill_wall_ghosts_velocity(grid, BoxSides{}, 0, velocity, 3);
+    fill_wall_ghosts_velocity(domain, BoxSides{}, 0, velocity, 3);
     PetscFunctionReturn(0);
   }
 
   /// Uniform velocity in a periodic box.
   void set_velocity(const Real3 &uniform) {
-    for (int d = 0; d < grid.dimension(); ++d) velocity.fill(d, uniform[d]);
+    for (int d = 0; d < domain.dimension(); ++d) velocity.fill(d, uniform[d]);
   }
 
   PetscErrorCode advance(double dt) {
@@ -149,7 +149,7 @@ public:
 
   template <class F>
   void each_owned(F &&f) const {
-    const Int3 &n = grid.cells();
+    const Int3 &n = domain.cells();
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) f(i, j, k);
@@ -167,7 +167,7 @@ public:
     double error = 0, volume = 0;
     each_owned([&](int i, int j, int k) {
       const double exact =
-          cell_fraction(level, position({i, j, k}, {true, true, true}), grid.spacing(), grid.dimension());
+          cell_fraction(level, position({i, j, k}, {true, true, true}), domain.spacing(), domain.dimension());
       error += std::abs(fraction[0](i, j, k) - exact);
       volume += exact;
     });
@@ -187,7 +187,7 @@ public:
 
 private:
   std::unique_ptr<GhostExchange> exchange_;
-  WorkSpace work_{grid};
+  WorkSpace work_{domain};
   std::unique_ptr<InterfaceTransport> transport_;
 };
 

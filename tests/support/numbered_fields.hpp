@@ -17,18 +17,18 @@ struct NumberedFields {
     spec.cells = cells;
     spec.length = {1.0, 2.0, 3.0};
     if (walls) spec.boundary = {Boundary::wall, Boundary::wall, Boundary::periodic};
-    grid.create(comm, spec);
+    domain.create(comm, spec);
   }
   // Owned points, and the high wall of staggered directions.
   void fill(View q, const Staggering &s, int component = 0) const {
-    for (int k = 0; k < grid.points_end(2, s[2]); ++k)
-      for (int j = 0; j < grid.points_end(1, s[1]); ++j)
-        for (int i = 0; i < grid.points_end(0, s[0]); ++i) {
-          const Int3 &begin = grid.layout().begin;
+    for (int k = 0; k < domain.points_end(2, s[2]); ++k)
+      for (int j = 0; j < domain.points_end(1, s[1]); ++j)
+        for (int i = 0; i < domain.points_end(0, s[0]); ++i) {
+          const Int3 &begin = domain.layout().begin;
           q(i, j, k) = value_at(begin[0] + i, begin[1] + j, begin[2] + k, component);
         }
   }
-  Domain grid;
+  Domain domain;
 };
 
 }  // namespace eulastic::test

@@ -22,58 +22,58 @@ inline double noise(int i, int j, int k) {
   return 2 * (x - std::floor(x)) - 1;
 }
 
-inline double global_sum(const Domain &grid, const CellFunction &local) {
+inline double global_sum(const Domain &domain, const CellFunction &local) {
   ExactSums sum(1);
-  std::vector<double> row(grid.cells()[0]);
-  for (const Segment &s : grid.rows()) {
+  std::vector<double> row(domain.cells()[0]);
+  for (const Segment &s : domain.rows()) {
     for (int i = 0; i < s.i_end; ++i) row[i] = local(i, s.j, s.k);
-    sum.add_row(0, row.data(), s.i_end, grid.layout().begin[0]);
+    sum.add_row(0, row.data(), s.i_end, domain.layout().begin[0]);
   }
   double total = 0;
-  EXPECT_EQ(sum.reduce(grid.comm(), &total), 0);
+  EXPECT_EQ(sum.reduce(domain.comm(), &total), 0);
   return total;
 }
 
 struct PoissonScene {
   static constexpr double dt = 0.37;
-  Domain grid;
+  Domain domain;
   std::unique_ptr<GhostExchange> exchange;
   Field divergence, pressure, increment;
 
   PoissonScene(MPI_Comm comm, const GridSpec &spec) {
-    EXPECT_EQ(grid.create(comm, spec), 0);
-    exchange = std::make_unique<GhostExchange>(grid);
-    divergence = Field(grid, 1);
-    pressure = Field(grid, 1);
-    increment = Field(grid, 1);
+    EXPECT_EQ(domain.create(comm, spec), 0);
+    exchange = std::make_unique<GhostExchange>(domain);
+    divergence = Field(domain, 1);
+    pressure = Field(domain, 1);
+    increment = Field(domain, 1);
     increment.fill(0, std::nan(""));  // so that a ghost nobody filled shows
   }
   void set(const CellFunction &f, bool without_mean = true) {
-    const Layout &own = grid.layout();
-    for (const Segment &s : grid.rows())
+    const Layout &own = domain.layout();
+    for (const Segment &s : domain.rows())
       for (int i = 0; i < s.i_end; ++i)
         divergence[0](i, s.j, s.k) = f(own.begin[0] + i, own.begin[1] + s.j, own.begin[2] + s.k);
     const ConstView D = divergence[0];
-    const double mean = without_mean ? global_sum(grid, D) / grid.domain_cell_count() : 0;
-    for (const Segment &s : grid.rows())
+    const double mean = without_mean ? global_sum(domain, D) / domain.domain_cell_count() : 0;
+    for (const Segment &s : domain.rows())
       for (int i = 0; i < s.i_end; ++i) divergence[0](i, s.j, s.k) -= mean;
     EXPECT_EQ(exchange->update_ghosts(divergence, 1), 0);
-    fill_wall_ghosts_even(grid, at_centre, divergence[0], 1);
+    fill_wall_ghosts_even(domain, at_centre, divergence[0], 1);
   }
   // D - dt lap increment, from the ghosts of the increment.
   double residual(int i, int j, int k) const {
     const ConstView q = increment[0];
     double laplacian = 0;
-    for (int d = 0; d < grid.dimension(); ++d) {
+    for (int d = 0; d < domain.dimension(); ++d) {
       const double *at = q.row(j, k) + i;
-      const double h = grid.spacing()[d];
+      const double h = domain.spacing()[d];
       laplacian += (at[-q.stride(d)] - 2 * at[0] + at[q.stride(d)]) / (h * h);
     }
     return divergence[0](i, j, k) - dt * laplacian;
   }
   double rms(const CellFunction &local) const {
-    return std::sqrt(global_sum(grid, [&](int i, int j, int k) { return std::pow(local(i, j, k), 2); }) /
-                     grid.domain_cell_count());
+    return std::sqrt(global_sum(domain, [&](int i, int j, int k) { return std::pow(local(i, j, k), 2); }) /
+                     domain.domain_cell_count());
   }
   double rms_divergence() const { return rms(divergence[0]); }
   double rms_residual() const {

@@ -47,25 +47,25 @@ struct Polynomial {
   double laplacian(int dimension) const { return h[0][0] + h[1][1] + (dimension == 3 ? h[2][2] : 0.0); }
 };
 
-inline Point point(const Domain &grid, const Staggering &at, int i, int j, int k) {
-  return {position(grid, 0, at[0], i), position(grid, 1, at[1], j), position(grid, 2, at[2], k)};
+inline Point point(const Domain &domain, const Staggering &at, int i, int j, int k) {
+  return {position(domain, 0, at[0], i), position(domain, 1, at[1], j), position(domain, 2, at[2], k)};
 }
 
 /// Sets a field to value(Point), three ghosts included.
 template <class Value>
-void fill_everywhere(const Domain &grid, View view, const Staggering &at, Value &&value) {
-  const Layout &layout = grid.layout();
+void fill_everywhere(const Domain &domain, View view, const Staggering &at, Value &&value) {
+  const Layout &layout = domain.layout();
   for (int k = -layout.ghosts[2]; k < layout.cells[2] + layout.ghosts[2]; ++k)
     for (int j = -layout.ghosts[1]; j < layout.cells[1] + layout.ghosts[1]; ++j)
       for (int i = -layout.ghosts[0]; i < layout.cells[0] + layout.ghosts[0]; ++i)
-        view(i, j, k) = value(point(grid, at, i, j, k));
+        view(i, j, k) = value(point(domain, at, i, j, k));
 }
 
 /// Largest |field - exact(Point)| over the points of this rank; NaN counts as infinite.
 template <class Exact>
-double largest_error(const Domain &grid, ConstView view, const Staggering &at, Exact &&exact) {
+double largest_error(const Domain &domain, ConstView view, const Staggering &at, Exact &&exact) {
   double largest = 0;
-  for_points(grid, view, at, [&](const double &q, double x, double y, double z) {
+  for_points(domain, view, at, [&](const double &q, double x, double y, double z) {
     const double e = std::fabs(q - exact(Point{x, y, z}));
     largest = e <= largest ? largest : std::isfinite(e) ? e : INFINITY;
   });
@@ -73,11 +73,11 @@ double largest_error(const Domain &grid, ConstView view, const Staggering &at, E
 }
 
 /// Random values at all points, then periodic ghosts (no walls).
-inline void randomise(const Domain &grid, Field &block, Random &random, double mean = 0) {
+inline void randomise(const Domain &domain, Field &block, Random &random, double mean = 0) {
   for (int f = 0; f < block.count(); ++f)
-    set(grid, block[f], at_centre, [&](double, double, double) { return mean + random(); });
-  GhostExchange exchange(grid);
-  EXPECT_EQ(exchange.update_ghosts(block, grid.spec().ghosts), 0);
+    set(domain, block[f], at_centre, [&](double, double, double) { return mean + random(); });
+  GhostExchange exchange(domain);
+  EXPECT_EQ(exchange.update_ghosts(block, domain.spec().ghosts), 0);
 }
 
 /// 3-D (or 2-D) periodic box with three different spacings.

@@ -12,16 +12,16 @@ namespace eulastic::test {
 /// Adds one body of every species, all of them rigid, at its centre; before prepare(). `file`: the first one is known
 /// by its solid fraction alone.
 inline void add_rigid(Scene *scene, const std::vector<SpeciesSpec> &species, bool file = false) {
-  auto bodies = std::make_unique<RigidBodies>(scene->grid, scene->solver.exchange());
+  auto bodies = std::make_unique<RigidBodies>(scene->domain, scene->solver.exchange());
   int label = 1;
   for (SpeciesSpec spec : species) {
     spec.law = Law::rigid;
     spec.name = "rigid" + std::to_string(label);
     spec.centre_given = true;
     Places places;
-    EXPECT_EQ(place_bodies(spec, scene->grid.domain_shape(), &places), "");
+    EXPECT_EQ(place_bodies(spec, scene->domain.domain_shape(), &places), "");
     Phase phase;
-    EXPECT_EQ(fill_phase(scene->grid, spec, places, label, &phase), 0);
+    EXPECT_EQ(fill_phase(scene->domain, spec, places, label, &phase), 0);
     if (file && label == 1) spec.shape = Shape::voxels;
     std::string wrong;
     EXPECT_EQ(bodies->add(spec, places, label++, &phase, &wrong), 0);

@@ -11,28 +11,28 @@ namespace eulastic::test {
 using Function = std::function<double(double x, double y, double z)>;
 
 /// Position of point i of a field along direction d.
-inline double position(const Domain &grid, int d, bool staggered, int i) {
-  return (grid.layout().begin[d] + i + (staggered ? 0.0 : 0.5)) * grid.spacing()[d];
+inline double position(const Domain &domain, int d, bool staggered, int i) {
+  return (domain.layout().begin[d] + i + (staggered ? 0.0 : 0.5)) * domain.spacing()[d];
 }
 
 /// Calls f(value, x, y, z) at every owned point of a field, the high wall of staggered fields included.
 template <class View, class F>
-void for_points(const Domain &grid, View view, const Staggering &at, F &&f) {
-  for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, at[1]); ++j)
-      for (int i = 0; i < grid.points_end(0, at[0]); ++i)
-        f(view(i, j, k), position(grid, 0, at[0], i), position(grid, 1, at[1], j), position(grid, 2, at[2], k));
+void for_points(const Domain &domain, View view, const Staggering &at, F &&f) {
+  for (int k = 0; k < domain.points_end(2, at[2]); ++k)
+    for (int j = 0; j < domain.points_end(1, at[1]); ++j)
+      for (int i = 0; i < domain.points_end(0, at[0]); ++i)
+        f(view(i, j, k), position(domain, 0, at[0], i), position(domain, 1, at[1], j), position(domain, 2, at[2], k));
 }
 
-inline void set(const Domain &grid, View view, const Staggering &at, const Function &value) {
-  for_points(grid, view, at, [&](double &q, double x, double y, double z) { q = value(x, y, z); });
+inline void set(const Domain &domain, View view, const Staggering &at, const Function &value) {
+  for_points(domain, view, at, [&](double &q, double x, double y, double z) { q = value(x, y, z); });
 }
 
 /// Root mean square of field - exact over the owned points (one rank).
-inline double rms_error(const Domain &grid, ConstView view, const Staggering &at, const Function &exact) {
+inline double rms_error(const Domain &domain, ConstView view, const Staggering &at, const Function &exact) {
   double sum = 0;
   int n = 0;
-  for_points(grid, view, at, [&](const double &q, double x, double y, double z) {
+  for_points(domain, view, at, [&](const double &q, double x, double y, double z) {
     const double e = q - exact(x, y, z);
     sum += e * e;
     ++n;
@@ -41,13 +41,13 @@ inline double rms_error(const Domain &grid, ConstView view, const Staggering &at
 }
 
 struct Scene {
-  Domain grid;
+  Domain domain;
   Solver solver;
 
   PetscErrorCode create(MPI_Comm comm, const GridSpec &grid_spec, const SolverSpec &spec) {
     PetscFunctionBeginUser;
-    PetscCall(grid.create(comm, grid_spec));
-    PetscCall(solver.create(grid, spec));
+    PetscCall(domain.create(comm, grid_spec));
+    PetscCall(solver.create(domain, spec));
     PetscFunctionReturn(0);
   }
 
@@ -57,8 +57,8 @@ struct Scene {
     phase.species = "solid";
     phase.material.shear_modulus = shear_modulus;
     phase.material.attached = attached;
-    phase.empty(grid, false);
-    set(grid, phase.fraction[0], at_centre, fraction);
+    phase.empty(domain, false);
+    set(domain, phase.fraction[0], at_centre, fraction);
     solver.state().phases.push_back(std::move(phase));
     return solver.state().phases.back();
   }
@@ -69,7 +69,7 @@ struct Scene {
     FlowExtremes extremes;
     for (int n = 0; n < steps; ++n) {
       PetscCall(solver.measure(&extremes));
-      PetscCheck(extremes.first_bad == -1, grid.comm(), PETSC_ERR_FP, "step %d", n);
+      PetscCheck(extremes.first_bad == -1, domain.comm(), PETSC_ERR_FP, "step %d", n);
       PetscCall(solver.step(share * solver.limits(extremes).automatic()));
     }
     PetscFunctionReturn(0);

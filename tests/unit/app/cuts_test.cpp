@@ -84,8 +84,8 @@ TEST(Cuts, AreTheGridsWhereTheyAreGiven) {
   spec.starts = {std::vector<int>{0, 8}, {0, 3, 16}, {0, 9, 12}};
   EXPECT_EQ(Domain::decompose(spec, 4), (Int3{1, 2, 2}));
   EXPECT_EQ(Domain::largest_box(spec, {1, 2, 2}), (Int3{8, 13, 9}));
-  const Domain grid = Domain::planned(spec, 4);
-  const Layout last = grid.split().box_of(3, spec, 0).layout();
+  const Domain domain = Domain::planned(spec, 4);
+  const Layout last = domain.split().box_of(3, spec, 0).layout();
   EXPECT_EQ(last.begin, (Int3{0, 3, 9}));
   EXPECT_EQ(last.cells, (Int3{8, 13, 3}));
   EXPECT_NE(Domain::why_not(spec, 2), "");

@@ -100,9 +100,9 @@ TEST_F(GuardsTest, BeforeAStep) {
 
 TEST_F(GuardsTest, Places) {
   Real3 place;
-  ASSERT_EQ(place_of_speed(scene.grid, scene.solver.state().velocity, &place), 0);
+  ASSERT_EQ(place_of_speed(scene.domain, scene.solver.state().velocity, &place), 0);
   EXPECT_EQ(place, (Real3{1.5, 0.75, 1.5}));
-  ASSERT_EQ(place_of_divergence(scene.grid, scene.solver.state().velocity, &place), 0);
+  ASSERT_EQ(place_of_divergence(scene.domain, scene.solver.state().velocity, &place), 0);
   EXPECT_EQ(place, (Real3{1.5, 0.25, 1.5}));  // the face is the high one of the cell before
 }
 

@@ -35,20 +35,20 @@ SpeciesSpec species(Shape shape, double radius, const Real3 &centre) {
 }
 
 struct Scene {
-  Domain grid;
+  Domain domain;
   Phase phase;
   Scene(const GridSpec &box_spec, const SpeciesSpec &spec) {
     Places places;
     EXPECT_EQ(place_bodies(spec, box_spec, &places), "");
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, box_spec), 0);
-    EXPECT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, box_spec), 0);
+    EXPECT_EQ(fill_phase(domain, spec, places, 1, &phase), 0);
   }
   double phi(int i, int j, int k) const { return phase.fraction[0](i, j, k); }
   double volume() const {
     double sum = 0;
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) sum += phi(i, row.j, row.k);
-    return sum * grid.cell_volume();
+    return sum * domain.cell_volume();
   }
 };
 

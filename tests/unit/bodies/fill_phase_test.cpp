@@ -36,10 +36,10 @@ TEST(FillPhase, StretchAndLabelsWhereBodiesAre) {
   Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
   ASSERT_EQ(places.known.size(), 6u);
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
-  ASSERT_EQ(fill_phase(grid, spec, places, 10, &phase), 0);
+  ASSERT_EQ(fill_phase(domain, spec, places, 10, &phase), 0);
   EXPECT_EQ(phase.material.shear_modulus, 7);
   ASSERT_EQ(phase.tensor.field.count(), 6);
   for (int k = 0; k < 36; ++k)
@@ -63,10 +63,10 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
   const GridSpec grid_spec = box({32, 32, 32}, {1, 1, 1});
   Places places;
   ASSERT_EQ(place_bodies(spec, grid_spec, &places), "");
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
-  ASSERT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
+  ASSERT_EQ(fill_phase(domain, spec, places, 1, &phase), 0);
   const Rotation R = rotation(spec.orientation);
   const auto &components = tensor_components(3);
   int full[6] = {};
@@ -74,7 +74,7 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
     const auto [a, b, at] = components[c];
     double expected = 0;
     for (int m = 0; m < 3; ++m) expected += R[a][m] * spec.initial_stretch[m] * spec.initial_stretch[m] * R[b][m];
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) {
         int solid = 0;  // of the cells around the point
         for (int n = 0; n < (a == b ? 1 : 4); ++n) {
@@ -94,12 +94,12 @@ TEST(FillPhase, StretchTurnsWithTheBody) {
 TEST(FillPhase, OverlappingBodiesTakeTheLargerFraction) {
   SpeciesSpec spec = species(Shape::sphere, 0.3, {});
   std::vector<BodyPlace> places{{{0.4, 0.5, 0.5}, {}}, {{0.62, 0.5, 0.5}, {}}};
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({20, 20, 20}, {1, 1, 1})), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({20, 20, 20}, {1, 1, 1})), 0);
   Phase both, one[2];
-  ASSERT_EQ(fill_phase(grid, spec, places, 1, &both), 0);
-  for (int b = 0; b < 2; ++b) ASSERT_EQ(fill_phase(grid, spec, {places[b]}, 1 + b, &one[b]), 0);
-  for (const Segment &row : grid.rows())
+  ASSERT_EQ(fill_phase(domain, spec, places, 1, &both), 0);
+  for (int b = 0; b < 2; ++b) ASSERT_EQ(fill_phase(domain, spec, {places[b]}, 1 + b, &one[b]), 0);
+  for (const Segment &row : domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) {
       const double a = one[0].fraction[0](i, row.j, row.k), b = one[1].fraction[0](i, row.j, row.k);
       EXPECT_EQ(both.fraction[0](i, row.j, row.k), std::max(a, b));

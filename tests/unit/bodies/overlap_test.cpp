@@ -23,18 +23,18 @@ Found find(const std::string &line, int parts = 1) {
   const ParseResult result = parse_line(line);
   EXPECT_EQ(result.error, "") << line;
   const Config &config = result.config;
-  const Domain grid = Domain::planned(config.grid, parts);
+  const Domain domain = Domain::planned(config.grid, parts);
   Found found;
   std::set<int> overlaps;
   for (int p = 0; p < parts; ++p) {
     std::vector<Places> near;
     for (std::size_t s = 0; s < config.species.size(); ++s) {
-      const Surface surface(config.species[s], grid.dimension());
+      const Surface surface(config.species[s], domain.dimension());
       Places &some = near.emplace_back(config.places[s]);
       const auto is_far = [&](const NumberedPlace &place) {
-        const std::vector<int> ranks = ranks_near(grid, surface, place);
+        const std::vector<int> ranks = ranks_near(domain, surface, place);
         const bool here = std::find(ranks.begin(), ranks.end(), p) != ranks.end();
-        EXPECT_EQ(here, is_near(grid, p, surface, place));
+        EXPECT_EQ(here, is_near(domain, p, surface, place));
         return !here;
       };
       some.known.erase(std::remove_if(some.known.begin(), some.known.end(), is_far), some.known.end());

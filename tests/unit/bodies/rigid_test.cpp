@@ -15,12 +15,12 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   spec.law = Law::rigid;
   Phase phase;
   if (phi) {
-    phase.empty(scene->grid, false);
-    set(scene->grid, phase.fraction[0], at_centre, phi);
+    phase.empty(scene->domain, false);
+    set(scene->domain, phase.fraction[0], at_centre, phi);
   } else {
-    EXPECT_EQ(fill_phase(scene->grid, spec, {{spec.centre, {}}}, 1, &phase), 0);
+    EXPECT_EQ(fill_phase(scene->domain, spec, {{spec.centre, {}}}, 1, &phase), 0);
   }
-  RigidBodies bodies(scene->grid, scene->solver.exchange());
+  RigidBodies bodies(scene->domain, scene->solver.exchange());
   std::string wrong;
   EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase, &wrong), 0);
   EXPECT_EQ(bodies.place(0, 0), 0);
@@ -37,7 +37,7 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
   const Real3 centre{0.03, 1.02, 0.47};
   const double radius = 0.31;
   const auto faces = faces_of(&scene, spec, rigid_body(Shape::sphere, radius, centre));
-  const Domain &grid = scene.grid;
+  const Domain &domain = scene.domain;
   const auto distance = [&](Real3 x) {
     double square = 0;
     for (int d = 0; d < 3; ++d) {
@@ -48,25 +48,25 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
     return std::sqrt(square) - radius;
   };
   double regular = 0;
-  for (int d = 0; d < 3; ++d) regular += 2 / (grid.spacing()[d] * grid.spacing()[d]);
+  for (int d = 0; d < 3; ++d) regular += 2 / (domain.spacing()[d] * domain.spacing()[d]);
   int links = 0;
   for (int a = 0; a < 3; ++a)
-    for (int k = -2; k < grid.cells()[2] + 2; ++k)
-      for (int j = -2; j < grid.cells()[1] + 2; ++j) {
+    for (int k = -2; k < domain.cells()[2] + 2; ++k)
+      for (int j = -2; j < domain.cells()[1] + 2; ++j) {
         const RigidFaces::Row row = faces->row(a, j, k);
-        std::vector<char> inside(grid.cells()[0]);
+        std::vector<char> inside(domain.cells()[0]);
         for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.cells()[0]); ++i) inside[i] = 1;
+          for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.cells()[0]); ++i) inside[i] = 1;
         const auto place = [&](int i) {
-          return Real3{position(grid, 0, a == 0, i), position(grid, 1, a == 1, j), position(grid, 2, a == 2, k)};
+          return Real3{position(domain, 0, a == 0, i), position(domain, 1, a == 1, j), position(domain, 2, a == 2, k)};
         };
-        for (int i = 0; i < grid.cells()[0]; ++i) EXPECT_EQ(inside[i] != 0, distance(place(i)) < 0);
+        for (int i = 0; i < domain.cells()[0]; ++i) EXPECT_EQ(inside[i] != 0, distance(place(i)) < 0);
         for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut) {
           EXPECT_GT(distance(place(cut->i)), 0);
           double diagonal = 0;
           for (int link = 0; link < 6; ++link) {
             const int d = link / 2;
-            const double h = grid.spacing()[d];
+            const double h = domain.spacing()[d];
             diagonal += cut->link[link];
             if (!(cut->walls >> link & 1U)) {
               EXPECT_EQ(cut->link[link], 1 / (h * h));
@@ -118,14 +118,14 @@ TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec, solver), 0);
   const Real3 V{1, -0.7, 0.4};
   for (int d = 0; d < 3; ++d)
-    set(scene.grid, scene.solver.state().velocity[d], at_face[d], [&](double, double, double) { return V[d]; });
+    set(scene.domain, scene.solver.state().velocity[d], at_face[d], [&](double, double, double) { return V[d]; });
   SpeciesSpec ball = rigid_body(Shape::sphere, 0.42, {0.1, 0.2, 1.3});
   ball.motion.velocity = V;
   add_rigid(&scene, {ball});
   ASSERT_EQ(scene.solver.prepare(), 0);
   ASSERT_EQ(scene.run(0.4, 12), 0);
   for (int d = 0; d < 3; ++d)
-    EXPECT_LT(rms_error(scene.grid, scene.solver.state().velocity[d], at_face[d],
+    EXPECT_LT(rms_error(scene.domain, scene.solver.state().velocity[d], at_face[d],
                         [&](double, double, double) { return V[d]; }),
               1e-13);
   std::vector<RigidLoad> loads;
@@ -154,8 +154,8 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   std::vector<Phase> phases(2);
   std::array<std::unique_ptr<RigidBodies>, 2> bodies;
   for (int n = 0; n < 2; ++n) {
-    ASSERT_EQ(fill_phase(scene.grid, ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
-    bodies[n] = std::make_unique<RigidBodies>(scene.grid, scene.solver.exchange());
+    ASSERT_EQ(fill_phase(scene.domain, ball, {{ball.centre, {}}}, 1, &phases[n]), 0);
+    bodies[n] = std::make_unique<RigidBodies>(scene.domain, scene.solver.exchange());
     std::string wrong;
     ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n], &wrong), 0);
   }
@@ -181,7 +181,7 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   moved[0].copy_from(phases[0]);
   ASSERT_EQ(bodies[0]->fill(time, &moved), 0);
   double sum = 0, moment = 0;
-  for_points(scene.grid, moved[0].fraction[0], at_centre, [&](double &phi, double x, double, double) {
+  for_points(scene.domain, moved[0].fraction[0], at_centre, [&](double &phi, double x, double, double) {
     sum += phi;
     moment += phi * x;
   });
@@ -204,11 +204,11 @@ TEST(TravellingBodies, TouchingIsFound) {
   ball.motion.velocity = {1, 0, 0};
   ball.name = "ball";
   post.name = "post";
-  RigidBodies bodies(scene.grid, scene.solver.exchange());
+  RigidBodies bodies(scene.domain, scene.solver.exchange());
   for (SpeciesSpec *species : {&post, &ball}) {
     species->law = Law::rigid;
     Phase phase;
-    ASSERT_EQ(fill_phase(scene.grid, *species, {{species->centre, {}}}, 1, &phase), 0);
+    ASSERT_EQ(fill_phase(scene.domain, *species, {{species->centre, {}}}, 1, &phase), 0);
     std::string wrong;
     ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase, &wrong), 0);
   }

@@ -133,12 +133,12 @@ TEST(Seeding, HematocritAsAskedWithinOneCellWithoutOverlap) {
 
 // Random sites of a regular packing stop at 36 to 44 % in these.
 TEST(Seeding, DenseCrowdsMoveAndTurnUntilTheyFit) {
-  const std::string grid = "-time_end 1 -grid_cells 16,16,16 -grid_length ";
+  const std::string domain = "-time_end 1 -grid_cells 16,16,16 -grid_length ";
   const std::string scenes[] = {"33,22,22 -boundary_y wall -boundary_z wall -species rbc ",
                                 "24,24,24 -boundary_x wall -boundary_y wall -boundary_z wall -species rbc ",
                                 "40,32,32 -species rbc,v -v_shape tube -v_axis x -v_radius 15 -v_law rigid "};
   for (const std::string &scene : scenes) {
-    const ParseResult result = parse_line(grid + scene + cells + "-rbc_hematocrit 0.45");
+    const ParseResult result = parse_line(domain + scene + cells + "-rbc_hematocrit 0.45");
     ASSERT_EQ(result.error, "") << scene;
     const Config &config = result.config;
     const double cell = shape_volume(config.species[0], 3);
@@ -148,9 +148,9 @@ TEST(Seeding, DenseCrowdsMoveAndTurnUntilTheyFit) {
     EXPECT_NEAR(config.places[0].count * cell, 0.45 * region, 0.5001 * cell) << scene;
     EXPECT_GT(least_level(config), 0) << scene;
   }
-  const auto one = seeded(grid + scenes[0] + cells + "-rbc_hematocrit 0.45"),
-             again = seeded(grid + scenes[0] + cells + "-rbc_hematocrit 0.45"),
-             other = seeded(grid + scenes[0] + cells + "-rbc_hematocrit 0.45 -rbc_seed 2");
+  const auto one = seeded(domain + scenes[0] + cells + "-rbc_hematocrit 0.45"),
+             again = seeded(domain + scenes[0] + cells + "-rbc_hematocrit 0.45"),
+             other = seeded(domain + scenes[0] + cells + "-rbc_hematocrit 0.45 -rbc_seed 2");
   for (std::size_t b = 0; b < one.size(); ++b) {
     EXPECT_EQ(one[b].centre, again[b].centre);
     EXPECT_EQ(one[b].orientation, again[b].orientation);

@@ -27,16 +27,16 @@ struct Pulled : InterfaceScene {
     spec.length = {1, 1, dim == 2 ? 1. / cells : 1};
     EXPECT_EQ(create(PETSC_COMM_SELF, spec), 0);
     set_fraction(ball(centre, radius, dim, true));
-    exchange = std::make_unique<GhostExchange>(grid);
+    exchange = std::make_unique<GhostExchange>(domain);
     Phase &phase = phases[0];
     phase.fraction = std::move(fraction);
-    phase.label = Field(grid, 1);
+    phase.label = Field(domain, 1);
     phase.material.stretch_force = {force, part};
     each_owned([&](int i, int j, int k) { phase.label[0](i, j, k) = phase.fraction[0](i, j, k) > 1e-12; });
     EXPECT_EQ(exchange->update_ghosts(phase.fraction, 1), 0);
-    EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
+    EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
-    EXPECT_EQ(forces.find(grid, phases, owners, {{int(x * cells) % cells, 19, 0}}), 0);
+    EXPECT_EQ(forces.find(domain, phases, owners, {{int(x * cells) % cells, 19, 0}}), 0);
   }
   /// From the centre, of a face or a cell.
   double x_of(int i, bool cell) const {
@@ -64,10 +64,10 @@ TEST(StretchForce, PullsThatPartOfTheVolumeAtEitherEnd) {
     const double middle = cap(dim, low).second;
     for (const double x : {0.51, 0.03}) {
       Pulled body(dim, x);
-      Field rate(body.grid, dim), scratch(body.grid, 1);
+      Field rate(body.domain, dim), scratch(body.domain, 1);
       constexpr double scale = 0.5;
       ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scale, scratch, rate), 0);
-      const double volume = body.grid.cell_volume();
+      const double volume = body.domain.cell_volume();
       double all = 0, sum[2] = {}, place[2] = {}, largest = 0;
       body.each_owned([&](int i, int j, int k) {
         const double f = rate[0](i, j, k) * volume / (scale * force), at = body.x_of(i, false);
@@ -92,12 +92,12 @@ TEST(StretchForce, FollowsTheBodyContinuously) {
   double before = 0, most = 0, travelled = 0;
   for (int n = 0; n <= 20; ++n) {
     Pulled body(2, 0.51 + 5 * n * step);
-    Field rate(body.grid, 2), scratch(body.grid, 1);
+    Field rate(body.domain, 2), scratch(body.domain, 1);
     ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, rate), 0);
     double moment = 0;
     body.each_owned([&](int i, int j, int k) {
       if (const double at = body.x_of(i, false); at > 0)
-        moment += rate[0](i, j, k) * body.grid.cell_volume() * (at + body.centre[0]);
+        moment += rate[0](i, j, k) * body.domain.cell_volume() * (at + body.centre[0]);
     });
     if (n > 0) {
       most = std::max(most, std::fabs(moment - before));
@@ -113,14 +113,14 @@ TEST(StretchForce, PowerIsThatOfTheEnds) {
   for (const int dim : {2, 3}) {
     Pulled body(dim, 0.51);
     constexpr double rate = 0.4;
-    for (int k = 0; k < body.grid.cells()[2]; ++k)
+    for (int k = 0; k < body.domain.cells()[2]; ++k)
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i <= cells; ++i) body.velocity[0](i, j, k) = 3 + rate * i / cells;
-    Field force_rate(body.grid, dim), scratch(body.grid, 1);
+    Field force_rate(body.domain, dim), scratch(body.domain, 1);
     ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, force_rate), 0);
     double expected = 0, power = 0;
     body.each_owned([&](int i, int j, int k) {
-      expected += force_rate[0](i, j, k) * body.velocity[0](i, j, k) * body.grid.cell_volume();
+      expected += force_rate[0](i, j, k) * body.velocity[0](i, j, k) * body.domain.cell_volume();
     });
     ASSERT_EQ(body.forces.power(body.phases, body.velocity, &power), 0);
     EXPECT_NEAR(power, expected, 1e-12);

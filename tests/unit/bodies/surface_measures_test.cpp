@@ -24,12 +24,12 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);
   const Real3 centre{0.51, 0.493, dim == 2 ? 0 : 0.505};
   scene.set_fraction(ellipsoid(centre, {a, b, b}, dim));
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.fraction = std::move(scene.fraction);
-  phase.tensor.field = tensor_at_rest(scene.grid);
-  phase.label = Field(scene.grid, 1);
+  phase.tensor.field = tensor_at_rest(scene.domain);
+  phase.label = Field(scene.domain, 1);
   phase.material.law = Law::membrane;
   phase.material.membrane.shear_modulus = 2;
   phase.material.membrane.bending_modulus = 0.1;
@@ -46,18 +46,18 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   });
   EXPECT_EQ(exchange.update_ghosts(scene.velocity, 1), 0);
   EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
-  EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
-  WorkSpace work(scene.grid);
+  EXPECT_EQ(phase.rows.find(scene.domain, phase.fraction[0]), 0);
+  WorkSpace work(scene.domain);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
   const BoxSides sides{};
-  MembraneTransport membrane(scene.grid, exchange, work, sides, false);
+  MembraneTransport membrane(scene.domain, exchange, work, sides, false);
   EXPECT_EQ(membrane.start(&phase), 0);
   std::vector<SurfaceSample> samples;
   EXPECT_EQ(membrane.measure(phases, scene.velocity, energy, &samples), 0);
   std::vector<SurfaceMeasure> bodies;
   BodyOwners owners;
   EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
-  EXPECT_EQ(measure_surfaces(scene.grid, phases, samples, owners, {{20, 20, dim == 2 ? 0 : 20}}, &bodies), 0);
+  EXPECT_EQ(measure_surfaces(scene.domain, phases, samples, owners, {{20, 20, dim == 2 ? 0 : 20}}, &bodies), 0);
   return bodies.at(0);
 }
 

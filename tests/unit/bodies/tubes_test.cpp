@@ -40,15 +40,15 @@ double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
   Places places;
   EXPECT_EQ(place_bodies(spec, grid_spec, &places), "");
   EXPECT_EQ(places.known.size(), 1u);
-  Domain grid;
-  EXPECT_EQ(grid.create(PETSC_COMM_SELF, grid_spec), 0);
+  Domain domain;
+  EXPECT_EQ(domain.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
-  EXPECT_EQ(fill_phase(grid, spec, places, 1, &phase), 0);
+  EXPECT_EQ(fill_phase(domain, spec, places, 1, &phase), 0);
   EXPECT_TRUE(phase.material.attached);
   double sum = 0;
-  for (const Segment &row : grid.rows())
+  for (const Segment &row : domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) sum += phase.fraction[0](i, row.j, row.k);
-  return sum * grid.cell_volume();
+  return sum * domain.cell_volume();
 }
 
 std::string why_not(const SpeciesSpec &spec, const GridSpec &grid) {
@@ -103,10 +103,10 @@ TEST(Tube, IsZeroInsideAndOneOutside) {
   EXPECT_DOUBLE_EQ(lumen_radius(throat, -1.6), 1.4);
   Places places;
   ASSERT_EQ(place_bodies(throat, spec, &places), "");
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   Phase phase;
-  ASSERT_EQ(fill_phase(grid, throat, places, 3, &phase), 0);
+  ASSERT_EQ(fill_phase(domain, throat, places, 3, &phase), 0);
   int cut = 0;
   for (int k = 0; k < 24; ++k)
     for (int j = 0; j < 24; ++j)

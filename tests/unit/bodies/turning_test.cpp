@@ -24,8 +24,8 @@ TEST(TurningBodies, PlaceIsAFunctionOfTime) {
   body.motion.angular_velocity = {0.6, -0.8, 1.1};
   body.motion.of_rotation = {2, 0.5};
   Phase phase;
-  ASSERT_EQ(fill_phase(scene.grid, body, {{body.centre, {}}}, 1, &phase), 0);
-  RigidBodies bodies(scene.grid, scene.solver.exchange());
+  ASSERT_EQ(fill_phase(scene.domain, body, {{body.centre, {}}}, 1, &phase), 0);
+  RigidBodies bodies(scene.domain, scene.solver.exchange());
   std::string wrong;
   ASSERT_EQ(bodies.add(body, {{body.centre, {10, 20, 30}}}, 1, &phase, &wrong), 0);
   ASSERT_TRUE(bodies.travel());
@@ -58,24 +58,24 @@ TEST(TurningBodies, PlaceIsAFunctionOfTime) {
     }
     return std::sqrt(square) - 1;
   };
-  const Domain &grid = scene.grid;
+  const Domain &domain = scene.domain;
   int links = 0;
   for (int a = 0; a < 3; ++a)
-    for (int k = 0; k < grid.cells()[2]; ++k)
-      for (int j = 0; j < grid.cells()[1]; ++j) {
+    for (int k = 0; k < domain.cells()[2]; ++k)
+      for (int j = 0; j < domain.cells()[1]; ++j) {
         const RigidFaces::Row row = bodies.faces().row(a, j, k);
         const auto place = [&](int i) {
-          return Real3{position(grid, 0, a == 0, i), position(grid, 1, a == 1, j), position(grid, 2, a == 2, k)};
+          return Real3{position(domain, 0, a == 0, i), position(domain, 1, a == 1, j), position(domain, 2, a == 2, k)};
         };
         for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, grid.cells()[0]); ++i)
+          for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.cells()[0]); ++i)
             EXPECT_LT(level(place(i)), 0);
         for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut)
           for (int link = 0; link < 6; ++link) {
-            if (!(cut->walls >> link & 1U) || cut->i < 0 || cut->i >= grid.cells()[0]) continue;
+            if (!(cut->walls >> link & 1U) || cut->i < 0 || cut->i >= domain.cells()[0]) continue;
             const int d = link / 2;
             Real3 end = place(cut->i);
-            end[d] += (link % 2 ? 1 : -1) / (cut->link[link] * grid.spacing()[d]);
+            end[d] += (link % 2 ? 1 : -1) / (cut->link[link] * domain.spacing()[d]);
             EXPECT_NEAR(level(end), 0, 4e-4);  // no link is shorter than a thousandth of a cell
             ++links;
           }

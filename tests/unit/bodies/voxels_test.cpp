@@ -13,21 +13,21 @@ namespace eulastic {
 namespace {
 
 struct Cells {
-  Domain grid;
+  Domain domain;
   Field phi;
   Cells(const Int3 &cells, const Real3 &length) {
     GridSpec spec;
     spec.cells = cells;
     spec.length = length;
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    phi = Field(grid, 1);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+    phi = Field(domain, 1);
   }
   double at(int i, int j, int k) { return phi[0](i, j, k); }
   double volume() {
     double sum = 0;
-    for (const Segment &row : grid.rows())
+    for (const Segment &row : domain.rows())
       for (int i = row.i_begin; i < row.i_end; ++i) sum += at(i, row.j, row.k);
-    const DomainShape &s = grid.domain_shape();
+    const DomainShape &s = domain.domain_shape();
     return sum * s.length[0] / s.cells[0] * s.length[1] / s.cells[1] * s.length[2] / s.cells[2];
   }
 };
@@ -95,12 +95,12 @@ TEST(Resample, KeepsTheVolumeOfFinerCoarserAndOddVoxels) {
     Cells cells({16, 12, 8}, {1.7, 0.9, 0.31});
     VoxelBox box;
     box.count = n;
-    for (int d = 0; d < 3; ++d) box.spacing[d] = cells.grid.domain_shape().length[d] / n[d];
-    EXPECT_EQ(resample(cells.grid, box, from(some_fraction), cells.phi[0]), "");
+    for (int d = 0; d < 3; ++d) box.spacing[d] = cells.domain.domain_shape().length[d] / n[d];
+    EXPECT_EQ(resample(cells.domain, box, from(some_fraction), cells.phi[0]), "");
     const double wanted = total(box, some_fraction);
     EXPECT_NEAR(cells.volume(), wanted, 2e-14 + 1e-13 * wanted) << n[0];
-    EXPECT_EQ(resample(cells.grid, box, from([](int, int, int) { return 1.0; }), cells.phi[0]), "");
-    for (const Segment &row : cells.grid.rows())
+    EXPECT_EQ(resample(cells.domain, box, from([](int, int, int) { return 1.0; }), cells.phi[0]), "");
+    for (const Segment &row : cells.domain.rows())
       for (int i = 0; i < row.i_end; ++i) ASSERT_EQ(cells.at(i, row.j, row.k), 1) << i << " " << row.j << " " << row.k;
   }
 }
@@ -108,12 +108,12 @@ TEST(Resample, KeepsTheVolumeOfFinerCoarserAndOddVoxels) {
 TEST(Resample, VoxelsWithinTheBoxKeepTheirVolumeAndPlace) {
   Cells cells({20, 20, 20}, {1, 1, 1});
   const VoxelBox box{{9, 5, 3}, {0.0713, 0.11, 0.2}, {0.1234, 0.2, 0.31}};
-  EXPECT_EQ(resample(cells.grid, box, from(some_fraction), cells.phi[0]), "");
+  EXPECT_EQ(resample(cells.domain, box, from(some_fraction), cells.phi[0]), "");
   EXPECT_NEAR(cells.volume(), total(box, some_fraction), 1e-15);
   EXPECT_EQ(cells.at(1, 4, 7), 0);
   // One voxel over a corner of eight cells: what every cell has of it.
   const VoxelBox one{{1, 1, 1}, {0.05, 0.05, 0.05}, {0.04, 0.0375, 0.025}};
-  EXPECT_EQ(resample(cells.grid, one, from([](int, int, int) { return 0.5; }), cells.phi[0]), "");
+  EXPECT_EQ(resample(cells.domain, one, from([](int, int, int) { return 0.5; }), cells.phi[0]), "");
   EXPECT_NEAR(cells.at(0, 0, 0), 0.5 * 0.2 * 0.25 * 0.5, 1e-15);
   EXPECT_NEAR(cells.at(1, 0, 0), 0.5 * 0.8 * 0.25 * 0.5, 1e-15);
   EXPECT_NEAR(cells.at(1, 1, 1), 0.5 * 0.8 * 0.75 * 0.5, 1e-15);
@@ -128,7 +128,7 @@ TEST(Resample, WhatIsOutsideIsCutAndNotRead) {
     most = std::max(most, end[0]);
     return from([](int, int, int) { return 1.0; })(begin, end, out);
   };
-  EXPECT_EQ(resample(cells.grid, box, read, cells.phi[0]), "");
+  EXPECT_EQ(resample(cells.domain, box, read, cells.phi[0]), "");
   EXPECT_EQ(cells.volume(), 1);
   EXPECT_EQ(least, 400);
   EXPECT_EQ(most, 408);
@@ -138,18 +138,18 @@ TEST(Resample, VeryLongRowsComeInPieces) {
   Cells cells({8, 4, 4}, {1, 1, 1});
   const VoxelBox box{{600000, 2, 1}, {1 / 600000.0, 0.5, 1}, {}};
   const Value every_third = [](int i, int j, int) { return j == 1 && i % 3 == 0; };
-  EXPECT_EQ(resample(cells.grid, box, from(every_third), cells.phi[0]), "");
+  EXPECT_EQ(resample(cells.domain, box, from(every_third), cells.phi[0]), "");
   EXPECT_NEAR(cells.at(5, 2, 2), 1 / 3.0, 1e-9);
   EXPECT_NEAR(cells.volume(), 1 / 6.0, 1e-12);
   EXPECT_EQ(resample(
-                cells.grid, box, [](auto &, auto &, double *) { return "broken"; }, cells.phi[0]),
+                cells.domain, box, [](auto &, auto &, double *) { return "broken"; }, cells.phi[0]),
             "broken");
 }
 
 TEST(Resample, TwoDimensions) {
   Cells cells({10, 6, 1}, {1, 1, 1});
   const VoxelBox box{{4, 3, 1}, {0.25, 1 / 3.0, 1}, {}};
-  EXPECT_EQ(resample(cells.grid, box, from(some_fraction), cells.phi[0]), "");
+  EXPECT_EQ(resample(cells.domain, box, from(some_fraction), cells.phi[0]), "");
   EXPECT_NEAR(cells.volume(), total(box, some_fraction), 1e-15);
   EXPECT_EQ(cells.at(0, 3, 0), some_fraction(0, 1, 0));
 }
@@ -160,7 +160,7 @@ TEST(ClosedSurface, BoxesHaveExactFractions) {
   add_box({0.125, 0.23, 0.1}, {0.775, 0.61, 0.5}, &triangles);
   EXPECT_EQ(why_not_closed(triangles), "");
   EXPECT_NEAR(enclosed_volume(triangles), 0.65 * 0.38 * 0.4, 1e-15);
-  EXPECT_EQ(fill_surface(cells.grid, triangles, cells.phi[0]), "");
+  EXPECT_EQ(fill_surface(cells.domain, triangles, cells.phi[0]), "");
   EXPECT_NEAR(cells.volume(), 0.65 * 0.38 * 0.4, 1e-14);
   EXPECT_EQ(cells.at(3, 4, 2), 1);
   EXPECT_EQ(cells.at(3, 4, 0), 0);
@@ -177,14 +177,14 @@ TEST(ClosedSurface, PolyhedraKeepTheirVolumeEitherWayRound) {
     EXPECT_EQ(why_not_closed(triangles), "");
     const double volume = enclosed_volume(triangles);
     EXPECT_GT(volume, 0.95 * 4 / 3 * M_PI * std::pow(0.4377, 3));
-    EXPECT_EQ(fill_surface(cells.grid, triangles, cells.phi[0]), "");
+    EXPECT_EQ(fill_surface(cells.domain, triangles, cells.phi[0]), "");
     EXPECT_NEAR(cells.volume(), volume, 1e-13);
     const double middle = cells.at(n[0] / 2, n[1] / 2, n[2] / 2);
     if (n[0] > 3) {
       EXPECT_EQ(middle, 1);
     }
     for (Triangle &t : triangles) std::swap(t[1], t[2]);
-    EXPECT_EQ(fill_surface(cells.grid, triangles, cells.phi[0]), "");
+    EXPECT_EQ(fill_surface(cells.domain, triangles, cells.phi[0]), "");
     EXPECT_NEAR(cells.volume(), volume, 1e-13);
   }
 }
@@ -193,7 +193,7 @@ TEST(ClosedSurface, FinerBallsConvergeToTheBall) {
   Cells cells({16, 16, 16}, {1, 1, 1});
   double before = 0;
   for (int parts : {4, 8, 16}) {
-    EXPECT_EQ(fill_surface(cells.grid, ball({0.5, 0.5, 0.5}, 0.4, parts), cells.phi[0]), "");
+    EXPECT_EQ(fill_surface(cells.domain, ball({0.5, 0.5, 0.5}, 0.4, parts), cells.phi[0]), "");
     const double error = std::abs(cells.volume() - 4 / 3.0 * M_PI * 0.064);
     if (before > 0) {
       EXPECT_NEAR(before / error, 4, 0.5);
@@ -210,7 +210,7 @@ TEST(ClosedSurface, HollowCutAndTwoDimensionalBodies) {
   for (Triangle &t : hole) std::swap(t[0], t[1]);
   triangles.insert(triangles.end(), hole.begin(), hole.end());
   EXPECT_EQ(why_not_closed(triangles), "");
-  EXPECT_EQ(fill_surface(cells.grid, triangles, cells.phi[0]), "");
+  EXPECT_EQ(fill_surface(cells.domain, triangles, cells.phi[0]), "");
   EXPECT_NEAR(cells.volume(), 0.85 * 0.36 - 0.15 * 0.04, 1e-14);
   EXPECT_EQ(cells.at(4, 4, 4), 0);
   EXPECT_NEAR(cells.at(5, 4, 4), 0.5, 1e-14);
@@ -218,7 +218,7 @@ TEST(ClosedSurface, HollowCutAndTwoDimensionalBodies) {
   Cells flat({10, 10, 1}, {1, 1, 1});
   std::vector<Triangle> half;
   add_box({0.25, 0.2, -1}, {0.75, 0.8, 0.5}, &half);
-  EXPECT_EQ(fill_surface(flat.grid, half, flat.phi[0]), "");
+  EXPECT_EQ(fill_surface(flat.domain, half, flat.phi[0]), "");
   EXPECT_NEAR(flat.at(4, 4, 0), 0.5, 1e-14);
 }
 
@@ -236,9 +236,9 @@ TEST(ClosedSurface, OpenAndCrossingSurfacesAreRefused) {
   add_box({0.4, 0.4, 0.4}, {0.8, 0.8, 0.8}, &triangles);
   EXPECT_EQ(why_not_closed(triangles), "");
   Cells cells({10, 10, 10}, {1, 1, 1});
-  EXPECT_NE(fill_surface(cells.grid, triangles, cells.phi[0]).find("crosses itself"), std::string::npos);
+  EXPECT_NE(fill_surface(cells.domain, triangles, cells.phi[0]).find("crosses itself"), std::string::npos);
   for (Triangle &t : triangles) t[0][2] += 1e300;
-  EXPECT_NE(fill_surface(cells.grid, triangles, cells.phi[0]).find("away from the box"), std::string::npos);
+  EXPECT_NE(fill_surface(cells.domain, triangles, cells.phi[0]).find("away from the box"), std::string::npos);
 }
 
 }  // namespace eulastic

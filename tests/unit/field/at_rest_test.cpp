@@ -33,21 +33,21 @@ constexpr double mega = 1 << 20;
 
 TEST(AtRest, OnesThenZerosGhostsIncluded) {
   for (const int n : {5, 70}) {  // less than a page, more than the file of ones
-    Domain grid;
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(n)), 0);
-    const std::ptrdiff_t size = grid.layout().size;
+    Domain domain;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(n)), 0);
+    const std::ptrdiff_t size = domain.layout().size;
     for (const int ones : {0, 2, 3}) {
-      const Field block = Field::at_rest(grid, 3, ones);
+      const Field block = Field::at_rest(domain, 3, ones);
       for (std::ptrdiff_t at = 0; at < 3 * size; ++at) ASSERT_EQ(block.data()[at], at < ones * size) << at;
     }
   }
 }
 
 TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(64)), 0);
-  Field a = Field::at_rest(grid, 1, 1);
-  const Field b = Field::at_rest(grid, 1, 1);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(64)), 0);
+  Field a = Field::at_rest(domain, 1, 1);
+  const Field b = Field::at_rest(domain, 1, 1);
   a[0](3, 4, 5) = 7;
   EXPECT_EQ(a[0](3, 4, 5), 7);
   EXPECT_EQ(b[0](3, 4, 5), 1);
@@ -55,17 +55,17 @@ TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
 }
 
 TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(128)), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(128)), 0);
   const double before = own_memory();
-  Field block = Field::at_rest(grid, 4, 2), copy;
+  Field block = Field::at_rest(domain, 4, 2), copy;
   const double all = double(block.bytes());
   ASSERT_GT(all, 64 * mega);
-  EXPECT_EQ(sum(block), 2.0 * grid.layout().size);
+  EXPECT_EQ(sum(block), 2.0 * domain.layout().size);
   for (int k = 0; k < 128; ++k) block[1](k, 64, k) = 3;
   copy.copy_from(block);
   EXPECT_LT(own_memory() - before, 0.1 * all);
-  EXPECT_EQ(sum(copy), 2.0 * grid.layout().size + 2 * 128);
+  EXPECT_EQ(sum(copy), 2.0 * domain.layout().size + 2 * 128);
   block[1](5, 64, 5) = 1;  // what is back at rest is so in the copy
   copy.copy_from(block);
   EXPECT_EQ(copy[1](5, 64, 5), 1);
@@ -83,7 +83,7 @@ void expect_little_memory(MethodKind kind) {
   Phase phase;
   phase.species = "ball";
   phase.material.shear_modulus = 1;
-  phase.empty(scene.grid, true);
+  phase.empty(scene.domain, true);
   for (int k = 50; k < 58; ++k)
     for (int j = 50; j < 58; ++j)
       for (int i = 50; i < 58; ++i) {
@@ -95,7 +95,7 @@ void expect_little_memory(MethodKind kind) {
   ASSERT_EQ(scene.solver.prepare(), 0);  // allocates what all bodies share as well
   FlowExtremes extremes;
   ASSERT_EQ(scene.solver.measure(&extremes), 0);
-  const double before = own_memory(), field = double(scene.grid.layout().size) * sizeof(double);
+  const double before = own_memory(), field = double(scene.domain.layout().size) * sizeof(double);
   for (int step = 0; step < 3; ++step) ASSERT_EQ(scene.solver.step(1e-4), 0);
   const std::vector<Phase> *phases = nullptr;
   ASSERT_EQ(scene.solver.phases_now(&phases), 0);

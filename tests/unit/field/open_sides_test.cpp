@@ -77,35 +77,35 @@ double difference(const Scene &a, const Scene &b, Map map) {
   const State &p = a.solver.state(), &q = b.solver.state();
   double largest = 0;
   const auto compare = [&](ConstView x, const Field &y, const Staggering &at, int c) {
-    for (int k = 0; k < a.grid.points_end(2, at[2]); ++k)
-      for (int j = 0; j < a.grid.points_end(1, at[1]); ++j)
-        for (int i = 0; i < a.grid.points_end(0, at[0]); ++i)
+    for (int k = 0; k < a.domain.points_end(2, at[2]); ++k)
+      for (int j = 0; j < a.domain.points_end(1, at[1]); ++j)
+        for (int i = 0; i < a.domain.points_end(0, at[0]); ++i)
           largest = std::max(largest, std::fabs(x(i, j, k) - map(y, at, Int3{i, j, k}, c)));
   };
-  for (int c = 0; c < a.grid.dimension(); ++c) compare(p.velocity[c], q.velocity, at_face[c], c);
+  for (int c = 0; c < a.domain.dimension(); ++c) compare(p.velocity[c], q.velocity, at_face[c], c);
   compare(p.pressure[0], q.pressure, at_centre, -1);
   return largest;
 }
 
 double mirror_difference(const Scene &a, const Scene &b, int m) {
   return difference(a, b, [&](const Field &y, const Staggering &at, Int3 point, int c) {
-    point[m] = a.grid.domain_cells()[m] - 1 + at[m] - point[m];
+    point[m] = a.domain.domain_cells()[m] - 1 + at[m] - point[m];
     return (c == m ? -1 : 1) * y[std::max(c, 0)](point[0], point[1], point[2]);
   });
 }
 
 // Volume that comes in through all sides per time, and what comes in through one.
 double flow_rate(const Scene &scene, int d, bool high) {
-  const Domain &grid = scene.grid;
+  const Domain &domain = scene.domain;
   const ConstView v = scene.solver.state().velocity[d];
-  Int3 begin{}, end = grid.cells();
+  Int3 begin{}, end = domain.cells();
   begin[d] = high ? end[d] : 0;
   end[d] = begin[d] + 1;
   double sum = 0;
   for (int k = begin[2]; k < end[2]; ++k)
     for (int j = begin[1]; j < end[1]; ++j)
       for (int i = begin[0]; i < end[0]; ++i) sum += v(i, j, k);
-  return (high ? -sum : sum) * grid.cell_volume() / grid.spacing()[d];
+  return (high ? -sum : sum) * domain.cell_volume() / domain.spacing()[d];
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ TEST(OpenSides, MirroredSceneGivesTheMirroredResult) {
       if (two_d) setting = flat(setting);
       Scene original;
       run(setting, original);
-      for (int d = 0; d < original.grid.dimension(); ++d) {
+      for (int d = 0; d < original.domain.dimension(); ++d) {
         Scene image;
         run(mirrored(setting, d), image);
         const double e = mirror_difference(original, image, d);
@@ -195,9 +195,9 @@ TEST(OpenSides, PlugFlowFollowsTheInflow) {
     run(setting, scene, steps);
     const State &state = scene.solver.state();
     const double u = std::cos(2.1), middle = 1 - 0.5 / steps;
-    EXPECT_LT(rms_error(scene.grid, state.velocity[0], at_face[0], [&](double, double, double) { return u; }), 1e-12);
-    EXPECT_LT(rms_error(scene.grid, state.velocity[1], at_face[1], [](double, double, double) { return 0; }), 1e-12);
-    error[fine] = rms_error(scene.grid, state.pressure[0], at_centre,
+    EXPECT_LT(rms_error(scene.domain, state.velocity[0], at_face[0], [&](double, double, double) { return u; }), 1e-12);
+    EXPECT_LT(rms_error(scene.domain, state.velocity[1], at_face[1], [](double, double, double) { return 0; }), 1e-12);
+    error[fine] = rms_error(scene.domain, state.pressure[0], at_centre,
                             [&](double x, double, double) { return (x - 9) * 2 * std::sin(2 * middle + 0.1); });
   }
   std::printf("  pressure: %g %g\n", error[0], error[1]);
@@ -235,8 +235,8 @@ TEST(OpenSides, PlaneFlowStartsBetweenTwoPressures) {
           return u;
         };
         const State &state = scene.solver.state();
-        error[fine] = rms_error(scene.grid, state.velocity[along], at_face[along], exact);
-        EXPECT_LT(rms_error(scene.grid, state.pressure[0], at_centre,
+        error[fine] = rms_error(scene.domain, state.velocity[along], at_face[along], exact);
+        EXPECT_LT(rms_error(scene.domain, state.pressure[0], at_centre,
                             [&](double x, double y, double) { return G * (along ? y : x); }),
                   1e-10);
       }
@@ -268,7 +268,7 @@ TEST(OpenSides, ASpreadingJetIsOfSecondOrder) {
     SolverSpec spec = made.solver.spec();
     spec.sides[1][0].profile = std::make_shared<const SideProfile>(profile);
     Scene jet;
-    ASSERT_EQ(jet.create(PETSC_COMM_SELF, made.grid.spec(), spec), 0);
+    ASSERT_EQ(jet.create(PETSC_COMM_SELF, made.domain.spec(), spec), 0);
     ASSERT_EQ(jet.solver.prepare(), 0);
     ASSERT_EQ(jet.run(0.5, 20 << level), 0);
     const ConstView v = jet.solver.state().velocity[1];
@@ -304,9 +304,9 @@ TEST(OpenSides, AVortexLeavesAndNothingGrows) {
       return 0.412 * std::exp(-((x - 1.5) * (x - 1.5) + (y - 0.45) * (y - 0.45)) / 0.02);
     };
     const double d = 1e-4, in = std::cos(0.1);
-    set(scene.grid, state.velocity[0], at_face[0],
+    set(scene.domain, state.velocity[0], at_face[0],
         [&](double x, double y, double) { return in + (stream(x, y + d) - stream(x, y - d)) / (2 * d); });
-    set(scene.grid, state.velocity[1], at_face[1],
+    set(scene.domain, state.velocity[1], at_face[1],
         [&](double x, double y, double) { return -(stream(x + d, y) - stream(x - d, y)) / (2 * d); });
     ASSERT_EQ(scene.solver.prepare(), 0);
     FlowExtremes extremes;

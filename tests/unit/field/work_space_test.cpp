@@ -8,11 +8,11 @@ using namespace eulastic;
 namespace {
 
 struct WorkSpaceTest : testing::Test {
-  Domain grid;
+  Domain domain;
   void SetUp() override {
     GridSpec spec;
     spec.cells = {8, 8, 1};
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   }
   // What take() says, without PETSc's print.
   static PetscErrorCode quietly(WorkSpace &work, int count, WorkSpace::Lease *lease) {
@@ -24,7 +24,7 @@ struct WorkSpaceTest : testing::Test {
 };
 
 TEST_F(WorkSpaceTest, FieldsAreFreeAgainAfterTheScope) {
-  WorkSpace work(grid);
+  WorkSpace work(domain);
   ASSERT_EQ(work.reserve(3), 0);
   const double *first;
   {
@@ -32,8 +32,8 @@ TEST_F(WorkSpaceTest, FieldsAreFreeAgainAfterTheScope) {
     ASSERT_EQ(work.take("one", 1, &one), 0);
     ASSERT_EQ(work.take("two", 2, &two), 0);
     first = one.fields().data();
-    EXPECT_EQ(two.fields().data(), first + grid.layout().size);
-    EXPECT_EQ(two.part(1, 1).data(), first + 2 * grid.layout().size);
+    EXPECT_EQ(two.fields().data(), first + domain.layout().size);
+    EXPECT_EQ(two.part(1, 1).data(), first + 2 * domain.layout().size);
     EXPECT_NE(quietly(work, 1, &more), 0);
   }
   WorkSpace::Lease all;
@@ -42,7 +42,7 @@ TEST_F(WorkSpaceTest, FieldsAreFreeAgainAfterTheScope) {
 }
 
 TEST_F(WorkSpaceTest, DoesNotGrowUnderALease) {
-  WorkSpace work(grid);
+  WorkSpace work(domain);
   ASSERT_EQ(work.reserve(1), 0);
   WorkSpace::Lease lease;
   ASSERT_EQ(work.take("one", 1, &lease), 0);

@@ -15,20 +15,20 @@ namespace {
 // 0 and writes field 1: -1 everywhere in field 0, -2 in field 1.
 class Pass {
 public:
-  Pass(const Domain &grid, int depth, int layers) : grid_(grid), sides_(grid), depth_(depth), layers_(layers) {
-    const Int3 &n = grid.cells();
+  Pass(const Domain &domain, int depth, int layers) : domain_(domain), sides_(domain), depth_(depth), layers_(layers) {
+    const Int3 &n = domain.cells();
     width_ = n[1] + 2 * margin;
     for (int f = 0; f < 2; ++f) stage_[f].assign(std::size_t(width_) * (n[2] + 2 * margin), -1 - f);
   }
 
   void run() {
-    const StagePass pass(grid_, sides_, depth_, 1, layers_);
+    const StagePass pass(domain_, sides_, depth_, 1, layers_);
     pass.for_tasks([&](const StagePass::Task &task) {
       const auto rows = [&](int s, Segment row, int j_end) {
-        EXPECT_EQ(row.size(), grid_.cells()[0]);  // x wraps around
+        EXPECT_EQ(row.size(), domain_.cells()[0]);  // x wraps around
         for (; row.j < j_end; ++row.j) do_row(s, row.j, row.k);
       };
-      grid_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
+      domain_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
     });
   }
 
@@ -36,9 +36,9 @@ public:
   void expect_complete() const {
     long rows = 0;
     for (int s = 0; s < depth_; ++s)
-      rows += long(end(1, s) - begin(1, s)) * (grid_.dimension() == 2 ? 1 : end(2, s) - begin(2, s));
+      rows += long(end(1, s) - begin(1, s)) * (domain_.dimension() == 2 ? 1 : end(2, s) - begin(2, s));
     EXPECT_EQ(rows_, rows);
-    const bool flat = grid_.dimension() == 2;
+    const bool flat = domain_.dimension() == 2;
     for (int k = flat ? 0 : begin(2, depth_ - 1); k < (flat ? 1 : end(2, depth_ - 1)); ++k)
       for (int j = begin(1, depth_ - 1); j < end(1, depth_ - 1); ++j)
         EXPECT_EQ(stage_[depth_ % 2][at(j, k)], depth_ - 1);
@@ -48,18 +48,18 @@ private:
   static constexpr int margin = 5;
 
   int begin(int d, int s) const { return -sides_.low(d, depth_ - 1 - s + layers_); }
-  int end(int d, int s) const { return grid_.cells()[d] + sides_.high(d, depth_ - 1 - s + layers_); }
+  int end(int d, int s) const { return domain_.cells()[d] + sides_.high(d, depth_ - 1 - s + layers_); }
   std::size_t at(int j, int k) const { return j + margin + std::size_t(width_) * (k + margin); }
 
   void do_row(int s, int j, int k) {
     const auto &read = stage_[s % 2];
     auto &write = stage_[1 - s % 2];
-    const bool flat = grid_.dimension() == 2;
+    const bool flat = domain_.dimension() == 2;
     for (const auto &[y, z] : {std::pair{0, 0}, {-1, 0}, {1, 0}, {0, flat ? 0 : -1}, {0, flat ? 0 : 1}}) {
       const int row = j + y, plane = k + z;
       const bool behind_wall =
-          row < -(sides_.wall[1][0] ? 0 : margin) || row >= grid_.cells()[1] + (sides_.wall[1][1] ? 0 : margin) ||
-          plane < -(sides_.wall[2][0] ? 0 : margin) || plane >= grid_.cells()[2] + (sides_.wall[2][1] ? 0 : margin);
+          row < -(sides_.wall[1][0] ? 0 : margin) || row >= domain_.cells()[1] + (sides_.wall[1][1] ? 0 : margin) ||
+          plane < -(sides_.wall[2][0] ? 0 : margin) || plane >= domain_.cells()[2] + (sides_.wall[2][1] ? 0 : margin);
       if (behind_wall) continue;
       EXPECT_EQ(read[at(row, plane)], s - 1) << "stage " << s << " reads " << row << " " << plane;
     }
@@ -68,7 +68,7 @@ private:
     ++rows_;
   }
 
-  const Domain &grid_;
+  const Domain &domain_;
   Sides sides_;
   int depth_, layers_, width_ = 0;
   std::vector<int> stage_[2];
@@ -100,10 +100,10 @@ TEST(StagePass, StagesReadWhatTheOneBeforeHasWritten) {
             GridSpec spec;
             spec.cells = cells;
             spec.boundary = {Boundary::periodic, y, z};
-            Domain grid;
-            ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+            Domain domain;
+            ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
             set_threads(team);
-            Pass pass(grid, depth, layers);
+            Pass pass(domain, depth, layers);
             pass.run();
             set_threads(1);
             pass.expect_complete();

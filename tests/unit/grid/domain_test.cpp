@@ -101,32 +101,32 @@ TEST(GridGeometry, SpacingVolumeAndWalls) {
   GridSpec spec = box({8, 4, 5});
   spec.length = {2, 3, 10};
   spec.boundary = {Boundary::periodic, Boundary::wall, Boundary::wall};
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  EXPECT_EQ(grid.spacing(), (Real3{.25, .75, 2}));
-  EXPECT_EQ(grid.cell_volume(), .375);
-  EXPECT_EQ(grid.domain_cell_count(), 160);
-  EXPECT_EQ(grid.dimension(), 3);
-  EXPECT_FALSE(grid.is_wall(0) || grid.touches_low(0) || grid.touches_high(0));
-  EXPECT_TRUE(grid.is_wall(1) && grid.touches_low(1) && grid.touches_high(1));
-  EXPECT_EQ(grid.points_end(0, true), 8);
-  EXPECT_EQ(grid.points_end(1, true), 5);
-  EXPECT_EQ(grid.points_end(1, false), 4);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  EXPECT_EQ(domain.spacing(), (Real3{.25, .75, 2}));
+  EXPECT_EQ(domain.cell_volume(), .375);
+  EXPECT_EQ(domain.domain_cell_count(), 160);
+  EXPECT_EQ(domain.dimension(), 3);
+  EXPECT_FALSE(domain.is_wall(0) || domain.touches_low(0) || domain.touches_high(0));
+  EXPECT_TRUE(domain.is_wall(1) && domain.touches_low(1) && domain.touches_high(1));
+  EXPECT_EQ(domain.points_end(0, true), 8);
+  EXPECT_EQ(domain.points_end(1, true), 5);
+  EXPECT_EQ(domain.points_end(1, false), 4);
 
   spec.cells[2] = 1;  // 2-D: a wall in z means nothing
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  EXPECT_EQ(grid.dimension(), 2);
-  EXPECT_EQ(grid.cell_volume(), .1875);
-  EXPECT_FALSE(grid.is_wall(2) || grid.touches_low(2) || grid.touches_high(2));
-  EXPECT_EQ(grid.points_end(2, true), 1);
-  EXPECT_EQ(grid.layout().ghosts, (Int3{5, 5, 0}));
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  EXPECT_EQ(domain.dimension(), 2);
+  EXPECT_EQ(domain.cell_volume(), .1875);
+  EXPECT_FALSE(domain.is_wall(2) || domain.touches_low(2) || domain.touches_high(2));
+  EXPECT_EQ(domain.points_end(2, true), 1);
+  EXPECT_EQ(domain.layout().ghosts, (Int3{5, 5, 0}));
 }
 
 TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
   std::vector<int> seen(60);
-  for (const Segment &row : grid.rows())
+  for (const Segment &row : domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) ++seen.at(i + 5 * (row.j + 4 * row.k));
   EXPECT_EQ(seen, std::vector<int>(60, 1));
 }
@@ -135,11 +135,11 @@ TEST(GridGeometry, RowsAreAllOwnedCellsOnce) {
 TEST(FieldLayout, AlignedAndWithoutOverlap) {
   for (const Int3 &cells :
        {Int3{3, 3, 3}, Int3{5, 9, 7}, Int3{8, 4, 1}, Int3{58, 10, 4}, Int3{50, 58, 3}, Int3{250, 3, 1}}) {
-    Domain grid;
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box(cells)), 0);
-    const Layout &own = grid.layout();
+    Domain domain;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(cells)), 0);
+    const Layout &own = domain.layout();
     const int fields = 3;
-    Field block(grid, fields);
+    Field block(domain, fields);
     EXPECT_EQ(block.bytes(), sizeof(double) * own.size * fields);
     EXPECT_NE(own.sy % 64, 0);
     EXPECT_NE(own.sz % 512, 0);
@@ -159,10 +159,10 @@ TEST(FieldLayout, AlignedAndWithoutOverlap) {
 }
 
 TEST(FieldLayout, StartsAtZeroFillsOneFieldSwapsAndMoves) {
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
-  Field a(grid, 2), b(grid, 1);
-  const std::ptrdiff_t size = grid.layout().size;
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({5, 4, 3})), 0);
+  Field a(domain, 2), b(domain, 1);
+  const std::ptrdiff_t size = domain.layout().size;
   for (std::ptrdiff_t n = 0; n < 2 * size; ++n) ASSERT_EQ(a.data()[n], 0);
   a.fill(1, 7);
   for (std::ptrdiff_t n = 0; n < 2 * size; ++n) ASSERT_EQ(a.data()[n], n < size ? 0 : 7);

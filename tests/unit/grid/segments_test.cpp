@@ -12,8 +12,8 @@ using namespace eulastic::test;
 
 namespace {
 
-bool active(const Domain &grid, ConstView value, int low, int high, int i, int j, int k) {
-  const bool flat = grid.dimension() == 2;
+bool active(const Domain &domain, ConstView value, int low, int high, int i, int j, int k) {
+  const bool flat = domain.dimension() == 2;
   for (int dk = flat ? 0 : -low; dk <= (flat ? 0 : high); ++dk)
     for (int dj = -low; dj <= high; ++dj)
       for (int di = -low; di <= high; ++di)
@@ -24,20 +24,20 @@ bool active(const Domain &grid, ConstView value, int low, int high, int i, int j
 // Values above the threshold with the given probability, ghosts too.
 void check(const GridSpec &spec, int low, int high, double share, Random &random) {
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " cells, reach " << low << " " << high << ", share " << share);
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  Field value(grid, 1);
-  fill_everywhere(grid, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  Field value(domain, 1);
+  fill_everywhere(domain, value[0], at_centre, [&](const Point &) { return std::fabs(random()) < share ? 0.5 : 0.49; });
   ActiveSegments segments;
-  segments.build(grid, value[0], {}, 0.5, low, high);
-  EXPECT_EQ(segments.rows_y(), grid.points_end(1, true));
-  EXPECT_EQ(segments.rows_z(), grid.points_end(2, true));
+  segments.build(domain, value[0], {}, 0.5, low, high);
+  EXPECT_EQ(segments.rows_y(), domain.points_end(1, true));
+  EXPECT_EQ(segments.rows_z(), domain.points_end(2, true));
   double points = 0;
   std::size_t count = 0;
   for (int k = 0; k < segments.rows_z(); ++k)
     for (int j = 0; j < segments.rows_y(); ++j) {
       const ConstView q = value[0];
-      std::vector<char> covered(grid.points_end(0, true));
+      std::vector<char> covered(domain.points_end(0, true));
       int last_end = -8;
       for (const Segment &s : segments.row(j, k)) {
         EXPECT_EQ(&s, &segments.all()[count++]);
@@ -46,24 +46,25 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
         EXPECT_EQ(s.i_begin % 8, 0);
         EXPECT_GE(s.i_begin - last_end, 8);
         ASSERT_GT(s.i_end, s.i_begin);
-        ASSERT_LE(s.i_end, grid.points_end(0, true));
-        EXPECT_TRUE(s.i_end % 8 == 0 || s.i_end == grid.points_end(0, true)) << "whole vectors where the row has them";
+        ASSERT_LE(s.i_end, domain.points_end(0, true));
+        EXPECT_TRUE(s.i_end % 8 == 0 || s.i_end == domain.points_end(0, true))
+            << "whole vectors where the row has them";
         int idle = 0;  // never twice a vector: what was rounded down or closed
         for (int i = s.i_begin; i < s.i_end; ++i) {
           covered[i] = 1;
-          idle = active(grid, q, low, high, i, j, k) ? 0 : idle + 1;
+          idle = active(domain, q, low, high, i, j, k) ? 0 : idle + 1;
           EXPECT_LT(idle, 15);
         }
         bool first = false;
         for (int i = s.i_begin; i < std::min(s.i_begin + 8, s.i_end); ++i)
-          first = first || active(grid, q, low, high, i, j, k);
+          first = first || active(domain, q, low, high, i, j, k);
         EXPECT_TRUE(first) << "begins within a vector of an active point";
         points += s.size();
         last_end = s.i_end;
       }
-      for (int i = 0; i < grid.points_end(0, true); ++i) {
+      for (int i = 0; i < domain.points_end(0, true); ++i) {
         if (!covered[i]) {
-          EXPECT_FALSE(active(grid, q, low, high, i, j, k)) << i << " " << j << " " << k;
+          EXPECT_FALSE(active(domain, q, low, high, i, j, k)) << i << " " << j << " " << k;
         }
       }
     }
@@ -97,18 +98,18 @@ TEST(ActiveSegments, BandAndItsFaces) {
     for (const int margin : {0, 2})
       for (const double share : {0.0, 0.002, 0.03, 1.0})
         for (const double rest : {0.0, 1.0, 0.4}) {
-          Domain grid;
+          Domain domain;
           GridSpec spec;
           spec.cells = cells;
           spec.boundary[1] = Boundary::wall;
-          ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-          const bool flat = grid.dimension() == 2;
-          Field value(grid, 1);
-          fill_everywhere(grid, value[0], at_centre,
+          ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+          const bool flat = domain.dimension() == 2;
+          Field value(domain, 1);
+          fill_everywhere(domain, value[0], at_centre,
                           [&](const Point &) { return std::fabs(random()) < share ? 0.5 : rest; });
           ActiveSegments band, faces;
-          band.build_band(grid, value[0], {}, margin);
-          faces.build_faces(grid, band);
+          band.build_band(domain, value[0], {}, margin);
+          faces.build_faces(domain, band);
           int idle = 0, points = 0;
           const int mz = flat ? 0 : margin;
           for (int k = -mz; k < cells[2] + mz; ++k)
@@ -148,21 +149,21 @@ TEST(ActiveSegments, BandAndItsFaces) {
 }
 
 TEST(ActiveSegments, AllIsEveryPoint) {
-  Domain grid;
+  Domain domain;
   GridSpec spec;
   spec.cells = {9, 4, 5};
   spec.boundary[0] = spec.boundary[2] = Boundary::wall;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   ActiveSegments segments;
-  build_all(grid, &segments);
+  build_all(domain, &segments);
   EXPECT_EQ(segments.points(), 10 * 4 * 6);
   EXPECT_EQ(segments.row(3, 5).begin()->size(), 10);
 }
 
-bool same_bits(const Domain &grid, ConstView a, ConstView b, const Staggering &at) {
-  for (int k = 0; k < grid.points_end(2, at[2]); ++k)
-    for (int j = 0; j < grid.points_end(1, at[1]); ++j)
-      if (std::memcmp(a.row(j, k), b.row(j, k), sizeof(double) * grid.points_end(0, at[0])) != 0) return false;
+bool same_bits(const Domain &domain, ConstView a, ConstView b, const Staggering &at) {
+  for (int k = 0; k < domain.points_end(2, at[2]); ++k)
+    for (int j = 0; j < domain.points_end(1, at[1]); ++j)
+      if (std::memcmp(a.row(j, k), b.row(j, k), sizeof(double) * domain.points_end(0, at[0])) != 0) return false;
   return true;
 }
 
@@ -183,32 +184,32 @@ void compare_steps(bool flat, double y) {
     const double r = std::sqrt(std::pow(x - 12.3, 2) + std::pow(yy - y, 2) + (flat ? 0 : std::pow(z - 8.9, 2)));
     return std::min(1.0, std::max(0.0, 0.5 + 4.2 - r));
   });
-  set(scene.grid, scene.solver.state().velocity[0], at_face[0],
+  set(scene.domain, scene.solver.state().velocity[0], at_face[0],
       [](double, double yy, double) { return 0.2 * (yy - 9.5); });
   ASSERT_EQ(scene.solver.prepare(), 0);
   ASSERT_EQ(scene.run(2, 20), 0);
   State &state = scene.solver.state();
   Phase &phase = state.phases[0];
-  const auto &components = tensor_components(scene.grid.dimension());
+  const auto &components = tensor_components(scene.domain.dimension());
   Field star[2], next[2];
   double points[2];
   for (int all = 0; all < 2; ++all) {
     if (all) {
-      build_all(scene.grid, &phase.tensor.evolving);
-      build_all(scene.grid, &phase.tensor.stressed);
+      build_all(scene.domain, &phase.tensor.evolving);
+      build_all(scene.domain, &phase.tensor.stressed);
     }
     points[all] = phase.tensor.evolving.points();
-    star[all] = Field(scene.grid, scene.grid.dimension());
-    next[all] = Field(scene.grid, phase.tensor.field.count());
-    ASSERT_EQ(predict(scene.grid, spec.fluid, 2, 0.1, state.velocity, state.pressure, state.phases, star[all]), 0);
-    ASSERT_EQ(transport(scene.grid, 0.1, state.velocity, phase, next[all]), 0);
+    star[all] = Field(scene.domain, scene.domain.dimension());
+    next[all] = Field(scene.domain, phase.tensor.field.count());
+    ASSERT_EQ(predict(scene.domain, spec.fluid, 2, 0.1, state.velocity, state.pressure, state.phases, star[all]), 0);
+    ASSERT_EQ(transport(scene.domain, 0.1, state.velocity, phase, next[all]), 0);
   }
   EXPECT_LT(points[0], 0.6 * points[1]);
-  EXPECT_GT(rms_error(scene.grid, next[0][0], at_centre, [](double, double, double) { return 1.0; }), 1e-2);
-  for (int a = 0; a < scene.grid.dimension(); ++a)
-    EXPECT_TRUE(same_bits(scene.grid, star[0][a], star[1][a], at_face[a])) << "uvw"[a];
+  EXPECT_GT(rms_error(scene.domain, next[0][0], at_centre, [](double, double, double) { return 1.0; }), 1e-2);
+  for (int a = 0; a < scene.domain.dimension(); ++a)
+    EXPECT_TRUE(same_bits(scene.domain, star[0][a], star[1][a], at_face[a])) << "uvw"[a];
   for (int c = 0; c < next[0].count(); ++c)
-    EXPECT_TRUE(same_bits(scene.grid, next[0][c], next[1][c], components[c].at)) << "component " << c;
+    EXPECT_TRUE(same_bits(scene.domain, next[0][c], next[1][c], components[c].at)) << "component " << c;
 }
 
 TEST(Skipping, SameBitsAsEverywhere) {

@@ -16,11 +16,11 @@ struct Threads : testing::Test {
 };
 
 Domain make_grid(const Int3 &cells) {
-  Domain grid;
+  Domain domain;
   GridSpec spec;
   spec.cells = cells;
-  EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  return grid;
+  EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  return domain;
 }
 
 using Rows = std::map<std::pair<int, int>, int>;  // how often row (j, k) is there
@@ -42,16 +42,16 @@ TEST_F(Threads, PartsHoldEveryRowOnce) {
   for (const Int3 &cells : {Int3{128, 33, 1}, Int3{32, 7, 19}, Int3{512, 8, 3}})
     for (const int count : {1, 2, 3, 7}) {
       set_threads(count);
-      const Domain grid = make_grid(cells);
-      const int parts = row_parts(grid), flat = cells[2] == 1;
+      const Domain domain = make_grid(cells);
+      const int parts = row_parts(domain), flat = cells[2] == 1;
       EXPECT_EQ(parts, std::min(count, flat ? count : cells[2])) << cells[0];
       Rows owned, wide;
       for (int p = 0; p < parts; ++p) {
-        const RowPart part = row_part(grid, p, parts);
+        const RowPart part = row_part(domain, p, parts);
         EXPECT_EQ(part.number, p);
-        EXPECT_EQ(part.rows(grid).size(), std::size_t(part.j_end - part.j_begin) * (part.k_end - part.k_begin));
+        EXPECT_EQ(part.rows(domain).size(), std::size_t(part.j_end - part.j_begin) * (part.k_end - part.k_begin));
         count_rows(part, &owned);
-        count_rows(part.with_ghosts(grid), &wide);
+        count_rows(part.with_ghosts(domain), &wide);
       }
       EXPECT_EQ(owned, each_once(0, cells[1], 0, cells[2]));
       EXPECT_EQ(wide, each_once(-1, cells[1] + 1, flat ? 0 : -1, cells[2] + (flat ? 0 : 1)));
@@ -80,12 +80,12 @@ TEST_F(Threads, PiecesHoldEverythingOnce) {
 
 TEST_F(Threads, SumsOfPartsAreThoseOfTheWhole) {
   set_threads(5);
-  const Domain grid = make_grid({24, 11, 17});
+  const Domain domain = make_grid({24, 11, 17});
   const auto value = [](const Segment &row, int s) { return std::ldexp(1.0 + 0.1 * row.j, 9 * row.k - 60 * s) / 3; };
   double whole[2], parts[2];
   ExactSums sums(2);
   BodySums bodies(3, 2), some(3, 2), others(3, 2);
-  for (const Segment &row : grid.rows())
+  for (const Segment &row : domain.rows())
     for (int s = 0; s < 2; ++s) {
       sums.add(s, value(row, s));
       const double term = 0.1 * row.j - 0.03 * row.k;
@@ -94,11 +94,11 @@ TEST_F(Threads, SumsOfPartsAreThoseOfTheWhole) {
     }
   ASSERT_EQ(sums.reduce(PETSC_COMM_SELF, whole), 0);
   const auto add = [&](const RowPart &part, ExactSums &of_part) {
-    for (const Segment &row : part.rows(grid))
+    for (const Segment &row : part.rows(domain))
       for (int s = 0; s < 2; ++s) of_part.add(s, value(row, s));
   };
-  ASSERT_GT(row_parts(grid), 1);
-  ASSERT_EQ(sum_row_parts(grid, 2, add, parts), 0);
+  ASSERT_GT(row_parts(domain), 1);
+  ASSERT_EQ(sum_row_parts(domain, 2, add, parts), 0);
   some.add(others);
   for (int s = 0; s < 2; ++s) {
     EXPECT_EQ(parts[s], whole[s]);

@@ -77,16 +77,16 @@ TEST(FoundByFuzzing, ArraysLargerThanTheirFile) {
 }
 
 TEST(FoundByFuzzing, MoreColoursThanASpeciesMayHave) {
-  Domain grid;
+  Domain domain;
   GridSpec spec;
   spec.cells = {4, 4, 1};
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   std::vector<Phase> phases(1);
   phases[0].separate = true;
-  EXPECT_TRUE(set_colours(grid, std::vector<long>(most_colours - 1, 0), &phases));
+  EXPECT_TRUE(set_colours(domain, std::vector<long>(most_colours - 1, 0), &phases));
   EXPECT_EQ(phases.size(), std::size_t(most_colours));
-  EXPECT_FALSE(set_colours(grid, std::vector<long>(most_colours, 0), &phases));
+  EXPECT_FALSE(set_colours(domain, std::vector<long>(most_colours, 0), &phases));
   EXPECT_EQ(phases.size(), 1u);
-  EXPECT_FALSE(set_colours(grid, {1}, &phases));
-  EXPECT_FALSE(set_colours(grid, {-1}, &phases));
+  EXPECT_FALSE(set_colours(domain, {1}, &phases));
+  EXPECT_FALSE(set_colours(domain, {-1}, &phases));
 }

@@ -94,22 +94,22 @@ double advection_error(int d, int cells, double velocity) {
   GridSpec spec;
   spec.cells = {4, 4, 4};
   spec.cells[d] = cells;
-  Domain grid;
-  EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  Field q(grid, 1);
-  fill_everywhere(grid, q[0], at_centre, [d](const Point &x) { return std::sin(2 * pi * x[d] + 1); });
-  const Int3 n = grid.cells();
+  Domain domain;
+  EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  Field q(domain, 1);
+  fill_everywhere(domain, q[0], at_centre, [d](const Point &x) { return std::sin(2 * pi * x[d] + 1); });
+  const Int3 n = domain.cells();
   std::vector<double> along(n[0], velocity), across(n[0], 0.3 * velocity), rate(n[0]);
   const double *carried[3] = {across.data(), across.data(), across.data()};
   carried[d] = along.data();
   Real3 inverse;
-  for (int e = 0; e < 3; ++e) inverse[e] = 1 / grid.spacing()[e];
-  Field out(grid, 1);
-  for (const Segment &s : grid.rows()) {
+  for (int e = 0; e < 3; ++e) inverse[e] = 1 / domain.spacing()[e];
+  Field out(domain, 1);
+  for (const Segment &s : domain.rows()) {
     advection_rate<3>(s, q[0], carried, inverse.data(), 1e-6, rate.data());
     std::copy(rate.begin(), rate.end(), out[0].row(s.j, s.k));
   }
-  return rms_error(grid, out[0], at_centre, [=](double x, double y, double z) {
+  return rms_error(domain, out[0], at_centre, [=](double x, double y, double z) {
     return -velocity * 2 * pi * std::cos(2 * pi * Point{x, y, z}[d] + 1);
   });
 }
@@ -193,18 +193,18 @@ TEST(Weno5, AdvectedStepStaysBounded) {
 TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
   Random random(5);
   for (const bool flat : {false, true}) {
-    Domain grid;
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    Domain domain;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
     const Polynomial q(random, 1);
-    Field field(grid, 1), out(grid, 1);
-    fill_everywhere(grid, field[0], at_centre, q);
-    const Real3 &h = grid.spacing();
+    Field field(domain, 1), out(domain, 1);
+    fill_everywhere(domain, field[0], at_centre, q);
+    const Real3 &h = domain.spacing();
     const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
     std::vector<double> rows[3];
     for (auto &row : rows)
-      for (int i = 0; i < grid.cells()[0]; ++i) row.push_back(random());
+      for (int i = 0; i < domain.cells()[0]; ++i) row.push_back(random());
     const double *carried[3] = {rows[0].data(), rows[1].data(), rows[2].data()};
-    for (const Segment &s : grid.rows()) {
+    for (const Segment &s : domain.rows()) {
       double *rate = out[0].row(s.j, s.k);
       if (flat)
         advection_rate<2>(s, field[0], carried, inverse, 1e-6, rate);
@@ -212,7 +212,7 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
         advection_rate<3>(s, field[0], carried, inverse, 1e-6, rate);
       for (int i = 0; i < s.i_end; ++i) {
         double exact = 0;
-        for (int d = 0; d < grid.dimension(); ++d) exact -= rows[d][i] * q.g[d];
+        for (int d = 0; d < domain.dimension(); ++d) exact -= rows[d][i] * q.g[d];
         EXPECT_NEAR(rate[i], exact, 1e-13);
       }
     }
@@ -222,10 +222,10 @@ TEST(Weno5, AdvectionOfLinearFieldsIsExact) {
 TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   Random random(6);
   GridSpec spec = uneven_box(false, {37, 3, 3});
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  Field q(grid, 1);
-  randomise(grid, q, random);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  Field q(domain, 1);
+  randomise(domain, q, random);
   std::vector<double> velocity(37), whole(37), pieces(37);
   for (double &v : velocity) v = random();
   const double *carried[3] = {velocity.data(), velocity.data(), velocity.data()};
@@ -241,10 +241,10 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
 TEST(Weno5, BatchesHaveTheBitsOfRows) {
   Random random(8);
   GridSpec spec = uneven_box(false, {37, 3, 3});
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  Field q(grid, 1);
-  randomise(grid, q, random);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  Field q(domain, 1);
+  randomise(domain, q, random);
   std::vector<double> velocity[3], row(37), batched(37);
   for (auto &v : velocity)
     for (int i = 0; i < 37; ++i) v.push_back(random());

@@ -76,24 +76,24 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);
   const Real3 centre{0.51, 0.493, dim == 2 ? 0 : 0.505};
   scene.set_fraction(ellipsoid(centre, {a, b, b}, dim));
-  GhostExchange exchange(scene.grid);
+  GhostExchange exchange(scene.domain);
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.fraction = std::move(scene.fraction);
-  phase.tensor.field = tensor_at_rest(scene.grid);
+  phase.tensor.field = tensor_at_rest(scene.domain);
   phase.material.law = Law::membrane;
   phase.material.membrane.bending_modulus = 1;
   phase.material.membrane.spontaneous_curvature = c0;
   EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
-  EXPECT_EQ(phase.rows.find(scene.grid, phase.fraction[0]), 0);
-  WorkSpace work(scene.grid);
+  EXPECT_EQ(phase.rows.find(scene.domain, phase.fraction[0]), 0);
+  WorkSpace work(scene.domain);
   EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
   const BoxSides sides{};
-  MembraneTransport membrane(scene.grid, exchange, work, sides, true);
+  MembraneTransport membrane(scene.domain, exchange, work, sides, true);
   EXPECT_EQ(membrane.start(&phase), 0);
-  Field force(scene.grid, dim);
+  Field force(scene.domain, dim);
   Seen seen{};
-  const double volume = scene.grid.cell_volume() * (dim == 2 ? cells : 1);
+  const double volume = scene.domain.cell_volume() * (dim == 2 ? cells : 1);
   EXPECT_EQ(membrane.add_force(phases, 1, true, force), 0);
   scene.each_owned([&](int i, int j, int k) {
     for (int d = 0; d < dim; ++d) {

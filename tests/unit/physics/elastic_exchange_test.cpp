@@ -14,14 +14,14 @@ const Material rubber = test::mooney_rivlin(0.7, 0.4, 0.3);
 
 // d(B)/dt by stretching alone.
 template <int Dim, class Viscosity>
-void stretch(const Domain &grid, const Phase &phase, const Viscosity &viscosity, const Field &v, Field &rate) {
+void stretch(const Domain &domain, const Phase &phase, const Viscosity &viscosity, const Field &v, Field &rate) {
   const Field &B = phase.tensor.field;
   const auto at = [](int a, int b) { return kernels::position<Dim>(a, b); };
-  for (const Segment &s : grid.rows())
+  for (const Segment &s : domain.rows())
     for (int a = 0; a < Dim; ++a)
       for (int b = a; b < Dim; ++b) {
         const int other = a == b ? (a + 1) % Dim : b, third = Dim == 3 ? 3 - a - other : other;
-        const auto inverse = [&](int d) { return 1 / grid.spacing()[d]; };
+        const auto inverse = [&](int d) { return 1 / domain.spacing()[d]; };
         const kernels::Directions d{v[0].stride(a), v[0].stride(other), v[0].stride(third),
                                     inverse(a),     inverse(other),     inverse(third)};
         double *out = rate[at(a, b)].row(s.j, s.k);
@@ -37,14 +37,14 @@ void stretch(const Domain &grid, const Phase &phase, const Viscosity &viscosity,
       }
 }
 
-double total_energy(const Domain &grid, const Phase &phase) {
+double total_energy(const Domain &domain, const Phase &phase) {
   double sum = 0;
-  std::vector<double> row(grid.cells()[0]);
-  for (const Segment &s : grid.rows()) {
-    strain_energy(grid, phase, s, row.data());
+  std::vector<double> row(domain.cells()[0]);
+  for (const Segment &s : domain.rows()) {
+    strain_energy(domain, phase, s, row.data());
     for (const double e : row) sum += e;
   }
-  return sum * grid.cell_volume();
+  return sum * domain.cell_volume();
 }
 
 struct Exchange {
@@ -55,40 +55,40 @@ struct Exchange {
 // `contrast`: viscosity of the solid over the fluid's.
 Exchange exchange_of(bool flat, const Material &material, bool uniform, double contrast) {
   Solid solid(flat, 0, 30);
-  const Domain &grid = solid.grid;
+  const Domain &domain = solid.domain;
   Phase &phase = solid.phases[0];
   phase.material = material;
   phase.tensor.rule.viscosity_excess = contrast - 1;
   Random random(31);
-  randomise(grid, phase.fraction, random, contrast == 1 ? 1.5 : 0.5);
-  if (uniform) fill_everywhere(grid, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
-  randomise(grid, phase.tensor.field, random, 0.4);
-  randomise_solenoidal(grid, solid.velocity, random);
-  Field force(grid, grid.dimension()), rate(grid, phase.tensor.field.count());
-  EXPECT_EQ(compute_elastic_force(grid, 1, solid.phases, force), 0);
+  randomise(domain, phase.fraction, random, contrast == 1 ? 1.5 : 0.5);
+  if (uniform) fill_everywhere(domain, phase.fraction[0], at_centre, [](const Point &) { return 0.8; });
+  randomise(domain, phase.tensor.field, random, 0.4);
+  randomise_solenoidal(domain, solid.velocity, random);
+  Field force(domain, domain.dimension()), rate(domain, phase.tensor.field.count());
+  EXPECT_EQ(compute_elastic_force(domain, 1, solid.phases, force), 0);
   Exchange e;
-  for (int a = 0; a < grid.dimension(); ++a)
-    for (const Segment &s : grid.rows())
+  for (int a = 0; a < domain.dimension(); ++a)
+    for (const Segment &s : domain.rows())
       for (int i = 0; i < s.i_end; ++i)
-        e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * grid.cell_volume();
+        e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * domain.cell_volume();
   EnergyRates rates;
   EnergyNumbers numbers;
-  EXPECT_EQ(measure_energy_rates(grid, solid.velocity, solid.phases, numbers, &rates), 0);
+  EXPECT_EQ(measure_energy_rates(domain, solid.velocity, solid.phases, numbers, &rates), 0);
   e.stress = rates.elastic_power;
   with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
     if (flat)
-      stretch<2>(grid, phase, viscosity, solid.velocity, rate);
+      stretch<2>(domain, phase, viscosity, solid.velocity, rate);
     else
-      stretch<3>(grid, phase, viscosity, solid.velocity, rate);
+      stretch<3>(domain, phase, viscosity, solid.velocity, rate);
   });
-  GhostExchange exchange(grid);
+  GhostExchange exchange(domain);
   EXPECT_EQ(exchange.update_ghosts(rate, 1), 0);
   Field before;
   before.copy_from(phase.tensor.field);
   for (const double sign : {1.0, -1.0}) {
     const std::size_t doubles = before.bytes() / sizeof(double);
     for (std::size_t n = 0; n < doubles; ++n) phase.tensor.field.data()[n] = before.data()[n] + sign * rate.data()[n];
-    e.energy += sign / 2 * total_energy(grid, phase);
+    e.energy += sign / 2 * total_energy(domain, phase);
   }
   return e;
 }
@@ -118,20 +118,20 @@ TEST(ElasticExchange, RotationIsThatOfTheMixture) {
     solid.fill();
     Phase &phase = solid.phases[0];
     Random random(8);
-    randomise(solid.grid, phase.fraction, random, 0.5);
+    randomise(solid.domain, phase.fraction, random, 0.5);
     Field rate[2];
     for (const bool own : {false, true}) {
       phase.tensor.rule.viscosity_excess = own ? 4 : 0;
-      rate[own] = Field(solid.grid, phase.tensor.field.count());
+      rate[own] = Field(solid.domain, phase.tensor.field.count());
       with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {
         if (flat)
-          stretch<2>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
+          stretch<2>(solid.domain, phase, viscosity, solid.velocity, rate[own]);
         else
-          stretch<3>(solid.grid, phase, viscosity, solid.velocity, rate[own]);
+          stretch<3>(solid.domain, phase, viscosity, solid.velocity, rate[own]);
       });
     }
     for (int c = 0; c < rate[0].count(); ++c)
-      for (const Segment &s : solid.grid.rows())
+      for (const Segment &s : solid.domain.rows())
         for (int i = 0; i < s.i_end; ++i) EXPECT_NEAR(rate[0][c](i, s.j, s.k), rate[1][c](i, s.j, s.k), 1e-12);
   }
 }

@@ -15,8 +15,8 @@ TEST(Exterior, LinearWhereViscosityDampsShortWaves) {
     GridSpec spec;
     spec.cells = {8, 16, flat ? 1 : 4};
     spec.length = {4, 4, flat ? .1 : .5};
-    Domain grid;
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+    Domain domain;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
     const double shortest = flat ? .25 : .125;  // z does not count in 2-D
     Fluid fluid;
     fluid.density = 4;
@@ -25,7 +25,7 @@ TEST(Exterior, LinearWhereViscosityDampsShortWaves) {
     const double most = fluid.density * .25 / (shortest * shortest);
     for (const double share : {.99, 1., 1.01}) {
       material.shear_modulus = share * most;
-      EXPECT_EQ(damps_short_waves(grid.spacing(), grid.dimension(), fluid, material), share <= 1) << share;
+      EXPECT_EQ(damps_short_waves(domain.spacing(), domain.dimension(), fluid, material), share <= 1) << share;
     }
   }
 }
@@ -63,7 +63,7 @@ TEST(Exterior, LinesTakeTheSmallerSlope) {
   Phase &phase = scene.solver.state().phases[0];
   ASSERT_TRUE(phase.tensor.rule.linear);
   ExteriorLayers layers;
-  ASSERT_EQ(layers.build(scene.grid, phase), 0);
+  ASSERT_EQ(layers.build(scene.domain, phase), 0);
   constexpr int last = 6;  // row 7 has surface edges: centres up to 6 evolve
   struct Line {
     double third, second, first, next, after;
@@ -76,7 +76,7 @@ TEST(Exterior, LinesTakeTheSmallerSlope) {
       xx.row(last - 1, 0)[i] = line.second;
       xx.row(last, 0)[i] = line.first;
     }
-    ASSERT_EQ(layers.extend(scene.grid, scene.solver.spec().sides, scene.solver.exchange(), phase.tensor.field), 0);
+    ASSERT_EQ(layers.extend(scene.domain, scene.solver.spec().sides, scene.solver.exchange(), phase.tensor.field), 0);
     EXPECT_EQ(xx.row(last + 1, 0)[3], line.next);
     EXPECT_EQ(xx.row(last + 2, 0)[3], line.after);
   }
@@ -93,7 +93,7 @@ void create_disc(int m, int n, Scene *scene) {
   scene->add_phase(1, [&](double x, double y, double) { return std::clamp(6.5 - distance(x, y), 0., 1.); });
   Field &tensor = scene->solver.state().phases[0].tensor.field;
   for (int c = 0; c < tensor.count(); ++c)
-    set(scene->grid, tensor[c], tensor_components(2)[c].at, [&](double x, double y, double) {
+    set(scene->domain, tensor[c], tensor_components(2)[c].at, [&](double x, double y, double) {
       return (c < 2 ? 1.2 : 0) + .1 * std::sin(c + along(x, m) / 3 + along(y, n) / 5);
     });
   ASSERT_EQ(scene->solver.prepare(), 0);

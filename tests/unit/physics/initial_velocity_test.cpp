@@ -12,29 +12,29 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 struct Flow {
-  Domain grid;
+  Domain domain;
   Field velocity;
   Flow(const GridSpec &spec, const InitialFlow &flow, const BoxSides &walls = {}) {
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    velocity = Field(grid, grid.dimension());
-    set_initial_velocity(grid, walls, flow, velocity);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+    velocity = Field(domain, domain.dimension());
+    set_initial_velocity(domain, walls, flow, velocity);
   }
   double u(int c, int i, int j, int k) const { return velocity[c](i, j, k); }
 
   // Largest |div v| over the cells, index N by periodicity or 0 on a wall, relative to the largest |v| / length.
   double divergence() const {
-    const Int3 n = grid.domain_cells();
+    const Int3 n = domain.domain_cells();
     double largest = 0, speed = 0;
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) {
           double sum = 0;
-          for (int d = 0; d < grid.dimension(); ++d) {
+          for (int d = 0; d < domain.dimension(); ++d) {
             Int3 next{i, j, k};
             const bool last = ++next[d] == n[d];
             if (last) next[d] = 0;
-            const double high = last && grid.is_wall(d) ? 0 : u(d, next[0], next[1], next[2]);
-            sum += (high - u(d, i, j, k)) / grid.spacing()[d];
+            const double high = last && domain.is_wall(d) ? 0 : u(d, next[0], next[1], next[2]);
+            sum += (high - u(d, i, j, k)) / domain.spacing()[d];
             speed = std::max(speed, std::fabs(u(d, i, j, k)));
           }
           largest = std::max(largest, std::fabs(sum));

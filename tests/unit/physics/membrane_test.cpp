@@ -169,12 +169,12 @@ struct Ball : InterfaceScene {
     spec.ghosts = 5;
     EXPECT_EQ(create(PETSC_COMM_SELF, spec), 0);
     set_fraction(ball(centre, radius, dim));
-    exchange = std::make_unique<GhostExchange>(grid);
+    exchange = std::make_unique<GhostExchange>(domain);
     phases[0].fraction = std::move(fraction);
-    phases[0].tensor.field = tensor_at_rest(grid);
+    phases[0].tensor.field = tensor_at_rest(domain);
     EXPECT_EQ(exchange->update_ghosts(phases[0].fraction, 5), 0);
-    EXPECT_EQ(phases[0].rows.find(grid, phases[0].fraction[0]), 0);
-    smooth = Field(grid, SurfaceCells::work_fields);
+    EXPECT_EQ(phases[0].rows.find(domain, phases[0].fraction[0]), 0);
+    smooth = Field(domain, SurfaceCells::work_fields);
   }
   Real3 from_centre(const SurfaceCells::Cell &cell) const {
     Real3 x = position(cell.place, {true, true, true});
@@ -187,7 +187,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
     const BoxSides sides{};
-    SurfaceCells cells(ball.grid, *ball.exchange, sides);
+    SurfaceCells cells(ball.domain, *ball.exchange, sides);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     const double h = 1. / Ball::cells;
     double area = 0;
@@ -214,9 +214,9 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
     const BoxSides sides{};
-    SurfaceCells cells(ball.grid, *ball.exchange, sides);
+    SurfaceCells cells(ball.domain, *ball.exchange, sides);
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
-    Field tensor(ball.grid, dim == 2 ? 3 : 6);
+    Field tensor(ball.domain, dim == 2 ? 3 : 6);
     const auto &components = tensor_components(dim);
     const auto tangential = [&](const SurfaceCells::Cell &cell, int f) {
       const auto [a, b, at] = components[f];
@@ -243,16 +243,16 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
 TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    WorkSpace work(ball.grid);
+    WorkSpace work(ball.domain);
     ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
     const BoxSides sides{};
-    MembraneTransport membrane(ball.grid, *ball.exchange, work, sides, false);
+    MembraneTransport membrane(ball.domain, *ball.exchange, work, sides, false);
     ball.phases[0].material.law = Law::membrane;
     ball.phases[0].material.membrane.shear_modulus = 2;
-    Field velocity(ball.grid, dim);
+    Field velocity(ball.domain, dim);
     for (const double stretch : {1.0, 1.2}) {
       ball.phases[0].material.membrane.initial_area_stretch = stretch;
-      ball.phases[0].tensor.field = tensor_at_rest(ball.grid);
+      ball.phases[0].tensor.field = tensor_at_rest(ball.domain);
       ASSERT_EQ(membrane.start(&ball.phases[0]), 0);
       SurfaceEnergy seen;
       ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
@@ -261,7 +261,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
       const double J = stretch, trace = dim == 2 ? J * J + 1 : 2 * J;
       const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
       EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
-      Field force(ball.grid, dim);
+      Field force(ball.domain, dim);
       ASSERT_EQ(membrane.add_force(ball.phases, 1, false, force), 0);
       // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
       double virial = 0, largest = 0;
@@ -288,14 +288,14 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
 TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
   for (const double stretch : {1.2, 5.0}) {
     Ball ball(2);
-    WorkSpace work(ball.grid);
+    WorkSpace work(ball.domain);
     ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
     const BoxSides sides{};
-    MembraneTransport membrane(ball.grid, *ball.exchange, work, sides, false);
+    MembraneTransport membrane(ball.domain, *ball.exchange, work, sides, false);
     Phase &phase = ball.phases[0];
     phase.material.law = Law::membrane;
     phase.material.membrane.shear_modulus = 2;
-    phase.tensor.field = tensor_at_rest(ball.grid);
+    phase.tensor.field = tensor_at_rest(ball.domain);
     ASSERT_EQ(membrane.start(&phase), 0);
     std::vector<SurfaceMarker> markers;
     ASSERT_EQ(membrane.place_markers(phase, 0, 0, &markers), 0);
@@ -303,7 +303,7 @@ TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
     for (SurfaceMarker &marker : markers)
       for (int d = 0; d < 2; ++d)
         marker.rest[d] = ball.centre[d] + std::remainder(marker.rest[d] - ball.centre[d], 1.0) / stretch;
-    Field velocity(ball.grid, 2);
+    Field velocity(ball.domain, 2);
     velocity.fill(0, 1);
     MembraneTransport::Memory memory{&markers};
     ASSERT_EQ(membrane.advance(0.2 / Ball::cells, velocity, &memory, &ball.phases), 0);

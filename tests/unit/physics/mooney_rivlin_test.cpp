@@ -71,8 +71,8 @@ Matrix random_tensor(Random &random, bool flat) {
 // The stress on its own places in the middle of the box.
 double computed_stress(const Solid &solid, int a, int b) {
   const Phase &phase = solid.phases[0];
-  const int dim = solid.grid.dimension(), k = dim == 3 ? 2 : 0;
-  if (a != b) return edge_stress(solid.grid, phase, a, b, 5, 3, k);
+  const int dim = solid.domain.dimension(), k = dim == 3 ? 2 : 0;
+  if (a != b) return edge_stress(solid.domain, phase, a, b, 5, 3, k);
   const CellTensor B(phase.tensor.field, 5, 3, k);
   const ConstView q = phase.tensor.field[0];
   const std::ptrdiff_t stride[3] = {q.stride(0), q.stride(1), q.stride(2)};
@@ -123,8 +123,8 @@ TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
     Solid solid(false, 0, 1);
     solid.phases[0].material = rubber;
     fill_uniform(solid, B);
-    std::vector<double> row(solid.grid.cells()[0]);
-    strain_energy(solid.grid, solid.phases[0], solid.grid.rows()[7], row.data());
+    std::vector<double> row(solid.domain.cells()[0]);
+    strain_energy(solid.domain, solid.phases[0], solid.domain.rows()[7], row.data());
     const double first = l * l + 2 / l - 3, second = 2 * l + 1 / (l * l) - 3;
     EXPECT_NEAR(row[4], 0.7 * first + 0.4 * second + 0.3 * first * first, 1e-14);
   }
@@ -133,11 +133,11 @@ TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
 // Faces of all directions, random fields: -rho div(sigma) times dt.
 double predicted_force(Solid &solid, const Material &material, Field &force) {
   solid.phases[0].material = material;
-  Field zero(solid.grid, solid.grid.dimension());
-  EXPECT_EQ(predict(solid.grid, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
+  Field zero(solid.domain, solid.domain.dimension());
+  EXPECT_EQ(predict(solid.domain, solid.fluid, 0, 1, zero, solid.pressure, solid.phases, force), 0);
   double largest = 0;
   for (int a = 0; a < force.count(); ++a)
-    largest = std::max(largest, largest_error(solid.grid, force[a], at_face[a], [](const Point &) { return 0.0; }));
+    largest = std::max(largest, largest_error(solid.domain, force[a], at_face[a], [](const Point &) { return 0.0; }));
   return largest;
 }
 
@@ -145,13 +145,13 @@ TEST(MooneyRivlin, FirstCoefficientAloneIsNeoHookean) {
   for (const bool flat : {false, true}) {
     Solid solid(flat, 0, 1);
     Random random(7);
-    randomise(solid.grid, solid.phases[0].fraction, random, 1.5);
-    randomise(solid.grid, solid.phases[0].tensor.field, random);
-    Field a(solid.grid, solid.grid.dimension()), b(solid.grid, solid.grid.dimension());
+    randomise(solid.domain, solid.phases[0].fraction, random, 1.5);
+    randomise(solid.domain, solid.phases[0].tensor.field, random);
+    Field a(solid.domain, solid.domain.dimension()), b(solid.domain, solid.domain.dimension());
     const double size = predicted_force(solid, Material{1.4}, a);
     predicted_force(solid, test::mooney_rivlin(0.7, 0, 0), b);
     for (int d = 0; d < a.count(); ++d)
-      for (const Segment &s : solid.grid.rows())
+      for (const Segment &s : solid.domain.rows())
         for (int i = 0; i < s.i_end; ++i) EXPECT_NEAR(a[d](i, s.j, s.k), b[d](i, s.j, s.k), 1e-14 * size);
   }
 }
@@ -161,18 +161,18 @@ TEST(MooneyRivlin, NoForceWithoutStrain) {
     Solid solid(flat, 2, 5);
     const auto phi = solid.phi;
     fill_uniform(solid, {Real3{1, 0, 0}, Real3{0, 1, 0}, Real3{0, 0, 1}});
-    fill_everywhere(solid.grid, solid.phases[0].fraction[0], at_centre, phi);
-    Field force(solid.grid, solid.grid.dimension());
+    fill_everywhere(solid.domain, solid.phases[0].fraction[0], at_centre, phi);
+    Field force(solid.domain, solid.domain.dimension());
     EXPECT_EQ(predicted_force(solid, rubber, force), 0);
   }
 }
 
 // div sigma of a smooth B, sampled: the error falls with the square of the spacing.
 double force_error(bool flat, int cells) {
-  Domain grid;
+  Domain domain;
   GridSpec spec = uneven_box(flat, {cells, cells - 2, cells + 3});
-  EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  const auto &components = tensor_components(grid.dimension());
+  EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  const auto &components = tensor_components(domain.dimension());
   const auto tensor = [&](const Point &x) {
     Matrix B{};
     const double k[3] = {2 * M_PI / spec.length[0], 2 * M_PI / spec.length[1], flat ? 0 : 2 * M_PI / spec.length[2]};
@@ -185,21 +185,21 @@ double force_error(bool flat, int cells) {
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.material = rubber;
-  phase.fraction = Field(grid, 1);
-  phase.tensor.field = Field(grid, static_cast<int>(components.size()));
-  build_all(grid, &phase.tensor.evolving);
-  build_all(grid, &phase.tensor.stressed);
-  fill_everywhere(grid, phase.fraction[0], at_centre, fraction);
+  phase.fraction = Field(domain, 1);
+  phase.tensor.field = Field(domain, static_cast<int>(components.size()));
+  build_all(domain, &phase.tensor.evolving);
+  build_all(domain, &phase.tensor.stressed);
+  fill_everywhere(domain, phase.fraction[0], at_centre, fraction);
   for (int c = 0; c < phase.tensor.field.count(); ++c)
-    fill_everywhere(grid, phase.tensor.field[c], components[c].at,
+    fill_everywhere(domain, phase.tensor.field[c], components[c].at,
                     [&](const Point &x) { return tensor(x)[components[c].a][components[c].b]; });
-  Field force(grid, grid.dimension());
-  EXPECT_EQ(compute_elastic_force(grid, 1, phases, force), 0);
+  Field force(domain, domain.dimension());
+  EXPECT_EQ(compute_elastic_force(domain, 1, phases, force), 0);
   double largest = 0;
-  for (int a = 0; a < grid.dimension(); ++a)
-    largest = std::max(largest, largest_error(grid, force[a], at_face[a], [&](const Point &x) {
+  for (int a = 0; a < domain.dimension(); ++a)
+    largest = std::max(largest, largest_error(domain, force[a], at_face[a], [&](const Point &x) {
                          double sum = 0;
-                         for (int d = 0; d < grid.dimension(); ++d) {
+                         for (int d = 0; d < domain.dimension(); ++d) {
                            Point low = x, high = x;
                            low[d] -= 1e-4, high[d] += 1e-4;
                            sum += (fraction(high) * stress(rubber, tensor(high))[a][d] -
@@ -230,9 +230,9 @@ TEST(ElasticStress, OfLayersOfTwoViscosities) {
       phase.material = Material{modulus};
       phase.tensor.rule.viscosity_excess = contrast - 1;
       fill_uniform(solid, {Real3{1 + strain * strain, strain, 0}, Real3{strain, 1, 0}, Real3{0, 0, 1}});
-      const Real3 &h = solid.grid.spacing();
+      const Real3 &h = solid.domain.spacing();
       const auto surface_along = [&](double x, double y) {
-        fill_everywhere(solid.grid, phase.fraction[0], at_centre,
+        fill_everywhere(solid.domain, phase.fraction[0], at_centre,
                         [&](const Point &p) { return share + 0.1 * (x * (p[0] - 5 * h[0]) + y * (p[1] - 3 * h[1])); });
       };
       surface_along(0, 1);

@@ -160,7 +160,7 @@ void check_gradient() {
 // 2-D: solid left of column 8, of which `share` is filled; du/dy = shear.
 struct Wall {
   static constexpr int column = 8;
-  Domain grid;
+  Domain domain;
   Phase phase;
   Field velocity, work;
 
@@ -168,20 +168,20 @@ struct Wall {
     GridSpec spec;
     spec.cells = {16, 16, 1};
     spec.boundary = {Boundary::wall, Boundary::wall, Boundary::wall};
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-    phase.empty(grid, false);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+    phase.empty(domain, false);
     phase.material.shear_modulus = 1;
-    velocity = Field(grid, 2);
-    work = Field(grid, 3);
+    velocity = Field(domain, 2);
+    work = Field(domain, 3);
     for (int j = -5; j < 21; ++j)
       for (int i = -5; i < 21; ++i) {
         phase.fraction[0](i, j, 0) = i < column ? 1 : i == column ? share : 0;
-        velocity[0](i, j, 0) = shear * j * grid.spacing()[1];
+        velocity[0](i, j, 0) = shear * j * domain.spacing()[1];
       }
   }
   void apply(double dt) {
     Fluid fluid;  // nu = 1 damps waves of a cell
-    EXPECT_EQ(surface.apply(grid, {dt, fluid, sides}, velocity, phase, work), 0);
+    EXPECT_EQ(surface.apply(domain, {dt, fluid, sides}, velocity, phase, work), 0);
   }
   SurfaceCorrection surface;
   BoxSides sides{};

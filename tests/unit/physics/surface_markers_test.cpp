@@ -34,16 +34,16 @@ struct MarkedBall : InterfaceScene {
     spec.ghosts = 5;
     EXPECT_EQ(create(PETSC_COMM_SELF, spec), 0);
     set_fraction(ball(centre, radius, dim, true));
-    exchange = std::make_unique<GhostExchange>(grid);
+    exchange = std::make_unique<GhostExchange>(domain);
     phase.fraction = std::move(fraction);
-    phase.tensor.field = Field(grid, dim == 2 ? 3 : 6);
+    phase.tensor.field = Field(domain, dim == 2 ? 3 : 6);
     phase.material.law = Law::membrane;
     EXPECT_EQ(exchange->update_ghosts(phase.fraction, 5), 0);
-    EXPECT_EQ(phase.rows.find(grid, phase.fraction[0]), 0);
-    smooth = Field(grid, SurfaceCells::work_fields);
-    surface = std::make_unique<SurfaceCells>(grid, *exchange, sides);
+    EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
+    smooth = Field(domain, SurfaceCells::work_fields);
+    surface = std::make_unique<SurfaceCells>(domain, *exchange, sides);
     EXPECT_EQ(surface->find(phase, smooth), 0);
-    markers = std::make_unique<SurfaceMarkers>(grid);
+    markers = std::make_unique<SurfaceMarkers>(domain);
   }
   std::size_t owned_nearest() const {
     return std::count_if(surface->all().begin(), surface->all().begin() + surface->nearest(),
@@ -69,7 +69,7 @@ void tells_the_strain(double stretch) {
   ball.set_strain<Dim>(stretch);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
   EXPECT_GT(ball.all.size(), Dim == 2 ? 50u : 1000u);
-  Field velocity(ball.grid, Dim);
+  Field velocity(ball.domain, Dim);
   const double F[3][3] = {
       {1.1, 0.2, Dim == 3 ? -0.1 : 0.}, {0.05, 0.9, Dim == 3 ? 0.1 : 0.}, {0, 0, Dim == 3 ? 1.05 : 1}};
   const double minor = F[0][0] * F[1][1] - F[0][1] * F[1][0];
@@ -108,7 +108,7 @@ TEST(SurfaceMarkers, AtRestTellThatToRoundOff) {
   MarkedBall ball(3);
   ball.set_strain<3>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  Field velocity(ball.grid, 3);
+  Field velocity(ball.domain, 3);
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
@@ -123,7 +123,7 @@ TEST(SurfaceMarkers, AreSilentWhereThereAreNone) {
   MarkedBall ball(2);
   ball.set_strain<2>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  Field velocity(ball.grid, 2);
+  Field velocity(ball.domain, 2);
   ball.all.resize(ball.all.size() / 2);
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
@@ -136,10 +136,10 @@ TEST(SurfaceMarkers, MoveWithALinearFlowAndAcrossTheBox) {
   MarkedBall ball(3);
   ball.set_strain<3>(1);
   ball.markers->place(*ball.surface, ball.smooth, ball.phase, 0, 0, &ball.all);
-  Field velocity(ball.grid, 3);
+  Field velocity(ball.domain, 3);
   const Real3 mean{0.7, -0.4, 0.1};
   for (int d = 0; d < 3; ++d)
-    std::fill_n(velocity[d].origin - ball.grid.layout().origin, ball.grid.layout().size, mean[d]);
+    std::fill_n(velocity[d].origin - ball.domain.layout().origin, ball.domain.layout().size, mean[d]);
   const std::vector<SurfaceMarker> before = ball.all;
   constexpr double dt = 0.05;  // up to .84 cells
   ASSERT_EQ(ball.markers->move(dt, velocity, &ball.all), 0);

@@ -52,11 +52,11 @@ Seen curvatures(LevelScene &box, double expected, double length) {
   Seen seen;
   const View phi = box.fraction[0];
   const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
-  const Real3 h = box.grid.spacing();
+  const Real3 h = box.domain.spacing();
   box.each_owned([&](int i, int j, int k) {
     for (int d = 0; d < Dim; ++d) {
       const int place = d == 0 ? i : d == 1 ? j : k;
-      if (place < 5 || place >= box.grid.cells()[d] - 5) return;
+      if (place < 5 || place >= box.domain.cells()[d] - 5) return;
     }
     const double *q = &phi(i, j, k);
     kernels::ColumnFrame frame{};
@@ -120,7 +120,7 @@ TEST(HeightCurvature, MirroredIsTheSameToTheBit) {
   LevelScene box({cells, cells, cells}, {1, 1, 1}, level), mirrored({cells, cells, cells}, {1, 1, 1}, level);
   const View phi = box.fraction[0], image = mirrored.fraction[0];
   const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
-  const Real3 h = box.grid.spacing();
+  const Real3 h = box.domain.spacing();
   for (int d = 0; d < 3; ++d) {
     const auto at = [&](int i, int j, int k) {
       Int3 place{i, j, k};
@@ -151,18 +151,18 @@ TEST(SurfaceTension, HasTheEnergyOfItsAreaAndNoNetForce) {
   for (const bool flat : {true, false}) {
     const int cells = 32;
     LevelScene box({cells, cells, flat ? 1 : cells}, {1, 1, 1}, ball({0.51, 0.49, 0.5}, 0.3, flat ? 2 : 3));
-    GhostExchange exchange(box.grid);
-    WorkSpace work(box.grid);
+    GhostExchange exchange(box.domain);
+    WorkSpace work(box.domain);
     ASSERT_EQ(work.reserve(SurfaceTension::work_fields), 0);
     std::vector<Phase> phases(1);
     phases[0].material.surface_tension = 3;
     phases[0].fraction = std::move(box.fraction);
     ASSERT_EQ(exchange.update_ghosts(phases[0].fraction, 5), 0);
-    ASSERT_EQ(phases[0].rows.find(box.grid, phases[0].fraction[0]), 0);
-    const int dim = box.grid.dimension();
-    Field force(box.grid, dim), velocity(box.grid, dim);
+    ASSERT_EQ(phases[0].rows.find(box.domain, phases[0].fraction[0]), 0);
+    const int dim = box.domain.dimension();
+    Field force(box.domain, dim), velocity(box.domain, dim);
     velocity.fill(1, 0.7);
-    SurfaceTension tension(box.grid, exchange, work, true);
+    SurfaceTension tension(box.domain, exchange, work, true);
     SurfaceEnergy seen;
     ASSERT_EQ(tension.measure(phases, velocity, &seen), 0);
     const double area = flat ? 2 * M_PI * 0.3 : 4 * M_PI * 0.09;

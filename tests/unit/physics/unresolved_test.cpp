@@ -19,31 +19,31 @@ constexpr EvolveRule half{0.5, 0.5, 0};
 
 // A body in the lower part of x: B = diag(l, 1/l, 1), turned by 45 degrees in xy: det B = 1 at any stretch.
 struct Body {
-  Domain grid;
+  Domain domain;
   Phase phase;
   explicit Body(bool flat, double l = 50) {
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
-    phase.fraction = Field(grid, 1);
-    phase.tensor.field = Field(grid, static_cast<int>(tensor_components(grid.dimension()).size()));
-    const Layout &layout = grid.layout();
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, uneven_box(flat)), 0);
+    phase.fraction = Field(domain, 1);
+    phase.tensor.field = Field(domain, static_cast<int>(tensor_components(domain.dimension()).size()));
+    const Layout &layout = domain.layout();
     for (std::ptrdiff_t p = 0; p < layout.size; ++p)
       for (int f = 0; f < phase.tensor.field.count(); ++f) {
-        const auto [a, b, at] = tensor_components(grid.dimension())[f];
+        const auto [a, b, at] = tensor_components(domain.dimension())[f];
         phase.tensor.field.data()[f * layout.size + p] = a == 2 && b == 2 ? 1
                                                          : a == b         ? 0.5 * (l + 1 / l)
                                                          : a + b == 1     ? 0.5 * (l - 1 / l)
                                                                           : 0;
       }
-    fill_everywhere(grid, phase.fraction[0], at_centre,
-                    [&](const Point &x) { return x[0] < 0.5 * grid.domain_shape().length[0] ? 1 : 0.4; });
+    fill_everywhere(domain, phase.fraction[0], at_centre,
+                    [&](const Point &x) { return x[0] < 0.5 * domain.domain_shape().length[0] ? 1 : 0.4; });
   }
   std::vector<double> values() const {
-    return {phase.tensor.field.data(), phase.tensor.field.data() + phase.tensor.field.count() * grid.layout().size};
+    return {phase.tensor.field.data(), phase.tensor.field.data() + phase.tensor.field.count() * domain.layout().size};
   }
   long forget(const EvolveRule &rule = half) {
     long count = -1;
     phase.tensor.rule = rule;
-    EXPECT_EQ(forget_unresolved(grid, phase, &count), 0);
+    EXPECT_EQ(forget_unresolved(domain, phase, &count), 0);
     return count;
   }
 };
@@ -69,7 +69,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
     xy(i, j, k) = -xy(i, j, k);
     xy(i + 1, j + 1, k) = -xy(i + 1, j + 1, k);
     const std::vector<double> before = body.values();
-    const Layout &layout = body.grid.layout();
+    const Layout &layout = body.domain.layout();
     std::vector<double> want = before;
     int centres = 0;
     for (int dj = -2; dj <= 2;
@@ -81,7 +81,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
         if (before[p] * before[p] - mean * mean < 2 * largest_determinant) continue;
         ++centres;
         for (int f = 0; f < body.phase.tensor.field.count(); ++f) {
-          const auto [a, b, at] = tensor_components(body.grid.dimension())[f];
+          const auto [a, b, at] = tensor_components(body.domain.dimension())[f];
           double *B = want.data() + f * layout.size + p;
           if (a == b)
             *B = 1;
@@ -98,8 +98,8 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
     const std::vector<double> after = body.values();
     // Centres around those have lost part of their off-diagonals (yz = xz = 0): one factor for their diagonals, det B
     // = 1.
-    const int dimension = body.grid.dimension();
-    const Int3 n = body.grid.cells();
+    const int dimension = body.domain.dimension();
+    const Int3 n = body.domain.cells();
     for (int c = 0; c < n[2]; ++c)
       for (int b = 0; b < n[1]; ++b)
         for (int a = 0; a < n[0]; ++a) {
@@ -126,7 +126,7 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
 
 TEST(Unresolved, OnlyWhereBEvolvesAndWhatIsNotFiniteStays) {
   Body body(true);
-  const Int3 n = body.grid.cells();
+  const Int3 n = body.domain.cells();
   body.phase.tensor.field[0](n[0] - 1, 1, 0) = 1e9;  // outside
   body.phase.tensor.field[0](1, 1, 0) = NAN;
   EXPECT_EQ(body.forget(), 0);
@@ -154,13 +154,13 @@ TEST(Unresolved, WhereBIsExtendedDiagonalsAreScaled) {
   for (const bool flat : {true, false})
     for (const double fraction : {1., .6}) {
       Body body(flat, 3);
-      const int k = flat ? 0 : 2, dimension = body.grid.dimension();
+      const int k = flat ? 0 : 2, dimension = body.domain.dimension();
       for (int d = 0; d < dimension; ++d)
         body.phase.tensor.field[d](2, 2, k) *= 2;  // det B = 4 (3 + 1/3)^2/4 - (3 - 1/3)^2/4
       body.phase.fraction[0](2, 2, k) = fraction;
       const std::vector<double> before = body.values();
       std::vector<double> want = before;
-      const std::ptrdiff_t p = body.grid.layout().offset(2, 2, k), size = body.grid.layout().size;
+      const std::ptrdiff_t p = body.domain.layout().offset(2, 2, k), size = body.domain.layout().size;
       EXPECT_EQ(body.forget(evolve_above_half), 1);
       const std::vector<double> after = body.values();
       const double xx = after[p], xy = after[(flat ? 2 : 5) * size + p], zz = flat ? 1 : after[2 * size + p];

@@ -13,10 +13,10 @@ constexpr double h = 0.25, modulus = 2, largest = 4 * modulus;  // neo-Hookean: 
 constexpr int cells_x = 24, cells_y = 12;
 
 struct Film {
-  Domain grid;
+  Domain domain;
   Phase phase, floor;
   Field scratch, force;
-  WallFilm film{grid};
+  WallFilm film{domain};
 
   // A floor below row `bottom`: a side of the box, or a rigid body in a box without sides.
   explicit Film(int bottom, SideKind side = SideKind::wall) {
@@ -24,18 +24,18 @@ struct Film {
     spec.cells = {cells_x, cells_y, 1};
     spec.length = {cells_x * h, cells_y * h, h};
     spec.boundary[1] = bottom == 0 ? Boundary::wall : Boundary::periodic;
-    EXPECT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
+    EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
     phase.material.law = Law::membrane;
     phase.material.membrane.shear_modulus = modulus;
-    phase.fraction = Field(grid, 1);
-    floor.fraction = Field(grid, 1);
-    scratch = Field(grid, WallFilm::work_fields);
-    force = Field(grid, 2);
+    phase.fraction = Field(domain, 1);
+    floor.fraction = Field(domain, 1);
+    scratch = Field(domain, WallFilm::work_fields);
+    force = Field(domain, 2);
     BoxSides sides;
     for (auto &one : sides[1]) one.kind = side;
     for (int j = 0; j < bottom; ++j) std::fill_n(floor.fraction[0].row(j, 0), cells_x, 1.0);
     const std::vector<const Phase *> rigid(bottom > 0, &floor);
-    GhostExchange exchange(grid);
+    GhostExchange exchange(domain);
     EXPECT_EQ(exchange.update_ghosts(floor.fraction, 5), 0);
     film.find(sides, rigid, scratch);
   }
@@ -74,7 +74,7 @@ TEST(WallFilm, PushesABodyOffTheWall) {
 TEST(WallFilm, StoresWhatTheFlowGivesToIt) {
   Film scene(0);
   const auto beside = [](int i) { return 0.5 + 0.4 * std::sin(2 * M_PI * i / cells_x); };
-  Field velocity(scene.grid, 2);
+  Field velocity(scene.domain, 2);
   const auto u = [](int i) { return 0.3 + std::cos(4 * M_PI * i / cells_x) + 0.2 * std::sin(6 * M_PI * i / cells_x); };
   const auto rate = [&](int i) {
     const auto flux = [&](int face) { return u(face) * 0.5 * (beside(face - 1) + beside(face)); };

@@ -153,44 +153,44 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   GridSpec spec = uneven_box(GetParam().flat, {18, 9, 7});
   for (int d = 0; d < 3; ++d)
     if (GetParam().walls >> d & 1) spec.boundary[d] = Boundary::wall;
-  Domain grid;
-  ASSERT_EQ(grid.create(PETSC_COMM_SELF, spec), 0);
-  GhostExchange exchange(grid);
+  Domain domain;
+  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
+  GhostExchange exchange(domain);
   const BoxSides walls{};
   Random random(3);
   const double dt = 0.02, density = 1.7;
-  Field velocity(grid, grid.dimension()), D(grid, 1), p(grid, 1), none;
+  Field velocity(domain, domain.dimension()), D(domain, 1), p(domain, 1), none;
   const auto velocity_ghosts = [&](Field &v) {
     EXPECT_EQ(exchange.update_ghosts(v, 1), 0);
-    fill_wall_ghosts_velocity(grid, walls, 0, v, 1);
+    fill_wall_ghosts_velocity(domain, walls, 0, v, 1);
   };
   const auto centre_ghosts = [&](Field &q) {
     EXPECT_EQ(exchange.update_ghosts(q, 1), 0);
-    fill_wall_ghosts_even(grid, at_centre, q[0], 1);
+    fill_wall_ghosts_even(domain, at_centre, q[0], 1);
   };
   const auto sum = [&](const Field &a, const Field &b) {
     double total = 0;
-    for (const Segment &s : grid.rows())
+    for (const Segment &s : domain.rows())
       for (int i = 0; i < s.i_end; ++i) total += a[0](i, s.j, s.k) * b[0](i, s.j, s.k);
     return total;
   };
-  for (int a = 0; a < grid.dimension(); ++a)
-    set(grid, velocity[a], at_face[a], [&](double, double, double) { return random(); });
-  set(grid, p[0], at_centre, [&](double, double, double) { return GetParam().pressure * (3 + random()); });
+  for (int a = 0; a < domain.dimension(); ++a)
+    set(domain, velocity[a], at_face[a], [&](double, double, double) { return random(); });
+  set(domain, p[0], at_centre, [&](double, double, double) { return GetParam().pressure * (3 + random()); });
   velocity_ghosts(velocity);
   centre_ghosts(p);
-  ASSERT_EQ(compute_divergence(grid, density, velocity, D), 0);
+  ASSERT_EQ(compute_divergence(domain, density, velocity, D), 0);
   centre_ghosts(D);
   // D + kappa lap D + g lap p for the coefficients that the solver reports.
-  Field predicted(grid, 1), lap_D(grid, 1), lap_p(grid, 1);
+  Field predicted(domain, 1), lap_D(domain, 1), lap_p(domain, 1);
   double second[3];
-  for (int d = 0; d < 3; ++d) second[d] = 1 / (grid.spacing()[d] * grid.spacing()[d]);
+  for (int d = 0; d < 3; ++d) second[d] = 1 / (domain.spacing()[d] * domain.spacing()[d]);
   const auto laplacian = [&](const Field &q, Field &out) {
     const ConstView view = q[0];
-    for (const Segment &s : grid.rows())
+    for (const Segment &s : domain.rows())
       for (int i = 0; i < s.i_end; ++i) {
         double total = 0;
-        for (int d = 0; d < grid.dimension(); ++d) {
+        for (int d = 0; d < domain.dimension(); ++d) {
           const double *c = view.row(s.j, s.k) + i;
           total += second[d] * (c[view.stride(d)] - 2 * c[0] + c[-view.stride(d)]);
         }
@@ -200,16 +200,16 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   laplacian(D, lap_D);
   laplacian(p, lap_p);
 
-  AcmSolver solver(grid);
-  Field old_pressure(grid, 1);
+  AcmSolver solver(domain);
+  Field old_pressure(domain, 1);
   std::copy(p.data(), p.data() + p.layout().size, old_pressure.data());
   ASSERT_EQ(solver.solve(dt, D, p, none), 0);
   const auto [kappa, g] = solver.last();
   EXPECT_GT(kappa, 0);
-  ASSERT_EQ(correct_velocity(grid, density, dt, 0, *solver.formula(), D, velocity, p), 0);
+  ASSERT_EQ(correct_velocity(domain, density, dt, 0, *solver.formula(), D, velocity, p), 0);
   velocity_ghosts(velocity);
-  Field D_new(grid, 1);
-  ASSERT_EQ(compute_divergence(grid, density, velocity, D_new), 0);
+  Field D_new(domain, 1);
+  ASSERT_EQ(compute_divergence(domain, density, velocity, D_new), 0);
 
   const AcmSums s{-sum(D, lap_D), sum(lap_D, lap_D), sum(lap_p, lap_p), sum(D, lap_p), sum(lap_D, lap_p)};
   const double before = sum(D, D), least = before - kappa * s.A1 + g * s.B1;
@@ -221,15 +221,15 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   EXPECT_NEAR(sum(D_new, lap_D), 0, 1e-10 * std::sqrt(before * s.A2));
 
   double mean = 0;
-  for (const Segment &row : grid.rows())
-    for (int i = 0; i < row.i_end; ++i) mean += p[0](i, row.j, row.k) / grid.domain_cell_count();
+  for (const Segment &row : domain.rows())
+    for (int i = 0; i < row.i_end; ++i) mean += p[0](i, row.j, row.k) / domain.domain_cell_count();
   EXPECT_NEAR(mean, 0, 1e-12 * (1 + GetParam().pressure));
 
   // The ghosts come out right without an exchange.
-  Field fresh(grid, 1);
+  Field fresh(domain, 1);
   std::copy(p.data(), p.data() + p.layout().size, fresh.data());
   centre_ghosts(fresh);
-  const Int3 n = grid.cells();
+  const Int3 n = domain.cells();
   for (int j = -1; j <= n[1]; ++j)
     for (int i = -1; i <= n[0]; ++i) EXPECT_EQ(p[0](i, j, 0), fresh[0](i, j, 0));
 }

@@ -37,8 +37,8 @@ Convergence convergence(const GridSpec &spec) {
     PoissonScene s(PETSC_COMM_SELF, spec);
     s.set(f);
     AcmSweepSolver solver;
-    WorkSpace work(s.grid);
-    EXPECT_EQ(solver.create(s.grid, *s.exchange, {30, 0, true}, work), 0);
+    WorkSpace work(s.domain);
+    EXPECT_EQ(solver.create(s.domain, *s.exchange, {30, 0, true}, work), 0);
     solver.set_target(target * s.rms_divergence());
     EXPECT_EQ(solver.solve(s.dt, s.divergence, s.pressure, s.increment), 0);
     const double relative = s.rms_residual() / s.rms_divergence();
@@ -96,8 +96,8 @@ TEST(Multigrid, IsLinear) {
   for (const GridSpec &spec : all_boundaries({13, 18, 11})) {
     PoissonScene s(PETSC_COMM_SELF, spec);
     Multigrid multigrid;
-    ASSERT_EQ(multigrid.create(s.grid), 0);
-    Field result[3] = {Field(s.grid, 1), Field(s.grid, 1), Field(s.grid, 1)}, scratch(s.grid, 1);
+    ASSERT_EQ(multigrid.create(s.domain), 0);
+    Field result[3] = {Field(s.domain, 1), Field(s.domain, 1), Field(s.domain, 1)}, scratch(s.domain, 1);
     const CellFunction f[3] = {noise, [](int i, int j, int k) { return noise(k, i + 5, j); },
                                [](int i, int j, int k) { return noise(i, j, k) - 3 * noise(k, i + 5, j); }};
     for (int m = 0; m < 3; ++m) {
@@ -119,11 +119,11 @@ TEST(Multigrid, IsLinear) {
 // there is a neighbour to interpolate from, also beside a last cell of one or three.
 TEST(Multigrid, TransfersAreConservativeAndLinear) {
   for (int n = 3; n <= 40; ++n) {
-    Domain grid;
-    ASSERT_EQ(grid.create(PETSC_COMM_SELF, box({n, n, 1}, {1, 1, 1}, true, true, false)), 0);
+    Domain domain;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({n, n, 1}, {1, 1, 1}, true, true, false)), 0);
     std::vector<double> ones(n, 1.0);
-    auto fine =
-        std::make_unique<MultigridLevel>(Partition(grid), MultigridLevel::Widths{ones, ones, {1.0}}, grid.spacing());
+    auto fine = std::make_unique<MultigridLevel>(Partition(domain), MultigridLevel::Widths{ones, ones, {1.0}},
+                                                 domain.spacing());
     std::vector<double> width(ones);
     while (!fine->single_cell()) {
       auto coarse = fine->coarser();
@@ -220,8 +220,8 @@ TEST(Multigrid, LevelsOnManyRanks) {
                                      {{64, 64, 64}, 27},
                                      {{1024, 1024, 1}, 1024},
                                      {{64, 64, 64}, 4}}) {
-    const Domain grid = Domain::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
-    const auto levels = Multigrid::plan(grid);
+    const Domain domain = Domain::planned(box(cells, {1, 1, 1}, false, true, false), ranks);
+    const auto levels = Multigrid::plan(domain);
     const auto most = [](const Split &split) {  // cells of a rank
       double product = 1;
       for (int d = 0; d < 3; ++d) {
@@ -240,11 +240,11 @@ TEST(Multigrid, LevelsOnManyRanks) {
         break;
       }
       EXPECT_EQ(levels[l]->partition().ranks(), ranks);
-      EXPECT_LE(most(after), std::max(most(grid.split()), 4096.0))
+      EXPECT_LE(most(after), std::max(most(domain.split()), 4096.0))
           << next.domain_cells()[0] << " x " << next.domain_cells()[1];
       joined += next.domain_cells() == fine.domain_cells();
       for (int d = 0; d < 3; ++d)
-        for (int p = 0; next.domain_cells() != fine.domain_cells() && p < grid.processors(d); ++p) {
+        for (int p = 0; next.domain_cells() != fine.domain_cells() && p < domain.processors(d); ++p) {
           const int had = before.cells_along(d, p), has = after.cells_along(d, p);
           EXPECT_TRUE(had == 0 ? has == 0 : has >= 2 || had == fine.domain_cells()[d]);
         }

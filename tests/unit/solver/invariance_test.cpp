@@ -22,9 +22,9 @@ double moving_frame_difference(int cells) {
     spec.pressure = PressureKind::smac;
     EXPECT_EQ(scene[moving].create(PETSC_COMM_SELF, grid, spec), 0);
     State &state = scene[moving].solver.state();
-    set(scene[moving].grid, state.velocity[0], at_face[0],
+    set(scene[moving].domain, state.velocity[0], at_face[0],
         [=](double x, double y, double) { return moving * speed + 0.3 * std::sin(k * x) * std::cos(k * y); });
-    set(scene[moving].grid, state.velocity[1], at_face[1],
+    set(scene[moving].domain, state.velocity[1], at_face[1],
         [=](double x, double y, double) { return -0.3 * std::cos(k * x) * std::sin(k * y); });
     scene[moving].add_phase(0.2, [=](double x, double y, double) {
       return 0.5 - 0.5 * std::tanh((std::hypot(x - 0.5, y - 0.4) - 0.2) * 16);
@@ -61,7 +61,7 @@ TEST(StresslessSolid, IsTheFluid) {
       ASSERT_EQ(scene[solid].create(PETSC_COMM_SELF, grid, spec), 0);
       Random random(1);
       for (int a = 0; a < 3; ++a)
-        set(scene[solid].grid, scene[solid].solver.state().velocity[a], at_face[a],
+        set(scene[solid].domain, scene[solid].solver.state().velocity[a], at_face[a],
             [&](double, double, double) { return 0.1 * random(); });
       if (solid) scene[solid].add_phase(stiff ? 1e3 : 0, [&](double, double, double) { return std::fabs(random()); });
       ASSERT_EQ(scene[solid].solver.prepare(), 0);

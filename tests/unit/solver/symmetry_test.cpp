@@ -76,7 +76,7 @@ void run(const Setting &s, Scene &scene, int steps = 20) {  // to t = 1
       spec.sides[d][side].motion.velocity = s.wall_velocity[d][side];
     }
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
-  const int dim = scene.grid.dimension();
+  const int dim = scene.domain.dimension();
   Phase &phase = scene.add_phase(0, [&](double x, double y, double z) {
     const Point point{x, y, z};
     double r = 0;
@@ -94,14 +94,14 @@ void run(const Setting &s, Scene &scene, int steps = 20) {  // to t = 1
 // Largest |a - map(b)| over velocity, pressure, fraction and tensor, where b's point and component of a's are given.
 template <class Map>
 double difference(const Scene &a, const Scene &b, Map map) {
-  const int dim = a.grid.dimension();
+  const int dim = a.domain.dimension();
   const State &p = a.solver.state(), &q = b.solver.state();
   const auto &components = tensor_components(dim);
   double largest = 0;
   const auto compare = [&](ConstView x, const Field &y, const Staggering &at, int c, int d) {
-    for (int k = 0; k < a.grid.points_end(2, at[2]); ++k)
-      for (int j = 0; j < a.grid.points_end(1, at[1]); ++j)
-        for (int i = 0; i < a.grid.points_end(0, at[0]); ++i)
+    for (int k = 0; k < a.domain.points_end(2, at[2]); ++k)
+      for (int j = 0; j < a.domain.points_end(1, at[1]); ++j)
+        for (int i = 0; i < a.domain.points_end(0, at[0]); ++i)
           largest = std::max(largest, std::fabs(x(i, j, k) - map(y, at, Int3{i, j, k}, c, d)));
   };
   for (int c = 0; c < dim; ++c) compare(p.velocity[c], q.velocity, at_face[c], c, -1);
@@ -120,17 +120,17 @@ int block_position(int dim, int c, int d) {
 }
 
 double mirror_difference(const Scene &a, const Scene &b, int m) {
-  const int dim = a.grid.dimension();
+  const int dim = a.domain.dimension();
   return difference(a, b, [&](const Field &y, const Staggering &at, Int3 point, int c, int d) {
-    const int N = a.grid.domain_cells()[m];
-    point[m] = at[m] ? (N - point[m]) % (a.grid.is_wall(m) ? N + 1 : N) : N - 1 - point[m];
+    const int N = a.domain.domain_cells()[m];
+    point[m] = at[m] ? (N - point[m]) % (a.domain.is_wall(m) ? N + 1 : N) : N - 1 - point[m];
     const double sign = (c == m) == (d == m) ? 1 : -1;
     return sign * y[block_position(dim, c, d)](point[0], point[1], point[2]);
   });
 }
 
 double permutation_difference(const Scene &a, const Scene &b, const Permutation &p) {
-  const int dim = a.grid.dimension();
+  const int dim = a.domain.dimension();
   return difference(a, b, [&](const Field &y, const Staggering &, const Int3 &point, int c, int d) {
     const Int3 x = p(point);
     return y[block_position(dim, c < 0 ? c : p.to[c], d < 0 ? d : p.to[d])](x[0], x[1], x[2]);
@@ -163,10 +163,10 @@ TEST(MirroredScene, GivesTheMirroredResult) {
         Scene original;
         run(setting, original);
         double moved = 0;
-        for_points(original.grid, original.solver.state().phases[0].tensor.field[0], at_centre,
+        for_points(original.domain, original.solver.state().phases[0].tensor.field[0], at_centre,
                    [&](double &q, double, double, double) { moved = std::max(moved, std::fabs(q - 1)); });
         EXPECT_GT(moved, 0.01);
-        for (int d = 0; d < original.grid.dimension(); ++d) {
+        for (int d = 0; d < original.domain.dimension(); ++d) {
           Scene image;
           run(mirrored(setting, d), image);
           const double e = mirror_difference(original, image, d);
@@ -215,7 +215,7 @@ TEST(MirroredScene, GivesTheMirroredResultWithFast) {
       if (two_d) setting.material.viscosity = 2.5;
       Scene original;
       run(setting, original);
-      for (int d = 0; d < original.grid.dimension(); ++d) {
+      for (int d = 0; d < original.domain.dimension(); ++d) {
         Scene image;
         run(mirrored(setting, d), image);
         const double e = mirror_difference(original, image, d);
