@@ -116,6 +116,14 @@ Field Field::at_rest(const Box &box, int count, int ones) {
   return field;
 }
 
+Field Field::in_memory(const Box &box, int count, double *memory) noexcept {
+  Field field;
+  field.layout_ = box.layout();
+  field.count_ = count;
+  field.data_ = {memory, Free{true, 0}};
+  return field;
+}
+
 Field Field::part(int first, int count) noexcept {
   Field field;
   field.layout_ = layout_;

@@ -23,6 +23,9 @@ public:
   /// take none. For fields that keep these values everywhere but near bodies.
   static Field at_rest(const Box &box, int count, int ones = 0);
 
+  /// `count` components on `box` in memory that somebody else owns, with the values that it has.
+  static Field in_memory(const Box &box, int count, double *memory) noexcept;
+
   explicit operator bool() const noexcept { return data_ != nullptr; }
   int count() const noexcept { return count_; }
   const Layout &layout() const noexcept { return layout_; }

@@ -66,7 +66,7 @@ PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Move
   std::vector<int> all_inside;  // of each, on all ranks
   for (const Moved &one : moved) {
     const OccupiedRows before = std::move(*one.rows);
-    one.rows->read(domain, one.value, before);
+    one.rows->read(domain, one.value, before, {domain.layout().ghosts[0] + 2, false});
     all_inside.push_back(one.rows->inside_);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all_inside.data(), static_cast<int>(all_inside.size()), MPI_INT, MPI_LAND,
@@ -75,34 +75,51 @@ PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Move
   PetscFunctionReturn(0);
 }
 
-void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &before) {
+void OccupiedRows::find_in_box(const Box &box, ConstView value, int reach) {
+  *this = {};
+  follow_in_box(box, value, reach);
+}
+
+void OccupiedRows::follow_in_box(const Box &box, ConstView value, int reach) {
+  const OccupiedRows before = std::move(*this);
+  read(box, value, before, {reach, true});
+}
+
+void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &before, const Reading &reading) {
   const Int3 &n = box.cells(), &ghosts = box.layout().ghosts;
-  const int reach = ghosts[0] + 2, reach_z = ghosts[2] > 0 ? reach : 0;
+  const bool alone = reading.alone;
+  const int reach = reading.reach, reach_z = ghosts[2] > 0 ? reach : 0;
   constexpr int ahead = 8;  // rows
-  const bool split_x = !box.spans(0);
-  rows_y_ = n[1];
-  rows_z_ = n[2];
-  whole_ = {-ghosts[0], n[0] + ghosts[0]};
-  const std::size_t rows = n[1];
-  spans_.assign(rows * n[2], {0, 0});
+  const bool split_x = !box.spans(0) && !alone;
+  const Span whole{-ghosts[0], n[0] + ghosts[0]};
+  cells_of_box_ = n;
+  unknown_ = whole;
+  low_y_ = alone ? -ghosts[1] : 0;
+  low_z_ = alone ? -ghosts[2] : 0;
+  rows_y_ = n[1] - 2 * low_y_;
+  rows_z_ = n[2] - 2 * low_z_;
+  const std::size_t rows = rows_y_;
+  spans_.assign(rows * rows_z_, {0, 0});
   std::vector<Span> along_y(rows * (n[2] + 2 * ghosts[2]), {0, 0});  // what is within reach in x and y
   const auto read_plane = [&](int k) {
     for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
       const bool owned = j >= 0 && j < n[1] && k >= 0 && k < n[2];
-      if (before.inside_ && !owned) continue;  // nothing has come so far
+      if ((alone || before.inside_) && !owned) continue;  // nothing has come so far
       const bool was_idle = before.idle(j, k);
       if (was_idle && !split_x) continue;
       const double *row = value.row(j, k);
       const Span next = before.span(j + ahead, k);
-      prefetch_ends(value.row(j + ahead, k), {std::max(next.begin, whole_.begin), std::min(next.end, whole_.end)});
+      prefetch_ends(value.row(j + ahead, k), {std::max(next.begin, whole.begin), std::min(next.end, whole.end)});
       const Span old = before.span(j, k);
       Span found = was_idle ? old : occupied(row, {std::max(old.begin, 0), std::min(old.end, n[0])});
-      add(occupied(row, {whole_.begin, 0}), &found);  // what comes from beyond
-      add(occupied(row, {n[0], whole_.end}), &found);
+      if (!alone) {
+        add(occupied(row, {whole.begin, 0}), &found);  // what comes from beyond
+        add(occupied(row, {n[0], whole.end}), &found);
+      }
       if (empty(found)) continue;
-      found = {std::max(found.begin - reach, whole_.begin), std::min(found.end + reach, whole_.end)};
-      for (int y = std::max(j - reach, 0); y < std::min(j + reach + 1, n[1]); ++y)
-        add(found, &along_y[y + rows * (k + ghosts[2])]);
+      found = {std::max(found.begin - reach, whole.begin), std::min(found.end + reach, whole.end)};
+      for (int y = std::max(j - reach, low_y_); y < std::min(j + reach + 1, low_y_ + rows_y_); ++y)
+        add(found, &along_y[y - low_y_ + rows * (k + ghosts[2])]);
     }
   };
   const int planes = n[2] + 2 * ghosts[2], parts = row_parts(box);
@@ -111,11 +128,11 @@ void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &bef
     for (std::size_t k = own.begin; k < own.end; ++k) read_plane(int(k) - ghosts[2]);
   });
   for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
-    for (int z = std::max(k - reach_z, 0); z < std::min(k + reach_z + 1, n[2]); ++z)
-      for (int y = 0; y < n[1]; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * z]);
-  if (skips_nothing()) spans_.assign(spans_.size(), whole_);
+    for (int z = std::max(k - reach_z, low_z_); z < std::min(k + reach_z + 1, low_z_ + rows_z_); ++z)
+      for (int y = 0; y < rows_y_; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * (z - low_z_)]);
+  if (skips_nothing()) spans_.assign(spans_.size(), whole);
   inside_ = true;
-  for (int k = 0; k < n[2]; ++k)
+  for (int k = 0; k < n[2] && !alone; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Span s = span(j, k);
       if (empty(s)) continue;
@@ -134,9 +151,13 @@ Segment OccupiedRows::within(const Segment &row, ConstView value) const noexcept
 }
 
 void OccupiedRows::count() noexcept {
-  const int nx = whole_.begin + whole_.end;
+  const Int3 &n = cells_of_box_;
   cells_ = 0;
-  for (const Span &s : spans_) cells_ += std::max(0, std::min(s.end, nx) - std::max(s.begin, 0));
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const Span s = span(j, k);
+      cells_ += std::max(0, std::min(s.end, n[0]) - std::max(s.begin, 0));
+    }
 }
 
 void OccupiedRows::join(const OccupiedRows &other) {

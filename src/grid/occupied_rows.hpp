@@ -18,6 +18,11 @@ public:
 
   /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
   PetscErrorCode find(const Domain &domain, ConstView value);
+  /// The same of a field in a box that is whole on this rank, with nothing in its ghosts: spans are known there, too,
+  /// and reach `reach` cells beyond what is not zero. Not collective.
+  void find_in_box(const Box &box, ConstView value, int reach);
+  /// Those of find_in_box() after a transport by less than a cell.
+  void follow_in_box(const Box &box, ConstView value, int reach);
   struct Moved {
     OccupiedRows *rows;
     ConstView value;  ///< the field whose rows they are
@@ -30,11 +35,12 @@ public:
   void join(const OccupiedRows &other);
 
   /// Outside it row (j, k) and all that stencils join to it are zero: as far as there are ghosts, one as edges belong
-  /// to the centres below them too, one for what moves within a step. All of a ghost row: what comes to it from beyond
-  /// is not known.
+  /// to the centres below them too, one for what moves within a step. On the grid all of a ghost row: what comes to it
+  /// from beyond is not known.
   Span span(int j, int k) const noexcept {
-    const bool known = j >= 0 && k >= 0 && j < rows_y_ && k < rows_z_;
-    return known ? spans_[j + static_cast<std::size_t>(rows_y_) * k] : whole_;
+    const int y = j - low_y_, z = k - low_z_;
+    const bool known = y >= 0 && z >= 0 && y < rows_y_ && z < rows_z_;
+    return known ? spans_[y + static_cast<std::size_t>(rows_y_) * z] : unknown_;
   }
   bool idle(int j, int k) const noexcept {
     const Span s = span(j, k);
@@ -63,11 +69,17 @@ public:
 
 private:
   void count() noexcept;
-  void read(const Box &box, ConstView value, const OccupiedRows &before);
+  struct Reading {
+    int reach;
+    bool alone;  ///< the box is whole on this rank
+  };
+  void read(const Box &box, ConstView value, const OccupiedRows &before, const Reading &reading);
 
   static constexpr int far = 1 << 30;
-  int rows_y_ = 0, rows_z_ = 0;
-  Span whole_{-far, far};
+  int low_y_ = 0, low_z_ = 0;    ///< first row of spans_
+  int rows_y_ = 0, rows_z_ = 0;  ///< those of spans_
+  Int3 cells_of_box_{};
+  Span unknown_{-far, far};  ///< of other rows
   std::vector<Span> spans_;
   bool inside_ = false;
   std::ptrdiff_t cells_ = 0;

@@ -85,11 +85,14 @@ EULASTIC_CLONES void add_force_3d(const Box &box, const Phase &phase, double sca
   add_force_of_law<3>(box, phase, scale, rows, force, slope);
 }
 
+void add_on_rows(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
+                 const ForceSlope &slope) {
+  if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
+    (box.dimension() == 2 ? add_force_2d : add_force_3d)(box, phase, scale, rows, force, slope);
+}
 void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale, const Rows &rows, Field &force,
                  const ForceSlope &slope) {
-  for (const Phase &phase : phases)
-    if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
-      (box.dimension() == 2 ? add_force_2d : add_force_3d)(box, phase, scale, rows, force, slope);
+  for (const Phase &phase : phases) add_on_rows(box, phase, scale, rows, force, slope);
 }
 
 }  // namespace
@@ -126,6 +129,17 @@ PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::ve
     }
   scope.flops(elastic_flops(dim, phases));
   PetscFunctionReturn(0);
+}
+
+void compute_elastic_force(const Box &box, double scale, const Phase &phase, Field &force) {
+  const int dim = box.dimension();
+  for (int a = 0; a < dim; ++a)
+    for (const Segment &s : phase.tensor.stressed.all()) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
+  for (int k = 0; k < box.cells()[2]; ++k)
+    add_on_rows(box, phase, scale, {0, box.cells()[0], 0, box.cells()[1], k, 0, dim}, force, {});
+  for (int a = 0; a < dim; ++a)
+    for (const Segment &faces : box.open_high_faces(a))
+      add_on_rows(box, phase, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, {});
 }
 
 double elastic_flops(int dimension, const std::vector<Phase> &phases) {

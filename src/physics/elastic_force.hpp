@@ -25,6 +25,9 @@ void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double 
 /// force = scale div(sigma), 0 at owned faces that feel none.
 PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, Field &force);
 
+/// force = scale div(sigma) of one phase where its faces feel any, phase.tensor.stressed; other faces are not touched.
+void compute_elastic_force(const Box &box, double scale, const Phase &phase, Field &force);
+
 /// Of all owned faces.
 double elastic_flops(int dimension, const std::vector<Phase> &phases);
 

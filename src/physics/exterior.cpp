@@ -264,7 +264,7 @@ double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int lay
   return flops;
 }
 
-PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange &exchange,
+PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange *exchange,
                                       Field &tensor) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
@@ -276,7 +276,7 @@ PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, Gho
     });
     for (const double some : flops) scope.flops(some);
     clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
-    if (linear_ && L < layers) PetscCall(exchange.update_ghosts(tensor, 3));
+    if (linear_ && exchange && L < layers) PetscCall(exchange->update_ghosts(tensor, 3));
   }
   PetscFunctionReturn(0);
 }

@@ -36,8 +36,9 @@ public:
   /// phi of the phase needs five valid ghost layers; find_solid() has run.
   PetscErrorCode build(const Box &box, const Phase &phase);
   /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
-  /// three points in, so that attached bodies exchange ghosts after every layer.
-  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange &exchange, Field &tensor) const;
+  /// three points in, so that attached bodies exchange ghosts after every layer; `exchange` is null for boxes that are
+  /// whole on this rank.
+  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange *exchange, Field &tensor) const;
   /// Points in the layers of all locations.
   double points() const noexcept;
 

@@ -125,30 +125,28 @@ std::array<Extent, 3> cells_of_sweeps(const Box &box, const Int3 &order) {
 
 }  // namespace
 
-PetscErrorCode InterfaceTransport::advance(double dt, const Field &velocity, long step, const OccupiedRows &rows,
-                                           Field &fraction) {
+PetscErrorCode InterfaceTransport::advance(const Box &box, double dt, const Field &velocity, long step,
+                                           const OccupiedRows &rows, Field &fraction, Field &work) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
-  const int dimension = box_->dimension();
+  const int dimension = box.dimension();
   const Int3 order = order_of_directions(dimension, step);
-  const std::array<Extent, 3> cells = cells_of_sweeps(*box_, order);
-  WorkSpace::Lease work;
-  PetscCall(work_->take("fluxes of the interface", work_fields, &work));
-  const View phi = fraction[0], flux = work.fields()[0], solid = work.fields()[1];
-  fill_wall_ghosts_even(*box_, at_centre, phi, 1, &rows);
-  cells_.build_band(*box_, phi, rows, dimension);
-  faces_.build_faces(*box_, cells_);
-  in_parts_of(cells_.all(), *box_, [&](const Segment *begin, const Segment *end) {
+  const std::array<Extent, 3> cells = cells_of_sweeps(box, order);
+  const View phi = fraction[0], flux = work[0], solid = work[1];
+  fill_wall_ghosts_even(box, at_centre, phi, 1, &rows);
+  cells_.build_band(box, phi, rows, dimension);
+  faces_.build_faces(box, cells_);
+  in_parts_of(cells_.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *s = begin; s < end; ++s)
       for (int i = s->i_begin; i < s->i_end; ++i) solid(i, s->j, s->k) = phi(i, s->j, s->k) > 0.5;
   });
   planes_ = 0;
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    Sweep sweep{d, cells[s], dt / box_->spacing()[d], {}, velocity[d], phi, flux, solid};
+    Sweep sweep{d, cells[s], dt / box.spacing()[d], {}, velocity[d], phi, flux, solid};
     for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
-    planes_ += static_cast<double>(sweep_band(*box_, sweep, cells_, faces_));
-    fill_wall_ghosts_even(*box_, at_centre, phi, 1, &rows);
+    planes_ += static_cast<double>(sweep_band(box, sweep, cells_, faces_));
+    fill_wall_ghosts_even(box, at_centre, phi, 1, &rows);
   }
   scope.flops(dimension *
                   (cells_.points() * kernels::apply_flux_flops + faces_.points() * kernels::uniform_flux_flops) +

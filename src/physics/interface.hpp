@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/work_space.hpp"
+#include "field/field.hpp"
 #include "grid/active_segments.hpp"
 #include "grid/box.hpp"
 
@@ -17,22 +17,19 @@ public:
   /// Layers of ghosts that `advance` reads of the solid fraction; of the velocity it reads three.
   static constexpr int ghosts = 4;
 
-  static constexpr int work_fields = 2;  ///< of the work space, during `advance`
-
-  InterfaceTransport(const Box &box, WorkSpace &work) : box_(&box), work_(&work) {}
+  static constexpr int work_fields = 2;
 
   /// Moves `fraction`, of which `rows` are occupied, over dt with face velocities. The order of directions follows from
   /// `step`: all of them in turn, each after its mirror image. Nothing is communicated: ghosts are moved along and are
-  /// stale afterwards; those behind walls need not be set.
-  PetscErrorCode advance(double dt, const Field &velocity, long step, const OccupiedRows &rows, Field &fraction);
+  /// stale afterwards; those behind walls need not be set. `work`: a field of work_fields components, of any values.
+  PetscErrorCode advance(const Box &box, double dt, const Field &velocity, long step, const OccupiedRows &rows,
+                         Field &fraction, Field &work);
   /// Cells of the interface band in the last `advance`, ghosts included.
   double band_cells() const { return cells_.points(); }
   /// Planes that the last `advance` made, in all its directions.
   double planes() const { return planes_; }
 
 private:
-  const Box *box_;
-  WorkSpace *work_;
   ActiveSegments cells_, faces_;
   double planes_ = 0;
 };

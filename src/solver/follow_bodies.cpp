@@ -21,9 +21,9 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscCall(reset_exterior(*domain_, before, phase));
   PetscCall(find_solid(*domain_, phase));
   if (!phase.material.elastic()) PetscFunctionReturn(0);
-  if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*domain_, phase));
-  PetscCall(extend_exterior(phase, phase.tensor.field, &phase.rows));
-  PetscCall(update_tensor_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+  PetscCall(solids_.find_layers(*domain_, phase));
+  PetscCall(solids_.extend(place_of_phases(), phase, phase.tensor.field, &phase.rows));
+  PetscCall(place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
 

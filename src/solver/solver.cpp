@@ -33,6 +33,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   PetscFunctionBeginUser;
   domain_ = &domain;
   spec_ = spec;
+  solids_ = SolidTransport(spec.exterior == SolidExterior::extrapolate);
   const int dim = domain.dimension();
   exchange_ = std::make_unique<GhostExchange>(domain);
   work_ = std::make_unique<WorkSpace>(domain);
@@ -95,10 +96,7 @@ PetscErrorCode Solver::prepare() {
   if (!spec_.staggered() &&
       std::any_of(now_.phases.begin(), now_.phases.end(), [](const Phase &p) { return p.material.elastic(); }))
     next_tensor_ = tensor_at_rest(*domain_);
-  if (spec_.interface == InterfaceScheme::plic)
-    interface_ = std::make_unique<InterfaceTransport>(*domain_, *work_);
-  else
-    next_fraction_ = Field::at_rest(*domain_, 1);
+  if (spec_.interface != InterfaceScheme::plic) next_fraction_ = Field::at_rest(*domain_, 1);
   for (Phase &phase : now_.phases) {
     phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
@@ -154,7 +152,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
     if (phase.material.is_membrane())
       PetscCall(membranes_->extend(&phase));
     else if (phase.material.elastic())
-      PetscCall(update_tensor_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+      PetscCall(place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
@@ -303,13 +301,6 @@ PetscErrorCode Solver::update_centre_ghosts(Field &field, int width) {
   PetscFunctionBeginUser;
   PetscCall(exchange_->update_ghosts(field, width));
   fill_wall_ghosts_even(*domain_, at_centre, field[0], width);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::update_tensor_ghosts(Field &tensor, int width, const OccupiedRows *rows) {
-  PetscFunctionBeginUser;
-  PetscCall(exchange_->update_ghosts(tensor, width, rows));
-  fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, width, rows);
   PetscFunctionReturn(0);
 }
 

@@ -8,15 +8,14 @@
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"
-#include "physics/exterior.hpp"
 #include "physics/fluid.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/membrane.hpp"
 #include "physics/momentum.hpp"
 #include "physics/rigid_impulse.hpp"
+#include "physics/solid_transport.hpp"
 #include "physics/super_time_stepping.hpp"
-#include "physics/surface_correction.hpp"
 #include "physics/surface_tension.hpp"
 #include "pressure/obstacles.hpp"
 #include "solver/feeders.hpp"
@@ -133,7 +132,7 @@ public:
 private:
   PetscErrorCode update_velocity_ghosts(Field &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(Field &field, int width);
-  PetscErrorCode update_tensor_ghosts(Field &tensor, int width, const OccupiedRows *rows);
+  PhasePlace place_of_phases() { return {domain_, &spec_.sides, exchange_.get()}; }
   double speed_scale(double dt) const;
   /// With the force that differences of given pressures are to a fluid at rest.
   Fluid driven_fluid() const;
@@ -170,7 +169,6 @@ private:
   PetscErrorCode transport(std::vector<Phase> &phases, double dt);
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                              const OccupiedRows *rows);
-  PetscErrorCode extend_exterior(const Phase &phase, Field &tensor, const OccupiedRows *rows);
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies(bool whole);
@@ -203,9 +201,8 @@ private:
   std::unique_ptr<Feeders> feeders_;    ///< null where no side has one
   std::unique_ptr<OutletLoads> loads_;  ///< null where no side has one
   LocalViscosity viscosity_;            ///< of the step, where bodies have their own; else empty
-  ExteriorLayers layers_;
-  SurfaceCorrection surface_;
-  std::unique_ptr<InterfaceTransport> interface_;
+  SolidTransport solids_;
+  InterfaceTransport interface_;
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies

@@ -1,5 +1,4 @@
 // Solver: phi and B of all phases from one time to another, (4) and (5).
-#include "physics/positive_definite.hpp"
 #include "physics/transport.hpp"
 #include "solver/solver.hpp"
 
@@ -39,7 +38,10 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
         next_rows_.join(phase.rows);  // its B is not swapped
     }
     if (spec_.interface == InterfaceScheme::plic) {
-      PetscCall(interface_->advance(dt, now_.velocity, static_cast<long>(now_.step), phase.rows, phase.fraction));
+      WorkSpace::Lease fluxes;
+      PetscCall(work_->take("fluxes of the interface", InterfaceTransport::work_fields, &fluxes));
+      PetscCall(interface_.advance(*domain_, dt, now_.velocity, static_cast<long>(now_.step), phase.rows,
+                                   phase.fraction, fluxes.fields()));
     } else {
       PetscCall(advect_fraction(*domain_, dt, now_.velocity, phase, rows[p].swapped_in, next_fraction_));  // (4)
       phase.fraction.swap(next_fraction_);
@@ -64,7 +66,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
     const ActiveSegments before = std::move(phase.tensor.strained);
     PetscCall(find_solid(*domain_, phase));
     if (phase.material.is_membrane()) continue;  // with the others of its kind
-    if (spec_.exterior == SolidExterior::extrapolate) PetscCall(layers_.build(*domain_, phase));
+    PetscCall(solids_.find_layers(*domain_, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));  // (5)
     tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined});
   }
@@ -78,45 +80,22 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscFunctionReturn(0);
 }
 
-// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G.
-// `before` is where the B of the phase differed from I; what lies outside it stays I untouched. Where B is
-// extended the first stage is read no further than that of now: the rest of it may be anything. Else I is read around
-// it. Leaves the ghosts to the caller.
+// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G. `before` is
+// where the B of the phase differed from I; what lies outside it stays I untouched. Leaves the ghosts to the caller.
 PetscErrorCode Solver::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                    const OccupiedRows *rows) {
   PetscFunctionBeginUser;
-  const bool identity = spec_.exterior == SolidExterior::identity;
   if (spec_.staggered()) {
-    const ActiveSegments *first = identity ? nullptr : &phase.tensor.strained;
     WorkSpace::Lease stage;
     PetscCall(work_->take("first stage of B", phase.tensor.field.count(), &stage));
-    Field &next = stage.fields();
-    PetscCall(transport_tensor(*domain_, {dt, false, first}, now_.velocity, phase, phase.tensor.field, next));
-    PetscCall(extend_exterior(phase, next, rows));
-    PetscCall(update_tensor_ghosts(next, Box::stencil_width, rows));
-    PetscCall(transport_tensor(*domain_, {dt, true, &before}, now_.velocity, phase, next, phase.tensor.field));
-    // Over two steps at once, in every second: their rates are slow against a step. They forget: no way back.
-    if (!identity && !phase.tensor.rule.linear && now_.step % 2 == 1 && dt > 0) {
-      PetscCall(update_tensor_ghosts(phase.tensor.field, SurfaceCorrection::ghosts, rows));
-      PetscCall(surface_.apply(*domain_, {2 * dt, spec_.fluid, spec_.sides}, now_.velocity, phase, next));
-    }
+    PetscCall(solids_.advance(place_of_phases(), {dt, now_.step, spec_.fluid, now_.velocity, before}, rows, phase,
+                              stage.fields()));
   } else {
     PetscCall(transport_tensor(*domain_, {dt, false, &stale_}, now_.velocity, phase, phase.tensor.field, next_tensor_));
     phase.tensor.field.swap(next_tensor_);
     stale_ = before;
+    PetscCall(solids_.extend(place_of_phases(), phase, phase.tensor.field, rows));
   }
-  PetscCall(extend_exterior(phase, phase.tensor.field, rows));
-  PetscFunctionReturn(0);
-}
-
-// B outside the body, where it is extended there. Its ghosts are stale afterwards.
-PetscErrorCode Solver::extend_exterior(const Phase &phase, Field &tensor, const OccupiedRows *rows) {
-  PetscFunctionBeginUser;
-  if (spec_.exterior != SolidExterior::extrapolate) PetscFunctionReturn(0);
-  PetscCall(exchange_->update_ghosts(tensor, ExteriorLayers::layers, rows));
-  PetscCall(layers_.extend(*domain_, spec_.sides, *exchange_, tensor));
-  fill_wall_ghosts_tensor(*domain_, spec_.sides, tensor, 1, rows);  // what the limit of shear at walls sees
-  PetscCall(limit_shear(*domain_, phase, tensor));
   PetscFunctionReturn(0);
 }
 

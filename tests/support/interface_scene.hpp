@@ -81,8 +81,7 @@ public:
     velocity = Field(domain, domain.dimension());
     fraction = Field(domain, 1);
     exchange_ = std::make_unique<GhostExchange>(domain);
-    transport_ = std::make_unique<InterfaceTransport>(domain, work_);
-    PetscCall(work_.reserve(InterfaceTransport::work_fields));
+    work_ = Field(domain, InterfaceTransport::work_fields);
     PetscFunctionReturn(0);
   }
 
@@ -141,11 +140,11 @@ public:
   PetscErrorCode advance(double dt) {
     PetscFunctionBeginUser;
     PetscCall(exchange_->update_ghosts(fraction, InterfaceTransport::ghosts));
-    PetscCall(transport_->advance(dt, velocity, step++, {}, fraction));
+    PetscCall(transport_.advance(domain, dt, velocity, step++, {}, fraction, work_));
     PetscFunctionReturn(0);
   }
 
-  double band_cells() const { return transport_->band_cells(); }
+  double band_cells() const { return transport_.band_cells(); }
 
   template <class F>
   void each_owned(F &&f) const {
@@ -187,8 +186,8 @@ public:
 
 private:
   std::unique_ptr<GhostExchange> exchange_;
-  WorkSpace work_{domain};
-  std::unique_ptr<InterfaceTransport> transport_;
+  Field work_;
+  InterfaceTransport transport_;
 };
 
 }  // namespace eulastic::test

@@ -76,7 +76,7 @@ TEST(Exterior, LinesTakeTheSmallerSlope) {
       xx.row(last - 1, 0)[i] = line.second;
       xx.row(last, 0)[i] = line.first;
     }
-    ASSERT_EQ(layers.extend(scene.domain, scene.solver.spec().sides, scene.solver.exchange(), phase.tensor.field), 0);
+    ASSERT_EQ(layers.extend(scene.domain, scene.solver.spec().sides, &scene.solver.exchange(), phase.tensor.field), 0);
     EXPECT_EQ(xx.row(last + 1, 0)[3], line.next);
     EXPECT_EQ(xx.row(last + 2, 0)[3], line.after);
   }
