@@ -3,18 +3,23 @@
 namespace eulastic::transport {
 namespace {
 
-EULASTIC_CLONES Evolved tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B,
-                                  Field &out) {
-  return with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
-    return advance_tensor<3>(t, viscosity, part, phase, B, out);
-  });
+// A function for each viscosity: in one for both the compiler keeps too little in registers.
+EULASTIC_CLONES Evolved with_same_viscosity(const TransportTerms &t, const RowPart &part, const Phase &phase,
+                                            const Field &B, Field &out) {
+  return advance_tensor<3>(t, kernels::SameViscosity{}, part, phase, B, out);
+}
+
+EULASTIC_CLONES Evolved with_own_viscosity(const TransportTerms &t, const RowPart &part, const Phase &phase,
+                                           const Field &B, Field &out) {
+  return advance_tensor<3>(t, kernels::OwnViscosity{phase.tensor.rule.viscosity_excess}, part, phase, B, out);
 }
 
 }  // namespace
 
 Evolved advance_tensor_3d(const TransportTerms &t, const RowPart &part, const Phase &phase, const Field &B,
                           Field &out) {
-  return tensor_3d(t, part, phase, B, out);
+  return phase.tensor.rule.viscosity_excess != 0 ? with_own_viscosity(t, part, phase, B, out)
+                                                 : with_same_viscosity(t, part, phase, B, out);
 }
 
 }  // namespace eulastic::transport
