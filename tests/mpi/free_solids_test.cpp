@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 
 using namespace eulastic;
 using namespace eulastic::test;
@@ -111,7 +112,7 @@ protected:
 
 TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
   const int ranks = scene->domain.ranks();
-  for (int owner = 0; owner < ranks; ++owner) {
+  for (const int owner : std::set<int>{0, ranks - 1}) {
     SetUp();
     const Domain &domain = scene->domain;
     const Solver &solver = scene->solver;
@@ -135,6 +136,7 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
       const State &state = scene->solver.state();
       ASSERT_EQ(solids.advance({state.time, 0.5 * (state.dt + dt), state.step}, state.velocity), 0);
       ASSERT_EQ(scene->solver.step(dt), 0);
+      if (step % 5 != 4) continue;
       Field fraction, tensor, rate(domain, domain.dimension()), expected(domain, domain.dimension());
       const FreeSolids::Body *body = solids.bodies().empty() ? nullptr : &solids.bodies()[0];
       EXPECT_EQ(body != nullptr, domain.rank() == owner);
@@ -143,7 +145,7 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
         EXPECT_EQ(differences(body->box, body->phase.fraction, fraction, nullptr), 0) << "step " << step;
         EXPECT_EQ(differences(body->box, body->phase.tensor.field, tensor, &body->phase.tensor.components()), 0)
             << "step " << step;
-        if (step == 0) first_box = body->box.layout().begin;
+        if (step == 4) first_box = body->box.layout().begin;
         moved += body->box.layout().begin != first_box;
       }
       ASSERT_EQ(solids.add_forces(rate, {}), 0);
@@ -157,7 +159,7 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
             forced += expected[a](i, row.j, row.k) != 0;
           }
       EXPECT_EQ(wrong, 0) << "force, step " << step;
-      if (domain.ranks() == 1 && step > 2) {
+      if (domain.ranks() == 1) {
         EXPECT_GT(forced, 100);
       }
     }
