@@ -53,7 +53,8 @@ public:
   std::size_t bytes() const noexcept;
 
 private:
-  /// Cells between the body and the ends of its box that a step needs, and those for what moves until the next fit.
+  /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and the faces
+  /// of another one feel its stress. And those for what moves until the next fit.
   static constexpr int needed = 2, travel = 2;
   bool is_near_an_end(const Body &body) const;
   PetscErrorCode fit(Body *body, int layers) const;
