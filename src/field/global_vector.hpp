@@ -1,4 +1,4 @@
-// A field at centres as a global Vec of the DMDA of the cells, for PETSc's solvers and viewers.
+// A field as a global Vec of a DMDA, for PETSc's solvers and viewers.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,9 +6,10 @@
 
 namespace eulastic {
 
-/// Copies the owned cells of a field, row by row. `vector` must come from DMCreateGlobalVector of a DMDA that
-/// Domain::create_cell_dm made, which has no point N.
+/// Copies the owned values of a field, row by row, to a global Vec: of Domain::dm(), which has the points of faces on
+/// high sides, or of a DMDA that Domain::create_cell_dm has made, which has the cells alone.
 PetscErrorCode to_global(const Domain &domain, ConstView field, Vec vector);
+/// The same back; ghosts are not touched.
 PetscErrorCode from_global(const Domain &domain, Vec vector, View field);
 
 }  // namespace eulastic

@@ -112,44 +112,52 @@ TEST(Decomposition, CoversEveryCellOnceAndAgreesWithTheDmda) {
   EXPECT_GE(split_x, ranks > 1 ? 10 : 0);
 }
 
-// The DMDA serves narrow ranks as well, and a field comes back from a Vec that PETSc has put in its natural order.
+// The DMDA serves narrow ranks as well, and a field comes back from a Vec that PETSc has put in its natural order: with
+// the faces on high sides, and the cells alone.
 TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
   int tried = 0;
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{17, 12, 1}, Int3{3, 12, 3}})
-    for (const Boundary x : {Boundary::periodic, Boundary::wall}) {
-      GridSpec spec;
-      spec.cells = cells;
-      spec.boundary = {x, Boundary::wall, Boundary::periodic};
-      if (!Domain::why_not(spec, world_size()).empty()) continue;
-      Domain domain;
-      ASSERT_EQ(domain.create(run_communicator(), spec), 0);
-      Field before(domain, 1), after(domain, 1);
-      const Int3 &begin = domain.layout().begin;
-      const auto truth = [&](int i, int j, int k) {
-        return begin[0] + i + double(cells[0]) * (begin[1] + j + double(cells[1]) * (begin[2] + k));
-      };
-      for (const Segment &s : domain.rows())
-        for (int i = 0; i < s.size(); ++i) before[0](i, s.j, s.k) = truth(i, s.j, s.k);
-      DmHandle cell_dm;
-      ASSERT_EQ(domain.create_cell_dm(DMDA_STENCIL_BOX, 1, cell_dm.put()), 0);
-      VecHandle global, natural;
-      ASSERT_EQ(DMCreateGlobalVector(cell_dm.get(), global.put()), 0);
-      ASSERT_EQ(DMDACreateNaturalVector(cell_dm.get(), natural.put()), 0);
-      ASSERT_EQ(to_global(domain, before[0], global.get()), 0);
-      ASSERT_EQ(DMDAGlobalToNaturalBegin(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
-      ASSERT_EQ(DMDAGlobalToNaturalEnd(cell_dm.get(), global.get(), INSERT_VALUES, natural.get()), 0);
-      PetscInt first, end;
-      const double *values;
-      ASSERT_EQ(VecGetOwnershipRange(natural.get(), &first, &end), 0);
-      ASSERT_EQ(VecGetArrayRead(natural.get(), &values), 0);
-      for (PetscInt n = first; n < end; ++n) EXPECT_EQ(values[n - first], n);
-      ASSERT_EQ(VecRestoreArrayRead(natural.get(), &values), 0);
-      ASSERT_EQ(from_global(domain, global.get(), after[0]), 0);
-      for (const Segment &s : domain.rows())
-        for (int i = 0; i < s.size(); ++i) EXPECT_EQ(after[0](i, s.j, s.k), truth(i, s.j, s.k));
-      ++tried;
-    }
-  EXPECT_GE(tried, 4);
+    for (const Boundary x : {Boundary::periodic, Boundary::wall})
+      for (const bool faces : {false, true}) {
+        GridSpec spec;
+        spec.cells = cells;
+        spec.boundary = {x, Boundary::wall, Boundary::periodic};
+        if (!Domain::why_not(spec, world_size()).empty()) continue;
+        Domain domain;
+        ASSERT_EQ(domain.create(run_communicator(), spec), 0);
+        Field before(domain, 1), after(domain, 1);
+        const Int3 &begin = domain.layout().begin;
+        Int3 points;
+        for (int d = 0; d < 3; ++d) points[d] = cells[d] + (faces && domain.is_wall(d));
+        const auto truth = [&](int i, int j, int k) {
+          return begin[0] + i + double(points[0]) * (begin[1] + j + double(points[1]) * (begin[2] + k));
+        };
+        const auto for_all = [&](const auto &visit) {
+          for (int k = 0; k < domain.points_end(2, faces); ++k)
+            for (int j = 0; j < domain.points_end(1, faces); ++j)
+              for (int i = 0; i < domain.points_end(0, faces); ++i) visit(i, j, k);
+        };
+        for_all([&](int i, int j, int k) { before[0](i, j, k) = truth(i, j, k); });
+        DmHandle cell_dm;
+        ASSERT_EQ(domain.create_cell_dm(DMDA_STENCIL_BOX, 1, cell_dm.put()), 0);
+        const DM dm = faces ? domain.dm() : cell_dm.get();
+        VecHandle global, natural;
+        ASSERT_EQ(DMCreateGlobalVector(dm, global.put()), 0);
+        ASSERT_EQ(DMDACreateNaturalVector(dm, natural.put()), 0);
+        ASSERT_EQ(to_global(domain, before[0], global.get()), 0);
+        ASSERT_EQ(DMDAGlobalToNaturalBegin(dm, global.get(), INSERT_VALUES, natural.get()), 0);
+        ASSERT_EQ(DMDAGlobalToNaturalEnd(dm, global.get(), INSERT_VALUES, natural.get()), 0);
+        PetscInt first, end;
+        const double *values;
+        ASSERT_EQ(VecGetOwnershipRange(natural.get(), &first, &end), 0);
+        ASSERT_EQ(VecGetArrayRead(natural.get(), &values), 0);
+        for (PetscInt n = first; n < end; ++n) EXPECT_EQ(values[n - first], n);
+        ASSERT_EQ(VecRestoreArrayRead(natural.get(), &values), 0);
+        ASSERT_EQ(from_global(domain, global.get(), after[0]), 0);
+        for_all([&](int i, int j, int k) { EXPECT_EQ(after[0](i, j, k), truth(i, j, k)); });
+        ++tried;
+      }
+  EXPECT_GE(tried, 8);
 }
 
 }  // namespace
