@@ -43,8 +43,8 @@ void check(const GridSpec &spec) {
     EXPECT_EQ(type[d], domain.is_wall(d) ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_PERIODIC);
   }
 
-  const auto layout_of = [&spec](const Domain &domain, int rank) {
-    return domain.split().box_of(rank, spec, domain.spec().ghosts).layout();
+  const auto layout_of = [&spec](const Domain &of, int rank) {
+    return of.split().box_of(rank, spec, of.spec().ghosts).layout();
   };
   const Layout mine = layout_of(domain, domain.rank());
   EXPECT_EQ(mine.begin, own.begin);

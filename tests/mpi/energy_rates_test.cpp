@@ -224,7 +224,9 @@ TEST(EnergyBudget, MakesNothingAtOnceAndNothingThatWasLent) {
       EnergyState s;
       s.kinetic = held[n];
       budget.advance(n, s);
-      if (n < 3) EXPECT_EQ(budget.made_share_max(), 0);
+      if (n < 3) {
+        EXPECT_EQ(budget.made_share_max(), 0);
+      }
     }
     EXPECT_EQ(budget.made_share_max(), lent ? 0 : 2);
   }

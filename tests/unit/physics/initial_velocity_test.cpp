@@ -43,7 +43,13 @@ struct Flow {
   }
 };
 
-GridSpec box(Int3 cells, Real3 length, std::array<Boundary, 3> boundary = {}) { return {cells, length, boundary, {}}; }
+GridSpec box(Int3 cells, Real3 length, std::array<Boundary, 3> boundary = {}) {
+  GridSpec spec;
+  spec.cells = cells;
+  spec.length = length;
+  spec.boundary = boundary;
+  return spec;
+}
 
 }  // namespace
 
