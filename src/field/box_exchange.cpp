@@ -32,7 +32,6 @@ PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes) {
   for (const NumberedBox &numbered : boxes) {
     Place &place = places_.emplace_back();
     place.number = numbered.number;
-    place.layout = numbered.box->layout();
     PetscCall(list_runs(*numbered.box, &place, &roots));
   }
   const Split &split = domain_->split();

@@ -29,7 +29,7 @@ public:
   BoxExchange(const Domain &domain, int components) : domain_(&domain), components_(components) {}
 
   /// Sets the boxes of this rank. A box may cross periodic sides, but is no longer than the domain; it ends at sides of
-  /// any other kind. The boxes are copied. Collective.
+  /// any other kind. Collective.
   PetscErrorCode connect(const std::vector<NumberedBox> &boxes);
 
   /// Fetches what the boxes of this rank need of the values that other ranks own. Collective.
@@ -49,7 +49,6 @@ private:
   };
   struct Place {
     int number;
-    Layout layout;
     std::vector<Run> own, remote;  ///< of this rank's grid, of the others'
   };
   /// Values from boxes of other ranks with one number: where they are in `received_`, and offsets in the grid's field.

@@ -3,7 +3,7 @@
 //
 // Which cells a rank has, which points its ghosts copy and what a global Vec looks like is the DMDA's (grid/domain.hpp,
 // field/ghost_exchange.hpp, field/global_vector.hpp). Only memory is laid out differently from a local Vec: rows are
-// padded to whole cache lines, as vector loads that cross lines cost 7 to 9 % of a step.
+// padded to whole cache lines, as vector loads that cross lines would cost several per cent of a step.
 #pragma once
 
 #include "grid/box.hpp"

@@ -14,32 +14,25 @@ namespace {
 // Cells around what is not zero of phi that hold anything: layers, edges, what moves in a step.
 constexpr int reach = ExteriorLayers::layers + 2;
 
-// Calls row(segment) for all rows in memory that two boxes share, indices of the first one, of which `layers` of ghosts
-// count.
-template <class Row>
-void for_shared_rows(const Layout &a, const Layout &b, int layers, const Row &row) {
-  Int3 begin, end;
-  for (int d = 0; d < 3; ++d) {
-    const int shift = b.begin[d] - a.begin[d];
-    const int ghosts = std::min(layers, a.ghosts[d]);
-    begin[d] = std::max(-ghosts, shift - b.ghosts[d]);
-    end[d] = std::min(a.cells[d] + ghosts, shift + b.cells[d] + b.ghosts[d]);
-  }
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j) row(Segment{begin[0], std::max(begin[0], end[0]), j, k});
-}
-
+// Copies what two boxes share in memory, `layers` of the first one's ghosts included.
 void copy_shared(const Field &from, int layers, Field *to) {
   const Layout &a = from.layout(), &b = to->layout();
+  Int3 begin, end, shift;
+  for (int d = 0; d < 3; ++d) {
+    const int ghosts = std::min(layers, a.ghosts[d]);
+    shift[d] = a.begin[d] - b.begin[d];
+    begin[d] = std::max(-ghosts, -shift[d] - b.ghosts[d]);
+    end[d] = std::max(begin[d], std::min(a.cells[d] + ghosts, b.cells[d] + b.ghosts[d] - shift[d]));
+  }
   for (int f = 0; f < from.count(); ++f)
-    for_shared_rows(a, b, layers, [&](const Segment &s) {
-      std::copy_n(from[f].row(s.j, s.k) + s.i_begin, s.size(),
-                  (*to)[f].row(s.j + a.begin[1] - b.begin[1], s.k + a.begin[2] - b.begin[2]) + s.i_begin +
-                      (a.begin[0] - b.begin[0]));
-    });
+    for (int k = begin[2]; k < end[2]; ++k)
+      for (int j = begin[1]; j < end[1]; ++j)
+        std::copy_n(from[f].row(j, k) + begin[0], end[0] - begin[0],
+                    (*to)[f].row(j + shift[1], k + shift[2]) + begin[0] + shift[0]);
 }
 
-Phase with_rules_of(const Phase &phase, const Box &box) {
+// No body yet, with the material and the rule of a phase.
+Phase empty_like(const Phase &phase, const Box &box) {
   Phase fresh;
   fresh.species = phase.species;
   fresh.material = phase.material;
@@ -126,7 +119,7 @@ PetscErrorCode FreeSolids::fit(Body *body, int layers) const {
     cells[d] = high - low;
   }
   Body fitted{body->number, Box(domain_->domain_shape(), begin, cells, domain_->spec().ghosts), {}, {}, {}};
-  fitted.phase = with_rules_of(body->phase, fitted.box);
+  fitted.phase = empty_like(body->phase, fitted.box);
   copy_shared(body->phase.fraction, layers, &fitted.phase.fraction);
   copy_shared(body->phase.tensor.field, layers, &fitted.phase.tensor.field);
   for (const auto &[from, to] : {std::pair(&body->force, &fitted.force), {&body->change, &fitted.change}}) {
@@ -208,13 +201,6 @@ PetscErrorCode FreeSolids::add_forces(Field &rate, const Slope &slope) {
   }
   PetscCall(exchange_.add(changes, *slope.field));
   PetscFunctionReturn(0);
-}
-
-std::size_t FreeSolids::bytes() const noexcept {
-  std::size_t sum = scratch_.size() * sizeof(double);
-  for (const Body &body : bodies_)
-    sum += body.phase.fraction.bytes() + body.phase.tensor.field.bytes() + body.force.bytes() + body.change.bytes();
-  return sum;
 }
 
 }  // namespace eulastic

@@ -49,8 +49,6 @@ public:
   PetscErrorCode add_forces(Field &rate, const Slope &slope);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
-  /// Of the fields that belong to bodies of this rank.
-  std::size_t bytes() const noexcept;
 
 private:
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and the faces
