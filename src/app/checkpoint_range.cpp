@@ -2,6 +2,7 @@
 
 #include "app/option_values.hpp"
 #include "field/surface_marker.hpp"
+#include "physics/free_solids.hpp"
 
 #include <cmath>
 #include <set>
@@ -63,6 +64,30 @@ std::string find_absurd_feeder(const std::vector<long> &inside, int feeders) {
   for (const long which : inside)
     if (!is_within(double(which), 0, feeders))
       return absurd("bodies_in_feeders", double(which), "0 ... " + to_text(feeders));
+  return {};
+}
+
+std::string find_absurd_box(const std::vector<double> &heads, const Box &domain, const BodyTracker &bodies,
+                            const std::vector<Phase> &phases) {
+  const std::string name = "bodies_in_boxes";
+  for (std::size_t n = 0; n < heads.size(); n += FreeSolids::head) {
+    const double *head = &heads[n], number = head[0], species = head[1];
+    for (int part = 0; part < FreeSolids::head; ++part)
+      if (!is_within(head[part], -1e9, 1e9) || head[part] != std::floor(head[part]))
+        return absurd(name, head[part], "whole numbers");
+    if (!is_within(number, 1, bodies.bodies())) return absurd(name, number, "the label of a body");
+    if (species != bodies.species(static_cast<int>(number)) || !phases[static_cast<int>(species)].boxed)
+      return absurd(name, species, "the number of the species of body " + to_text(number));
+    double cells = 1;
+    for (int d = 0; d < 3; ++d) {
+      const double begin = head[2 + d], length = head[5 + d], N = domain.domain_cells()[d];
+      const bool bounded = domain.is_wall(d) || d >= domain.dimension();
+      if (!(length >= 1) || (bounded && !(begin >= 0 && begin + length <= N)))
+        return absurd(name, length, "a block of the domain's cells");
+      cells *= length;
+    }
+    if (cells > 1e9) return absurd(name, cells, "at most 1e9 cells in a box");
+  }
   return {};
 }
 

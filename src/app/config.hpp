@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/placement.hpp"
+#include "field/open_sides.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "grid/box.hpp"
@@ -147,6 +148,14 @@ struct Config {
   bool separates(const SpeciesSpec &spec) const {
     return spec.law != Law::rigid && spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
            method.interface == InterfaceScheme::plic;
+  }
+  /// Whether several free bodies of a species lie in boxes of their own (physics/free_solids.hpp), rather than in
+  /// phases of the grid.
+  bool boxes(const SpeciesSpec &spec) const {
+    const Material material = spec.material();
+    return separates(spec) && method.boxes_bodies() && material.elastic() && !spec.is_membrane() &&
+           !material.attached && material.surface_tension == 0 && material.viscosity == 0 &&
+           !material.body_force.acts() && spec.shape != Shape::cylinder && !volume_crosses(sides);
   }
 };
 

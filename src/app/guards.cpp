@@ -126,7 +126,8 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   if (!solver.crowded().empty()) *stop = crowded(solver);
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
-  PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes));
+  PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes,
+                             solver.boxed_bodies()));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 #include "app/memory.hpp"
 
+#include "bodies/shapes.hpp"
 #include "field/open_sides.hpp"
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
@@ -26,6 +27,28 @@ int tensor_fields(const Config &config) { return static_cast<int>(tensor_compone
 /// the output.
 double phase_fields(const Config &config, bool carries_tensor = true) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
+}
+
+bool lies_in_boxes(const Config &config, std::size_t species) {
+  return config.boxes(config.species[species]) && config.places[species].count > 1;
+}
+
+/// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity.
+double boxed_values(const Config &config) {
+  const int dimension = dimension_of(config), tensor = tensor_fields(config);
+  double sum = 0;
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    if (!lies_in_boxes(config, s)) continue;
+    const double reach = Surface(config.species[s], dimension).bounding_radius();
+    double cells = 1, around = 1;
+    for (int d = 0; d < dimension; ++d) {
+      const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] + 2 * FreeSolids::margin;
+      cells *= own;
+      around *= own + 2 * config.grid.ghosts;
+    }
+    sum += config.places[s].count * (around * (2 * (1 + tensor) + dimension) + cells * dimension);
+  }
+  return sum;
 }
 
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
@@ -60,7 +83,8 @@ double fields(const Config &config) {
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const bool carries = config.species[s].material().carries_tensor();
     if (carries) tensor = tensor_fields(config);
-    sum += config.colours[s] * phase_fields(config, carries);
+    // Of bodies in boxes what is shown on the grid at the output: fraction, label and B.
+    sum += lies_in_boxes(config, s) ? 2 + tensor_fields(config) : config.colours[s] * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
@@ -104,8 +128,11 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 int expected_phases(const Config &config) { return std::accumulate(config.colours.begin(), config.colours.end(), 0); }
 
 double bytes_per_rank(const Config &config, const Int3 &parts) {
-  return sizeof(double) * fields(config) * ghosted_cells(config, parts);
+  const double ranks = double(parts[0]) * parts[1] * parts[2];
+  return sizeof(double) * (fields(config) * ghosted_cells(config, parts) + boxed_values(config) / ranks);
 }
+
+double bytes_in_boxes(const Config &config) { return sizeof(double) * boxed_values(config); }
 
 double bytes_per_phase(const Config &config, const Int3 &parts) {
   return sizeof(double) * phase_fields(config) * ghosted_cells(config, parts);

@@ -12,6 +12,8 @@ int expected_phases(const Config &config);
 double bytes_per_rank(const Config &config, const Int3 &parts);
 /// Of one more phase.
 double bytes_per_phase(const Config &config, const Int3 &parts);
+/// Of all bodies that lie in boxes of their own, of all ranks; bytes_per_rank() counts a share of them.
+double bytes_in_boxes(const Config &config);
 
 /// Bytes this machine lets the program use: its memory, or less where a control group says so. `root` is put before
 /// the names of the files that tell; physical memory counts wherever that is.

@@ -122,11 +122,10 @@ PetscErrorCode Outputs::write_due(bool last) {
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
-  const std::vector<Phase> *phases = nullptr;
-  if (samples) {
-    PetscCall(solver_->phases_now(&phases));
-    PetscCall(samples_.write(state.time, probes, last, {state.velocity, state.pressure, *phases}));
-  }
+  if (samples)
+    PetscCall(solver_->with_bodies_on_grid([&](const std::vector<Phase> &phases) {
+      return samples_.write(state.time, probes, last, {state.velocity, state.pressure, phases});
+    }));
   if (series && (last || !solver_->is_behind())) {
     PetscCall(write_row_now());
   } else if (series) {
@@ -203,6 +202,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   double counted[3] = {0, 0, 0};  // bytes of fields, points where B is evolved, markers of membranes
   counted[0] = double(solver_->bytes());
   for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
+  for (const BodyInBox &body : solver_->boxed_bodies()) counted[1] += body.phase->tensor.evolving.points();
   counted[2] = double(state.markers.size());
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   summary.bytes_per_cell = counted[0] / domain_->domain_cell_count();

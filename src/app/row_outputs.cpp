@@ -17,7 +17,9 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const State &state = solver_->state();
   Measured &m = *measured;
   const std::vector<Phase> *phases = nullptr;
+  std::vector<BodyInBox> boxed;
   PetscCall(solver_->phases_now(&phases));
+  PetscCall(solver_->bodies_now(&boxed));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
   const Field *viscosity = nullptr;
@@ -29,9 +31,9 @@ PetscErrorCode Outputs::look(Measured *measured) {
         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
     PetscCall(solver_->add_rigid_dissipation(&m.flow.viscous_dissipation));
   }
-  PetscCall(measure_phases(*domain_, *phases, &m.flow));
+  PetscCall(measure_phases(*domain_, *phases, &m.flow, boxed));
   if (solver_->bodies().bodies() > 0)
-    PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies));
+    PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies, boxed));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
   if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
@@ -50,7 +52,9 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   const Fluid &fluid = config_.fluid;
   EnergyState &energy = row->energy = {};
   const std::vector<Phase> *phases = nullptr;
+  std::vector<BodyInBox> boxed;
   PetscCall(solver_->phases_now(&phases));
+  PetscCall(solver_->bodies_now(&boxed));
   energy.kinetic = measured.flow.kinetic_energy;
   energy.elastic = measured.flow.elastic_energy;
   energy.surface = measured.surface.energy;
@@ -60,7 +64,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
                               &config_.sides, state.time,      viscosity};
-  PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates));
+  PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates, boxed));
   double power = 0;
   PetscCall(species_force_power(*domain_, *phases, state.time, fluid.density, state.velocity, &power));
   energy.rates.force_power += power;

@@ -7,6 +7,8 @@
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
+#include <numeric>
+
 namespace eulastic {
 namespace {
 
@@ -24,6 +26,7 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   for (int d = 0; d < state.advection.count(); ++d)
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   for (Phase &phase : state.phases) {
+    if (phase.boxed) continue;
     // No species has a dot in its name.
     const std::string species = "_" + phase.species + (phase.colour > 0 ? "." + std::to_string(phase.colour) : "");
     fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
@@ -47,6 +50,19 @@ CheckpointRecords markers_of(const State &state) {
     records.values.insert(records.values.end(), values.begin(), values.end());
   }
   return records;
+}
+
+// Bodies in boxes of their own: their heads (FreeSolids::packed), and what follows them, one body after the other.
+constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
+
+std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
+  CheckpointRecords heads{heads_name, FreeSolids::head, {}}, values{values_name, 1, {}};
+  for (std::size_t b = 0; b < solver.boxed_bodies().size(); ++b) {
+    const std::vector<double> packed = solver.boxed().packed(b);
+    heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeSolids::head);
+    values.values.insert(values.values.end(), packed.begin() + FreeSolids::head, packed.end());
+  }
+  return {heads, values};
 }
 
 // Everything else of the solver that its future depends on, but for what belongs to bodies.
@@ -209,6 +225,33 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   PetscFunctionReturn(0);
 }
 
+// Some bodies in boxes for each rank, the same values whoever gets them.
+PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
+  const Domain &domain = solver->domain();
+  CheckpointRecords heads{heads_name, FreeSolids::head, {}}, values{values_name, 1, {}};
+  PetscFunctionBeginUser;
+  if (!solver->has_boxed()) PetscFunctionReturn(0);
+  PetscCall(file->read_records(&heads));
+  const std::vector<Phase> &phases = solver->state().phases;
+  PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
+  std::vector<std::size_t> sizes;
+  for (std::size_t n = 0; n < heads.values.size(); n += FreeSolids::head)
+    sizes.push_back(FreeSolids::packed_values(domain.domain_shape(), &heads.values[n]));
+  values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+  PetscCall(file->read_own_records(&values));
+  solver->clear_boxed_bodies();
+  const double *next = values.values.data();
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    const double *head = &heads.values[b * FreeSolids::head];
+    std::vector<double> packed(head, head + FreeSolids::head);
+    packed.insert(packed.end(), next, next + sizes[b]);
+    PetscCall(solver->add_packed_body(packed));
+    next += sizes[b];
+  }
+  PetscCall(solver->send_bodies_home());
+  PetscFunctionReturn(0);
+}
+
 }  // namespace
 
 PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
@@ -224,6 +267,7 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
     const auto values = marker.packed();
     sum += hash_values(values.data(), values.size());
   }
+  for (const BodyInBox &body : solver->boxed_bodies()) sum += hash_body(body);
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
@@ -233,8 +277,9 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
   PetscFunctionBeginUser;
   CheckpointNumbers numbers = numbers_of(*solver, position);
   PetscCall(gather_numbers(*solver, &numbers));
-  PetscCall(
-      write_checkpoint(solver->domain(), path, options, numbers, fields_of(*solver), {markers_of(solver->state())}));
+  std::vector<CheckpointRecords> records = boxes_of(*solver);
+  records.push_back(markers_of(solver->state()));
+  PetscCall(write_checkpoint(solver->domain(), path, options, numbers, fields_of(*solver), records));
   PetscFunctionReturn(0);
 }
 
@@ -266,6 +311,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(load_bodies(file, path, domain, &solver->bodies(), solver->feeders()));
   solver->clear_pressure_memory();  // the file may know of fewer increments
   for (Phase &phase : solver->state().phases) phase.empty(domain, bool(phase.label));  // of the scene's start
+  PetscCall(load_boxes(file, path, solver));
   PetscCall(file->read_fields(domain, fields_of(*solver)));
   take_numbers(numbers, solver, position);
   CheckpointRecords records = markers_of({});

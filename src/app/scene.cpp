@@ -12,6 +12,9 @@
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace eulastic {
 namespace {
 
@@ -46,6 +49,33 @@ PetscErrorCode separate_places(const Domain &domain, GhostExchange &exchange, co
   PetscFunctionReturn(0);
 }
 
+struct Numbering {
+  int species, first_label;
+};
+
+// Each body in a box of its own, on the rank that has its centre; the phase of the species stays empty.
+PetscErrorCode box_places(const Domain &domain, const SpeciesSpec &species, const Places &near,
+                          const Numbering &numbering, Solver *solver, Phase *phase) {
+  PetscFunctionBeginUser;
+  phase->species = species.name;
+  phase->material = species.material();
+  phase->boxed = true;
+  phase->empty(domain, false);
+  const Surface surface(species, domain.dimension());
+  for (const NumberedPlace &place : near.known) {
+    Int3 cell{};
+    for (int d = 0; d < domain.dimension(); ++d) {
+      const int at = static_cast<int>(std::floor(place.centre[d] / domain.spacing()[d]));
+      cell[d] = std::clamp(at, 0, domain.domain_cells()[d] - 1);
+    }
+    if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
+    const Box box = box_of_body(domain.domain_shape(), surface, place, domain.spec().ghosts);
+    PetscCall(solver->add_body(numbering.first_label + place.index, numbering.species, box,
+                               fill_body(box, species, surface, place)));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *solver) {
   PetscFunctionBeginUser;
   State &state = solver->state();
@@ -62,11 +92,16 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
     PetscCall(bring_near(domain.comm(), domain, species, placed, &near));
     std::vector<Phase> colours(1);
     Phase &phase = colours[0];
-    PetscCall(fill_phase(domain, species, near, next_label, &phase));
-    if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
-    PetscCall(file.read_phase(species, next_label, &phase, &placed));
-    phase.separate = config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
-    PetscCall(separate_places(domain, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
+    if (config.boxes(species) && placed.count > 1 && !file.holds(species)) {
+      PetscCall(box_places(domain, species, near, {static_cast<int>(s), next_label}, solver, &phase));
+    } else {
+      PetscCall(fill_phase(domain, species, near, next_label, &phase));
+      if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
+      PetscCall(file.read_phase(species, next_label, &phase, &placed));
+      phase.boxed = config.boxes(species) && placed.count > 1;
+      phase.separate = !phase.boxed && config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
+      PetscCall(separate_places(domain, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
+    }
     if (species.law == Law::rigid) {
       std::string wrong;
       PetscCall(rigid->add(species, config.places[s], next_label, &phase, &wrong));
@@ -83,6 +118,8 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
   PetscCall(solver->set_rigid(std::move(rigid)));
   for (Phase &phase : more) state.phases.push_back(std::move(phase));
   if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(domain, state, &solver->bodies()));
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    if (state.phases[s].boxed && file.holds(config.species[s])) PetscCall(solver->box_bodies(static_cast<int>(s)));
   PetscFunctionReturn(0);
 }
 

@@ -61,21 +61,26 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
 
 PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   PetscFunctionBeginUser;
+  PetscCall(solver->with_bodies_on_grid(
+      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver, const std::vector<Phase> &phases) {
+  PetscFunctionBeginUser;
   const State &state = solver->state();
   const Domain &domain = solver->domain();
-  const std::vector<Phase> *phases = nullptr;
-  PetscCall(solver->phases_now(&phases));
   const Field *viscosity = nullptr;
   PetscCall(solver->viscosity_now(&viscosity));
   const SnapshotSelection wanted = selection(config);
-  std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, *phases);
+  std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, phases);
   std::vector<WallStress> walls;
   Field rigid, elastic, stress, widened;
   if (wants(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
     EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
-    walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, *phases);
-    PetscCall(solid_of_vessels(config, true, *phases, solver, &rigid));
-    PetscCall(solid_of_vessels(config, false, *phases, solver, &elastic));
+    walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, phases);
+    PetscCall(solid_of_vessels(config, true, phases, solver, &rigid));
+    PetscCall(solid_of_vessels(config, false, phases, solver, &elastic));
     if (rigid || elastic) stress = Field(domain, 3);
     if (rigid) add_rigid_surface_stress(domain, config.fluid.viscosity, rigid[0], state.velocity, stress);
     if (elastic && viscosity) {
@@ -83,7 +88,7 @@ PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
       PetscCall(solver->exchange().update_ghosts(widened, 2));
       of_place.local = &widened;
     }
-    if (elastic) add_elastic_surface_stress({of_place, state.velocity, *phases}, elastic[0], stress);
+    if (elastic) add_elastic_surface_stress({of_place, state.velocity, phases}, elastic[0], stress);
   }
   for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
   if (stress) {

@@ -23,6 +23,7 @@ public:
   PetscErrorCode write(const Config &config, Solver *solver);
 
 private:
+  PetscErrorCode write_fields(const Config &config, Solver *solver, const std::vector<Phase> &phases);
   SnapshotWriter writer_;
   SnapshotFields fields_;
 };

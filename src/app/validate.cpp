@@ -242,7 +242,8 @@ std::string place_species(std::size_t which, const SolidBodies &solids, const Ke
     return (spec.placement == Placement::list ? "-" + spec.name + "_positions: " : "-species " + spec.name + ": ") +
            wrong;
   }
-  config->colours.push_back(config->separates(spec) ? expected_colours(spec, config->grid, places) : 1);
+  config->colours.push_back(
+      config->separates(spec) && !config->boxes(spec) ? expected_colours(spec, config->grid, places) : 1);
   config->places.push_back(std::move(places));
   return {};
 }

@@ -28,6 +28,37 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
   return flows;
 }
 
+namespace {
+
+// Of the bodies in `loads`.
+PetscErrorCode measure_loads(const Config &config, const std::vector<Phase> &phases, Solver *solver,
+                             std::vector<SurfaceLoad> *loads) {
+  PetscFunctionBeginUser;
+  const Domain &domain = solver->domain();
+  const Field *viscosity = nullptr;
+  PetscCall(solver->viscosity_now(&viscosity));
+  std::vector<Field> labels(phases.size());
+  std::vector<const Field *> wanted(phases.size(), nullptr);
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    const Phase &phase = phases[p];
+    const SpeciesSpec *spec = config.species_of(phase);
+    if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
+    labels[p] = Field(domain, 1);  // not one at rest: all of it is written
+    const Int3 &n = domain.cells();
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));
+    PetscCall(solver->exchange().update_ghosts(labels[p], 1));
+    fill_wall_ghosts_even(domain, at_centre, labels[p][0], 1);
+    wanted[p] = &labels[p];
+  }
+  const State &state = solver->state();
+  PetscCall(measure_surface_loads(domain.comm(), {domain, config.fluid.viscosity, config.fluid.density, viscosity},
+                                  state.velocity, state.pressure, phases, wanted, loads));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
 PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   const Domain &domain = solver->domain();
@@ -48,27 +79,8 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
   }
   std::sort(loads->begin(), loads->end(), [](const auto &one, const auto &two) { return one.label < two.label; });
   if (loads->empty()) PetscFunctionReturn(0);
-  const std::vector<Phase> *phases = nullptr;
-  PetscCall(solver->phases_now(&phases));
-  const Field *viscosity = nullptr;
-  PetscCall(solver->viscosity_now(&viscosity));
-  std::vector<Field> labels(phases->size());
-  std::vector<const Field *> wanted(phases->size(), nullptr);
-  for (std::size_t p = 0; p < phases->size(); ++p) {
-    const Phase &phase = (*phases)[p];
-    const SpeciesSpec *spec = config.species_of(phase);
-    if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
-    labels[p] = Field(domain, 1);  // not one at rest: all of it is written
-    const Int3 &n = domain.cells();
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));
-    PetscCall(solver->exchange().update_ghosts(labels[p], 1));
-    fill_wall_ghosts_even(domain, at_centre, labels[p][0], 1);
-    wanted[p] = &labels[p];
-  }
-  const State &state = solver->state();
-  PetscCall(measure_surface_loads(domain.comm(), {domain, config.fluid.viscosity, config.fluid.density, viscosity},
-                                  state.velocity, state.pressure, *phases, wanted, loads));
+  PetscCall(solver->with_bodies_on_grid(
+      [&](const std::vector<Phase> &phases) { return measure_loads(config, phases, solver, loads); }));
   PetscFunctionReturn(0);
 }
 

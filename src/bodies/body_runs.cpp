@@ -32,16 +32,15 @@ private:
   alignas(64) double term_[ExactSums::block + lanes];
 };
 
-EULASTIC_CLONES void add_up(const Box &box, const Run &run, const Int3 &reference, const Field *velocity,
+EULASTIC_CLONES void add_up(const Box &box, const Run &run, const RunPlaces &places, const Field *velocity,
                             RunSums *sums) {
   const int n = run.size();
   const double *phi = run.of(run.phase.fraction, 0);
-  alignas(64) double x[ExactSums::block];
-  for (int i = 0; i < n; ++i) x[i] = offset(box, 0, reference[0], run.begin + i);
-  Lanes lane((box.layout().begin[0] + run.begin) % lanes, n);
+  const double *x = places.x;
+  Lanes lane(run.first % lanes, n);
   sums->fraction = lane.sum([=](int i) EULASTIC_BODY { return phi[i]; });
-  sums->first_moment = lane.sum([=, &x](int i) EULASTIC_BODY { return phi[i] * x[i]; });
-  sums->second_moment = lane.sum([=, &x](int i) EULASTIC_BODY { return phi[i] * (x[i] * x[i]); });
+  sums->first_moment = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * x[i]; });
+  sums->second_moment = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * (x[i] * x[i]); });
   if (!velocity) return;
   for (int d = 0; d < box.dimension(); ++d) {
     const double *face = run.of(*velocity, d), *next = face + (*velocity)[d].stride(d);
@@ -64,15 +63,24 @@ EULASTIC_CLONES void add_up(const Box &box, const Run &run, const Int3 &referenc
 
 }  // namespace
 
-RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference) {
+RunPlaces places_of(const Box &box, const Run &run, const Int3 &reference) {
+  RunPlaces places;
+  const Real3 begin = offset(box, reference, {run.begin, run.j, run.k});
+  for (int i = 0; i < run.size(); ++i) places.x[i] = offset(box, 0, reference[0], run.begin + i);
+  places.y = begin[1];
+  places.z = begin[2];
+  return places;
+}
+
+RunSums sum_positions(const Box &box, const Run &run, const RunPlaces &places) {
   RunSums sums;
-  add_up(box, run, reference, nullptr, &sums);
+  add_up(box, run, places, nullptr, &sums);
   return sums;
 }
 
-RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const Field &velocity) {
+RunSums sum_all(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity) {
   RunSums sums;
-  add_up(box, run, reference, &velocity, &sums);
+  add_up(box, run, places, &velocity, &sums);
   return sums;
 }
 

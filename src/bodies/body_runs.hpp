@@ -20,6 +20,7 @@ struct Run {
   const Phase &phase;
   int body;  ///< its slot
   int begin, end, j, k;
+  int first;  ///< absolute x index of the first cell, not negative: it gives cells their lanes
   int size() const { return end - begin; }
   const double *of(const Field &block, int f) const { return block[f].row(j, k) + begin; }
 };
@@ -30,6 +31,7 @@ void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> 
                   Start &&start, Visit &&visit) {
   const int first = box.layout().begin[0];
   for (const Phase &phase : phases) {
+    if (!phase.label) continue;
     const ConstView label = phase.label[0];
     for (const Segment &whole : part.rows(box)) {
       const Segment row = phase.rows.within(whole, label);
@@ -40,7 +42,7 @@ void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> 
         end = begin + 1;
         while (end < std::min(row.i_end, block_end) && own[end] == own[begin]) ++end;
         const int slot = owners.slot(static_cast<int>(own[begin]) - 1);
-        if (slot >= 0) visit(Run{phase, slot, begin, end, row.j, row.k});
+        if (slot >= 0) visit(Run{phase, slot, begin, end, row.j, row.k, first + begin});
       }
     }
   }
@@ -54,9 +56,16 @@ struct RunSums {
   double full_cells = 0;
   std::array<double, 6> tensor{};
 };
+/// Places of the cells of a run, in cells from a reference.
+struct RunPlaces {
+  double x[ExactSums::block];
+  double y, z;
+};
+/// From the nearest image of the reference cell.
+RunPlaces places_of(const Box &box, const Run &run, const Int3 &reference);
 /// The first three sums.
-RunSums sum_positions(const Box &box, const Run &run, const Int3 &reference);
+RunSums sum_positions(const Box &box, const Run &run, const RunPlaces &places);
 /// All of them; one ghost of velocity and B.
-RunSums sum_all(const Box &box, const Run &run, const Int3 &reference, const Field &velocity);
+RunSums sum_all(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity);
 
 }  // namespace eulastic

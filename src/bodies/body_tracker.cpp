@@ -86,7 +86,7 @@ PetscErrorCode BodyTracker::connect(const Domain &domain, const std::vector<Phas
   };
   for (const int label : more) see(label);
   for (const Phase &phase : phases)
-    for (const Segment &whole : domain.rows()) {
+    for (const Segment &whole : phase.label ? domain.rows() : std::vector<Segment>()) {
       const Segment row = phase.rows.within(whole, phase.label[0]);
       for (int i = row.i_begin; i < row.i_end; ++i) see(static_cast<int>(phase.label[0](i, row.j, row.k)));
     }
@@ -99,6 +99,13 @@ PetscErrorCode BodyTracker::connect(const Domain &domain, const std::vector<Phas
   PetscCall(owners->bring(3, owned, &brought));
   references->resize(owners->here().size());
   for (std::size_t n = 0; n < brought.size(); ++n) (*references)[n / 3][n % 3] = static_cast<int>(brought[n]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyTracker::owned_references(const Domain &domain, std::vector<Int3> *references) {
+  PetscFunctionBeginUser;
+  PetscCall(settle(domain));
+  *references = references_;
   PetscFunctionReturn(0);
 }
 

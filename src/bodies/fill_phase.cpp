@@ -62,6 +62,14 @@ void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at,
               f(Int3{i - first[0], j - first[1], k - first[2]}, Int3{i + x.shift, j + y.shift, k + z.shift});
 }
 
+// A component of R diag(l^2) R^T.
+double turned_stretch(const SpeciesSpec &spec, const Rotation &R, const TensorComponent &component) {
+  const Real3 &l = spec.initial_stretch;
+  double turned = 0;
+  for (int m = 0; m < 3; ++m) turned += R[component.a][m] * l[m] * l[m] * R[component.b][m];
+  return turned;
+}
+
 // B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
 // that has a part of them.
 template <class PhaseOf>
@@ -78,8 +86,7 @@ void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &p
     for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const TensorComponent &component = phase.tensor.components()[c];
       const auto [x, y, at] = component;
-      double turned = 0;
-      for (int m = 0; m < 3; ++m) turned += R[x][m] * l[m] * l[m] * R[y][m];
+      const double turned = turned_stretch(spec, R, component);
       const View B = phase.tensor.field[c], label = phase.label[0];
       for_points_of(domain, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
@@ -131,6 +138,52 @@ PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const P
   stretch_phase(domain, spec, phase);
   turn_stretch(domain, spec, places, first_label, [phase](int) { return phase; });
   PetscFunctionReturn(0);
+}
+
+Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int ghosts) {
+  const PlacedBody body(surface, domain, place);
+  Int3 begin{}, cells{1, 1, 1};
+  for (int d = 0; d < domain.dimension(); ++d) {
+    PlacedBody::Range extent = body.extent(d);
+    if (domain.is_wall(d)) extent = {std::max(extent.begin, 0), std::min(extent.end, domain.cells[d]), 0};
+    begin[d] = extent.begin;
+    cells[d] = extent.end - extent.begin;
+  }
+  return Box(domain, begin, cells, ghosts);
+}
+
+Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place) {
+  Phase phase;
+  phase.species = spec.name;
+  phase.material = spec.material();
+  phase.fraction = Field(box, 1);
+  const PlacedBody body(surface, box.domain_shape(), place);
+  const Int3 &first = box.layout().begin;
+  const auto fraction = [&](const Int3 &p) {
+    return body.fraction({first[0] + p[0], first[1] + p[1], first[2] + p[2]});
+  };
+  for_points(box.rows(), [&](int i, int j, int k) { phase.fraction[0](i, j, k) = fraction({i, j, k}); });
+  stretch_phase(box, spec, &phase);
+  const Real3 &l = spec.initial_stretch;
+  if ((l[0] == l[1] && l[1] == l[2]) || place.orientation == Real3{}) return phase;
+  for (int c = 0; c < phase.tensor.field.count(); ++c) {
+    const TensorComponent &component = phase.tensor.components()[c];
+    const double turned = turned_stretch(spec, rotation(place.orientation), component);
+    const auto [a, b, at] = component;
+    for (int k = 0; k < box.points_end(2, at[2]); ++k)
+      for (int j = 0; j < box.points_end(1, at[1]); ++j)
+        for (int i = 0; i < box.points_end(0, at[0]); ++i) {
+          double sum = 0;  // of the four cells around an edge
+          for (int n = 0; n < (a == b ? 1 : 4); ++n) {
+            Int3 beside{i, j, k};
+            beside[a] -= n % 2;
+            beside[b] -= n / 2;
+            sum += fraction(beside);
+          }
+          if (sum > 0) phase.tensor.field[c](i, j, k) = turned;
+        }
+  }
+  return phase;
 }
 
 void refill_phases(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,

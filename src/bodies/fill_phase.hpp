@@ -19,6 +19,11 @@ namespace eulastic {
 PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase);
 
+/// The box of a placed body, cut at sides of the domain: cells that it may touch, not wrapped around periodic sides.
+Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int ghosts);
+/// Allocates a phase on the box of a body, with that body alone, as fill_phase() does; no label.
+Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place);
+
 /// Of bodies that carry no B: the fraction and the label.
 void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase);
 

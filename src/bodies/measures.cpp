@@ -1,5 +1,6 @@
 #include "bodies/measures.hpp"
 
+#include "base/deliver.hpp"
 #include "base/events.hpp"
 #include "bodies/body_runs.hpp"
 #include "bodies/body_sums.hpp"
@@ -183,6 +184,28 @@ PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phas
   PetscFunctionReturn(0);
 }
 
+// What the cells of a run, with these energy densities, give to the sums of a body.
+void add_run(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity, const double *density,
+             double largest_speed, double largest_energy, BodySums *sums) {
+  const int b = run.body;
+  const RunSums of_run = sum_all(box, run, places, velocity);
+  const double cells = of_run.fraction, x = of_run.first_moment, y = places.y, z = places.z;
+  const std::array first{x, cells * y, cells * z};
+  const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
+  sums->add(b, 0, cells);
+  for (int d = 0; d < 3; ++d) sums->add(b, first_moment + d, first[d]);
+  for (int c = 0; c < 6; ++c) sums->add(b, second_moment + c, second[c]);
+  for (int d = 0; d < box.dimension() && largest_speed > 0; ++d)
+    sums->add(b, momentum + d, of_run.momentum[d] / largest_speed);
+  if (largest_energy > 0) sums->add(b, strain, lane_sum(density, run.size(), run.first) / largest_energy);
+  sums->add(b, full_cells, of_run.full_cells);
+  for (int f = 0; f < run.phase.tensor.field.count() && of_run.full_cells > 0; ++f) {
+    const auto [p, q, at] = run.phase.tensor.components()[f];
+    sums->add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
+  }
+  if (box.any_open()) sums->add(b, on_open_side, at_open_side(box, run, cells));
+}
+
 BodyMeasure evaluate(const Box &box, const BodySums &sums, int b, const Int3 &reference, const Largest &largest) {
   BodyMeasure body;
   const Real3 &h = box.spacing();
@@ -211,6 +234,54 @@ BodyMeasure evaluate(const Box &box, const BodySums &sums, int b, const Int3 &re
   return body;
 }
 
+// All of a body that lies in a box of its own. Places are taken from its middle cell.
+BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
+  const Box &box = *body.box;
+  const Phase &phase = *body.phase;
+  const Layout &layout = box.layout();
+  Int3 middle{}, reference{};
+  for (int d = 0; d < 3; ++d) {
+    middle[d] = layout.cells[d] / 2;
+    reference[d] = layout.begin[d] + middle[d];
+  }
+  struct Piece {
+    Run run;
+    std::vector<double> energy;
+  };
+  std::vector<Piece> pieces;
+  std::vector<double> density(layout.cells[0]);
+  Largest largest{0, 0, {0}};
+  for (const Segment &whole : box.rows()) {
+    const Segment row = phase.rows.within(whole, phase.fraction[0]);
+    energy(box, phase, row, density.data());
+    for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
+      const int first = box.image(0, layout.begin[0] + begin);
+      end = std::min(row.i_end, begin + ExactSums::block - first % ExactSums::block);
+      const Run run{phase, 0, begin, end, row.j, row.k, first};
+      for (int d = 0; d < box.dimension(); ++d) {
+        const double *face = run.of(*body.velocity, d);
+        largest.speed = largest_of(face, run.size(), largest.speed);
+        largest.speed = largest_of(face + (*body.velocity)[d].stride(d), run.size(), largest.speed);
+      }
+      pieces.push_back({run, {density.begin() + begin, density.begin() + end}});
+      largest.energy = largest_of(pieces.back().energy.data(), run.size(), largest.energy);
+      largest.trace[0] = largest_trace(run, box.dimension(), largest.trace[0]);
+    }
+  }
+  BodySums sums(1, all_sums);
+  for (const Piece &piece : pieces) {
+    RunPlaces places;
+    for (int i = 0; i < piece.run.size(); ++i) places.x[i] = piece.run.begin + i - middle[0];
+    places.y = piece.run.j - middle[1];
+    places.z = piece.run.k - middle[2];
+    add_run(box, piece.run, places, *body.velocity, piece.energy.data(), largest.speed, largest.energy, &sums);
+  }
+  BodyMeasure measure = evaluate(box, sums, 0, reference, largest);
+  measure.label = body.number;
+  measure.species = body.species;
+  return measure;
+}
+
 }  // namespace
 
 PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase> &phases) {
@@ -224,11 +295,12 @@ PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase
     for_each_run(
         domain, part, phases, owners, [](const Phase &, const Segment &) {},
         [&](const Run &run) {
-          const Real3 x = offset(domain, references[run.body], {run.begin, run.j, run.k});
-          const RunSums of_run = sum_positions(domain, run, references[run.body]);
+          const RunPlaces places = places_of(domain, run, references[run.body]);
+          const RunSums of_run = sum_positions(domain, run, places);
           some.add(run.body, 0, of_run.fraction);
           some.add(run.body, first_moment, of_run.first_moment);
-          for (int d = 1; d < 3; ++d) some.add(run.body, first_moment + d, of_run.fraction * x[d]);
+          some.add(run.body, first_moment + 1, of_run.fraction * places.y);
+          some.add(run.body, first_moment + 2, of_run.fraction * places.z);
         });
   };
   PetscCall(sum_bodies(domain, owners, add, &sums));
@@ -242,17 +314,16 @@ PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase
 }
 
 PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
-                                    const RowEnergy &energy, std::vector<BodyMeasure> *result) {
+                                    const RowEnergy &energy, std::vector<BodyMeasure> *result,
+                                    const std::vector<BodyInBox> &boxed) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
-  const int dimension = domain.dimension();
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(domain, phases, {}, &owners, &references));
   std::vector<std::vector<double>> energies;
   Largest largest;
   PetscCall(find_largest(domain, phases, velocity, owners, energy, &energies, &largest));
-  const bool opens = domain.any_open();
   BodySums sums(references.size(), all_sums);
   const auto add = [&](const RowPart &part, BodySums &some) {
     const double *density = energies[part.number].data(), *of_row = nullptr;  // of cell 0 of the row
@@ -261,26 +332,8 @@ PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phas
       density += row.size();
     };
     for_each_run(domain, part, phases, owners, start, [&](const Run &run) {
-      const int b = run.body;
-      const Real3 begin = offset(domain, references[b], {run.begin, run.j, run.k});
-      const RunSums of_run = sum_all(domain, run, references[b], velocity);
-      const double cells = of_run.fraction, x = of_run.first_moment, y = begin[1], z = begin[2];
-      const std::array first{x, cells * y, cells * z};
-      const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
-      some.add(b, 0, cells);
-      for (int d = 0; d < 3; ++d) some.add(b, first_moment + d, first[d]);
-      for (int c = 0; c < 6; ++c) some.add(b, second_moment + c, second[c]);
-      for (int d = 0; d < dimension && largest.speed > 0; ++d)
-        some.add(b, momentum + d, of_run.momentum[d] / largest.speed);
-      if (largest.energy > 0)
-        some.add(b, strain,
-                 lane_sum(of_row + run.begin, run.size(), domain.layout().begin[0] + run.begin) / largest.energy);
-      some.add(b, full_cells, of_run.full_cells);
-      for (int f = 0; f < run.phase.tensor.field.count() && of_run.full_cells > 0; ++f) {
-        const auto [p, q, at] = run.phase.tensor.components()[f];
-        some.add(b, mean_tensor + (p == q ? p : 6 - p - q), of_run.tensor[f]);
-      }
-      if (opens) some.add(b, on_open_side, at_open_side(domain, run, cells));
+      add_run(domain, run, places_of(domain, run, references[run.body]), velocity, of_row + run.begin, largest.speed,
+              largest.energy, &some);
     });
   };
   PetscCall(sum_bodies(domain, owners, add, &sums));
@@ -290,6 +343,14 @@ PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phas
     result->back().label = owners.owned().begin + b + 1;
     result->back().species = species(result->back().label);
   }
+  std::vector<BodyMeasure> measured;
+  std::vector<int> ranks;
+  for (const BodyInBox &body : boxed) {
+    measured.push_back(measure_in_box(body, energy));
+    ranks.push_back(BodyRange::owner(body.number - 1, bodies(), domain.ranks()));
+  }
+  PetscCall(deliver(domain.comm(), ranks, &measured));
+  for (const BodyMeasure &body : measured) (*result)[body.label - 1 - owners.owned().begin] = body;
   PetscFunctionReturn(0);
 }
 

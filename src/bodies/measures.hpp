@@ -69,15 +69,18 @@ public:
   /// the unwrapping never depends on how often bodies are measured. Collective.
   PetscErrorCode follow(const Domain &domain, const std::vector<Phase> &phases);
   /// Measures all bodies, changing nothing; every rank gets those that it owns. `velocity`: u, v (, w) on faces with
-  /// one valid ghost layer, as phi and B. Collective.
+  /// one valid ghost layer, as phi and B. `boxed`: those of this rank that lie in boxes, with the velocity. Collective.
   PetscErrorCode measure(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
-                         const RowEnergy &energy, std::vector<BodyMeasure> *bodies);
+                         const RowEnergy &energy, std::vector<BodyMeasure> *bodies,
+                         const std::vector<BodyInBox> &boxed = {});
 
   /// Moves reference cells into the box, where it is new.
   void wrap(const Box &box);
   /// Volumes at t = 0 of the bodies that this rank owns; empty before set_first_volumes(), which comes after measure().
   const std::vector<double> &first_volumes() const { return first_volumes_; }
   void set_first_volumes(std::vector<double> owned) { first_volumes_ = std::move(owned); }
+  /// Unwrapped reference cells of the bodies that this rank owns. Collective.
+  PetscErrorCode owned_references(const Domain &domain, std::vector<Int3> *references);
   /// Unwrapped reference cells and volumes at t = 0 of all bodies, on rank 0: with the fields, all a restart needs.
   /// Collective.
   PetscErrorCode known(const Domain &domain, std::vector<Int3> *references, std::vector<double> *first_volumes);

@@ -39,6 +39,8 @@ public:
             for (int j = y.begin; j < y.end; ++j)
               for (int i = x.begin; i < x.end; ++i) visit(Int3{i, j, k}, Int3{i + x.shift, j + y.shift, k + z.shift});
   }
+  /// Cells of direction d that the body may touch, not wrapped into the domain nor cut at its sides.
+  Range extent(int d) const { return {begin_[d], end_[d], 0}; }
   /// Whether the surface cannot pass a global, unwrapped cell, and the cell is outside: cheaper than its fraction.
   bool is_clear_of(const Int3 &cell) const noexcept;
   /// Negative inside, at a place in cells from the middle of the box.

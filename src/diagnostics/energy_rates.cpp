@@ -99,31 +99,32 @@ void stress_power(const Box &box, const Phase &phase, const Field &velocity, con
 // Speed times traction of every tangential face beside a moving wall.
 class WallPower {
 public:
-  WallPower(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-            const EdgeViscosity &viscosity)
-      : domain_(domain), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
+  /// Of the solids alone where `viscosity` is null.
+  WallPower(const Box &box, const Field &velocity, const std::vector<const Phase *> &phases,
+            const EdgeViscosity *viscosity)
+      : box_(box), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
 
   void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
-    for (int c = 0; c < domain_.dimension(); ++c)
+    for (int c = 0; c < box_.dimension(); ++c)
       if (c != d && speed[c] != 0) add(d, high, c, speed[c], sums);
   }
 
 private:
   void add(int d, bool high, int c, double speed, ExactSums *sums) const {
-    Int3 begin{}, end = domain_.cells();
+    Int3 begin{}, end = box_.cells();
     begin[d] = high ? end[d] - 1 : 0;
     end[d] = begin[d] + 1;
     // A face on another wall does not move: no shear of the fluid, but solids have the stress of the edge, whose
     // control volume is half of that of others.
     for (const bool corner_high : {false, true}) {
-      if (!domain_.touches(c, corner_high) || domain_.is_open(c, corner_high)) continue;
+      if (!box_.touches(c, corner_high) || box_.is_open(c, corner_high)) continue;
       Int3 first = begin, last = end;
-      first[c] = corner_high ? domain_.cells()[c] : 0;
+      first[c] = corner_high ? box_.cells()[c] : 0;
       last[c] = first[c] + 1;
       for_cells(first, last,
                 [&](const Int3 &cell) { sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, cell)); });
     }
-    if (domain_.touches_low(c)) begin[c] = 1;
+    if (box_.touches_low(c)) begin[c] = 1;
     for_cells(begin, end, [&](const Int3 &cell) { sums->add(wall_power, speed * traction(d, high, c, cell)); });
   }
 
@@ -141,34 +142,34 @@ private:
 
   /// Of the wall on what is inside, along c, per volume of the cell beside it.
   double traction(int d, bool high, int c, const Int3 &cell) const {
+    if (!viscosity_) return elastic_traction(d, high, c, cell);
     const ConstView q = velocity_[c];
     const double *inside = &q(cell[0], cell[1], cell[2]), *ghost = inside + (high ? q.stride(d) : -q.stride(d));
-    const double h = domain_.spacing()[d],
-                 viscous = viscosity_.at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
+    const double h = box_.spacing()[d], viscous = viscosity_->at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
     return viscous / h + elastic_traction(d, high, c, cell);
   }
 
   double elastic_traction(int d, bool high, int c, const Int3 &cell) const {
     const Int3 edge = edge_of(d, high, cell);
     double sum = 0;
-    for (const Phase &phase : phases_)
-      if (phase.material.elastic()) sum += edge_stress(domain_, phase, c, d, edge[0], edge[1], edge[2]);
-    return (high ? sum : -sum) / domain_.spacing()[d];
+    for (const Phase *phase : phases_) sum += edge_stress(box_, *phase, c, d, edge[0], edge[1], edge[2]);
+    return (high ? sum : -sum) / box_.spacing()[d];
   }
 
-  const Domain &domain_;
+  const Box &box_;
   const Field &velocity_;
-  const std::vector<Phase> &phases_;
-  EdgeViscosity viscosity_;
+  const std::vector<const Phase *> &phases_;
+  const EdgeViscosity *viscosity_;
 };
 
-void add_elastic(const Box &box, const RowPart &part, const Field &velocity, const Phase &phase, ExactSums *sums) {
-  if (!phase.material.elastic()) return;
+void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &velocity, const Phase &phase,
+                 ExactSums *sums) {
   std::vector<double> power(box.cells()[0]), energy(power.size());
-  for (const Segment &whole : part.rows(box)) {
+  for (const Segment &whole : rows) {
     const Segment row = phase.rows.within(whole, phase.fraction[0]);
     const double *phi = phase.fraction[0].row(row.j, row.k);
-    const auto add = [&, first = box.layout().begin[0] + row.i_begin](int s, const std::vector<double> &values) {
+    const auto add = [&, first = box.image(0, box.layout().begin[0] + row.i_begin)](int s,
+                                                                                    const std::vector<double> &values) {
       sums->add_row(s, values.data() + row.i_begin, row.size(), first);
     };
     strain_energy(box, phase, row, energy.data());
@@ -181,6 +182,13 @@ void add_elastic(const Box &box, const RowPart &part, const Field &velocity, con
   }
 }
 
+// What moving walls do on what a box holds.
+void add_wall_power(const Box &box, const WallPower &walls, const EnergyNumbers &numbers, ExactSums *sums) {
+  if (!numbers.sides) return;
+  for (const auto [d, high] : box.sides())
+    if (box.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), sums);
+}
+
 }  // namespace
 
 void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out) {
@@ -188,21 +196,29 @@ void strain_energy(const Box &box, const Phase &phase, const Segment &row, doubl
 }
 
 PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                    const EnergyNumbers &numbers, EnergyRates *rates) {
+                                    const EnergyNumbers &numbers, EnergyRates *rates,
+                                    const std::vector<BodyInBox> &bodies) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
+  std::vector<const Phase *> elastic;
+  for (const Phase &phase : phases)
+    if (phase.material.elastic() && !phase.boxed) elastic.push_back(&phase);
+  const EdgeViscosity viscosity{domain, numbers.viscosity, numbers.density, numbers.local_viscosity};
   const auto add = [&](const RowPart &part, ExactSums &all) {
     const int n = domain.cells()[0], first = domain.layout().begin[0];
     for (int c = 0; c < domain.dimension(); ++c)
       if (numbers.force[c] != 0)
         for (const Segment &row : part.rows(domain))
           all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
-    for (std::size_t p = 0; p < phases.size(); ++p) add_elastic(domain, part, velocity, phases[p], &all);
-    const WallPower walls(domain, velocity, phases,
-                          {domain, numbers.viscosity, numbers.density, numbers.local_viscosity});
-    if (!part.first || !numbers.sides) return;
-    for (const auto [d, high] : domain.sides())
-      if (domain.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), &all);
+    for (const Phase *phase : elastic) add_elastic(domain, part.rows(domain), velocity, *phase, &all);
+    const Piece own(bodies.size(), part.number, row_parts(domain));
+    for (std::size_t b = own.begin; b < own.end; ++b) {
+      const BodyInBox &body = bodies[b];
+      const std::vector<const Phase *> one{body.phase};
+      add_elastic(*body.box, body.box->rows(), *body.velocity, *body.phase, &all);
+      add_wall_power(*body.box, WallPower(*body.box, *body.velocity, one, nullptr), numbers, &all);
+    }
+    if (part.first) add_wall_power(domain, WallPower(domain, velocity, elastic, &viscosity), numbers, &all);
   };
   double sum[sums];
   PetscCall(sum_row_parts(domain, sums, add, sum));

@@ -34,8 +34,10 @@ struct EnergyRates {
 /// phi W (energy per volume) of the cells of a row, into out[0 .. cells).
 void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out);
 
-/// `velocity` (of `time`), phi and B with one ghost layer. One Allreduce.
+/// `velocity` (of `time`), phi and B with one ghost layer; `bodies`: those of this rank that lie in boxes, with the
+/// velocity. One Allreduce.
 PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                    const EnergyNumbers &numbers, EnergyRates *rates);
+                                    const EnergyNumbers &numbers, EnergyRates *rates,
+                                    const std::vector<BodyInBox> &bodies = {});
 
 }  // namespace eulastic

@@ -209,26 +209,36 @@ PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const F
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures) {
+PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures,
+                              const std::vector<BodyInBox> &bodies) {
   enum { volume, energy, sums_of_phase };
   PetscFunctionBeginUser;
   VerbScope scope(Verb::sums);
-  const int first = domain.layout().begin[0];
+  const auto add_row = [](const Box &box, const Phase &phase, int p, const Segment &row, std::vector<double> &density,
+                          ExactSums &sums) {
+    const ConstView phi = phase.fraction[0];
+    const Segment held = phase.rows.within(row, phi);
+    const int sum_of_phase = sums_of_phase * p, i = held.i_begin, first = box.image(0, box.layout().begin[0] + i);
+    strain_energy(box, phase, held, density.data());
+    sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first);
+    sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first);
+  };
   const auto add = [&](const RowPart &part, ExactSums &sums) {
     std::vector<double> density(domain.cells()[0]);
     for (const Segment &row : part.rows(domain))
-      for (std::size_t p = 0; p < phases.size(); ++p) {
-        const ConstView phi = phases[p].fraction[0];
-        const Segment held = phases[p].rows.within(row, phi);
-        const int sum_of_phase = sums_of_phase * static_cast<int>(p), i = held.i_begin;
-        strain_energy(domain, phases[p], held, density.data());
-        sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first + i);
-        sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first + i);
-      }
+      for (std::size_t p = 0; p < phases.size(); ++p)
+        if (!phases[p].boxed) add_row(domain, phases[p], static_cast<int>(p), row, density, sums);
+    const Piece own(bodies.size(), part.number, row_parts(domain));
+    for (std::size_t b = own.begin; b < own.end; ++b) {
+      const Box &box = *bodies[b].box;
+      density.resize(std::max<std::size_t>(density.size(), box.cells()[0]));
+      for (const Segment &row : box.rows()) add_row(box, *bodies[b].phase, bodies[b].species, row, density, sums);
+    }
   };
-  double flops = 0;
-  for (const Phase &phase : phases) flops += double(phase.rows.cells()) * (2 * domain.dimension() + 3);
-  scope.flops(flops);
+  double cells = 0;
+  for (const Phase &phase : phases) cells += double(phase.rows.cells());
+  for (const BodyInBox &body : bodies) cells += double(body.phase->rows.cells());
+  scope.flops(cells * (2 * domain.dimension() + 3));
   std::vector<double> sum(sums_of_phase * phases.size());
   PetscCall(sum_row_parts(domain, static_cast<int>(sum.size()), add, sum.data()));
   measures->elastic_energy = 0;

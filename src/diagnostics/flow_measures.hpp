@@ -34,7 +34,9 @@ struct FlowMeasures {
 /// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
 PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures);
-/// The last two of the measures.
-PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures);
+/// The last two of the measures. `bodies`: those of this rank that lie in boxes; they count with the phases of their
+/// species.
+PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures,
+                              const std::vector<BodyInBox> &bodies = {});
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 #include "diagnostics/state_hash.hpp"
 
+#include <array>
 #include <cstring>
 
 namespace eulastic {
@@ -32,6 +33,34 @@ std::uint64_t hash_points(const Box &box, ConstView field, const Staggering &sta
       for (int i = 0; i < box.points_end(0, staggering[0]); ++i)
         hash += mix(bits_of(row[i]) ^ mix(row_key + own.begin[0] + i));
     }
+  return hash;
+}
+
+std::uint64_t hash_body(const BodyInBox &body) {
+  const Box &box = *body.box;
+  const Int3 &begin = box.layout().begin;
+  const ConstView phi = body.phase->fraction[0];
+  std::uint64_t hash = 0;
+  // `near`: offsets of the centres around a point.
+  const auto add = [&](ConstView field, const Staggering &at, const std::array<std::ptrdiff_t, 2> &near,
+                       int component) {
+    for (int k = 0; k < box.points_end(2, at[2]); ++k)
+      for (int j = 0; j < box.points_end(1, at[1]); ++j) {
+        const std::uint64_t y = static_cast<std::uint32_t>(begin[1] + j), z = static_cast<std::uint32_t>(begin[2] + k);
+        const std::uint64_t row_key = mix(mix(body.number + (std::uint64_t(component) << 32)) ^ mix(y + (z << 32)));
+        for (int i = 0; i < box.points_end(0, at[0]); ++i) {
+          const double *here = &phi(i, j, k);
+          if (here[0] != 0 || here[-near[0]] != 0 || here[-near[1]] != 0 || here[-near[0] - near[1]] != 0)
+            hash += mix(bits_of(field(i, j, k)) ^ mix(row_key + static_cast<std::uint32_t>(begin[0] + i)));
+        }
+      }
+  };
+  add(phi, at_centre, {0, 0}, 0);
+  for (int c = 0; c < body.phase->tensor.field.count(); ++c) {
+    const auto &[a, b, at] = body.phase->tensor.components()[c];
+    const bool edge = a != b;
+    add(body.phase->tensor.field[c], at, {edge ? phi.stride(a) : 0, edge ? phi.stride(b) : 0}, 1 + c);
+  }
   return hash;
 }
 

@@ -1,7 +1,7 @@
 // A hash of the state, by which runs are compared.
 #pragma once
 
-#include "grid/box.hpp"
+#include "field/phase.hpp"
 
 #include <cstdint>
 
@@ -12,5 +12,9 @@ namespace eulastic {
 std::uint64_t hash_points(const Box &box, ConstView field, const Staggering &staggering, std::uint64_t salt);
 /// Hash of one record.
 std::uint64_t hash_values(const double *values, std::size_t count);
+
+/// The same of a body in a box of its own: of phi and B where it has a part, so that the hash does not depend on what
+/// else the box holds.
+std::uint64_t hash_body(const BodyInBox &body);
 
 }  // namespace eulastic

@@ -3,24 +3,42 @@
 #include "base/events.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <set>
+#include <utility>
 
 namespace eulastic {
 namespace {
 
 // Adding 0 would make +0 of -0: no value is touched where a box has nothing to add, whoever owns it.
-void add_values(const double *values, int count, double *to) {
-  for (int m = 0; m < count; ++m) to[m] = values[m] == 0 ? to[m] : to[m] + values[m];
+void add_values(const double *values, int count, double factor, double *to) {
+  for (int m = 0; m < count; ++m) to[m] = values[m] == 0 ? to[m] : to[m] + factor * values[m];
 }
 
 }  // namespace
 
-// work(first point, count) for the pieces of a run that lie in segments.
+void SegmentValues::take(const Field &field, const ActiveSegments &segments) {
+  starts_.clear();
+  size_ = 0;
+  for (const Segment &s : segments.all()) {
+    starts_.push_back(size_);
+    size_ += s.size();
+  }
+  values_.resize(field.count() * size_);
+  for (int f = 0; f < field.count(); ++f) {
+    double *next = values_.data() + f * size_;
+    for (const Segment &s : segments.all()) next = std::copy_n(field[f].row(s.j, s.k) + s.i_begin, s.size(), next);
+  }
+}
+
+// work(first point, values, count) for the pieces of a run that lie in segments.
 template <class Work>
-void BoxExchange::for_pieces(const Run &run, const ActiveSegments &segments, const Work &work) {
-  for (const Segment &s : segments.row(run.j, run.k)) {
+void BoxExchange::for_pieces(const Run &run, const Contribution &contribution, int component, const Work &work) {
+  const Segment *all = contribution.segments->all().data();
+  for (const Segment &s : contribution.segments->row(run.j, run.k)) {
     const int first = std::max(s.i_begin, run.i), last = std::min(s.i_end, run.i + run.count);
-    if (first < last) work(first, last - first);
+    if (first < last) work(first, contribution.values->of(component, &s - all) + (first - s.i_begin), last - first);
   }
 }
 
@@ -58,10 +76,7 @@ PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes) {
 PetscErrorCode BoxExchange::list_runs(const Box &box, Place *place, std::vector<PetscSFNode> *roots) {
   PetscFunctionBeginUser;
   const Split &split = domain_->split();
-  const Int3 &begin = box.layout().begin, &cells = domain_->domain_cells();
-  for (int d = 0; d < domain_->dimension(); ++d)
-    PetscCheck(box.cells()[d] <= cells[d], PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
-               "a box of %d cells is longer than the domain, %d", box.cells()[d], cells[d]);
+  const Int3 &begin = box.layout().begin;
   std::map<int, Layout> layouts;
   for (int k = 0; k < box.points_end(2, true); ++k)
     for (int j = 0; j < box.points_end(1, true); ++j) {
@@ -90,31 +105,64 @@ PetscErrorCode BoxExchange::list_runs(const Box &box, Place *place, std::vector<
   PetscFunctionReturn(0);
 }
 
-// PetscSFGather delivers the values of all leaves of a root one after the other. Finds out which boxes they are from.
+// PetscSFGather delivers the values of all leaves of a root one after the other, in an order of its own. Finds out
+// which boxes and which of their points they are from.
 PetscErrorCode BoxExchange::sort_received() {
   const PetscInt *degree;
   PetscFunctionBeginUser;
-  std::vector<PetscInt> numbers;
+  std::vector<std::array<PetscInt, 2>> sent;
   for (int f = 0; f < components_; ++f)
     for (const Place &place : places_)
-      for (const Run &run : place.remote) numbers.insert(numbers.end(), run.count, place.number);
+      for (const Run &run : place.remote)
+        for (int m = 0; m < run.count; ++m) sent.push_back({place.number, static_cast<PetscInt>(sent.size())});
   PetscCall(PetscSFComputeDegreeBegin(sf_.get(), &degree));
   PetscCall(PetscSFComputeDegreeEnd(sf_.get(), &degree));
   std::vector<PetscInt> offsets;
   for (PetscInt root = 0; root < components_ * static_cast<PetscInt>(domain_->layout().size); ++root)
     offsets.insert(offsets.end(), degree[root], root);
-  std::vector<PetscInt> number_of(offsets.size());
-  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_INT, numbers.data(), number_of.data()));
-  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_INT, numbers.data(), number_of.data()));
+  std::vector<std::array<PetscInt, 2>> received(offsets.size());
+  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_2INT, sent.data(), received.data()));
+  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_2INT, sent.data(), received.data()));
   received_.resize(offsets.size());
   parcels_.clear();
+  std::vector<PetscInt> slots(offsets.size());
+  std::iota(slots.begin(), slots.end(), 0);
+  // A body that overlaps itself across a periodic side has several points for one root.
+  for (std::size_t first = 0, last; first < slots.size(); first = last) {
+    for (last = first + 1; last < slots.size() && offsets[last] == offsets[first];) ++last;
+    if (last > first + 1)
+      std::sort(slots.begin() + first, slots.begin() + last,
+                [&](PetscInt one, PetscInt other) { return received[one] < received[other]; });
+  }
   Parcel *parcel = nullptr;
-  for (std::size_t slot = 0; slot < offsets.size(); ++slot) {
-    if (slot == 0 || number_of[slot] != number_of[slot - 1]) parcel = &parcels_[static_cast<int>(number_of[slot])];
-    parcel->slots.push_back(static_cast<PetscInt>(slot));
+  PetscInt number = -1;
+  for (std::size_t n = 0; n < slots.size(); ++n) {
+    const PetscInt slot = slots[n];
+    if (std::exchange(number, received[slot][0]) != received[slot][0]) parcel = &parcels_[static_cast<int>(number)];
+    parcel->slots.push_back(slot);
     parcel->offsets.push_back(offsets[slot]);
   }
   PetscFunctionReturn(0);
+}
+
+void BoxExchange::mark_rows(std::vector<char> *rows) const {
+  const Layout &layout = domain_->layout();
+  const auto mark = [&](std::ptrdiff_t offset) {
+    const std::ptrdiff_t at = offset - layout.origin, k = at / layout.sz, j = at % layout.sz / layout.sy;
+    // Faces of a high side belong to no row of cells.
+    if (j < layout.cells[1] && k < layout.cells[2]) (*rows)[j + std::size_t(layout.cells[1]) * k] = 1;
+  };
+  for (const Place &place : places_)
+    for (const Run &run : place.own) mark(run.elsewhere);
+  for (const auto &[number, parcel] : parcels_)
+    for (const PetscInt offset : parcel.offsets) mark(offset % layout.size);
+}
+
+std::size_t BoxExchange::bytes() const {
+  std::size_t sum = (buffer_.size() + received_.size()) * sizeof(double);
+  for (const Place &place : places_) sum += (place.own.size() + place.remote.size()) * sizeof(Run);
+  for (const auto &[number, parcel] : parcels_) sum += 2 * parcel.slots.size() * sizeof(PetscInt);
+  return sum;
 }
 
 PetscErrorCode BoxExchange::fetch(const Field &grid) {
@@ -136,17 +184,17 @@ void BoxExchange::copy_to_box(std::size_t b, const Field &grid, Field &to) const
   }
 }
 
-PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions, Field &grid) {
+PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions, const std::vector<Target> &targets) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
   const std::ptrdiff_t size = domain_->layout().size;
   for (std::size_t b = 0; b < places_.size(); ++b)
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].remote) {
-        double *values = buffer_.data() + f * buffer_size_ + run.elsewhere;
-        std::fill_n(values, run.count, 0.0);
-        for_pieces(run, *contributions[b].segments, [&](int first, int count) {
-          std::copy_n((*contributions[b].field)[f].row(run.j, run.k) + first, count, values + (first - run.i));
+        double *to = buffer_.data() + f * buffer_size_ + run.elsewhere;
+        std::fill_n(to, run.count, 0.0);
+        for_pieces(run, contributions[b], f, [&](int first, const double *values, int count) {
+          std::copy_n(values, count, to + (first - run.i));
         });
       }
   PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
@@ -154,23 +202,57 @@ PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions, 
   const auto add_own = [&](std::size_t b) {
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].own)
-        for_pieces(run, *contributions[b].segments, [&](int first, int count) {
-          add_values((*contributions[b].field)[f].row(run.j, run.k) + first, count,
-                     grid.data() + f * size + run.elsewhere + (first - run.i));
+        for_pieces(run, contributions[b], f, [&](int first, const double *values, int count) {
+          for (const Target &target : targets)
+            add_values(values, count, target.factor, target.field->data() + f * size + run.elsewhere + (first - run.i));
         });
   };
+  in_order(add_own, [&](int, const Parcel &parcel) {
+    for (const Target &target : targets)
+      for (std::size_t n = 0; n < parcel.slots.size(); ++n)
+        add_values(&received_[parcel.slots[n]], 1, target.factor, target.field->data() + parcel.offsets[n]);
+  });
+  PetscFunctionReturn(0);
+}
+
+template <class VisitOwn, class VisitReceived>
+void BoxExchange::in_order(const VisitOwn &visit_own, const VisitReceived &visit_received) const {
   std::map<int, std::size_t> own;
   for (std::size_t b = 0; b < places_.size(); ++b) own[places_[b].number] = b;
   std::set<int> numbers;
   for (const auto &[number, b] : own) numbers.insert(number);
   for (const auto &[number, parcel] : parcels_) numbers.insert(number);
   for (const int number : numbers) {
-    if (const auto at = own.find(number); at != own.end()) add_own(at->second);
-    const auto parcel = parcels_.find(number);
-    if (parcel == parcels_.end()) continue;
-    for (std::size_t n = 0; n < parcel->second.slots.size(); ++n)
-      add_values(&received_[parcel->second.slots[n]], 1, grid.data() + parcel->second.offsets[n]);
+    if (const auto at = own.find(number); at != own.end()) visit_own(at->second);
+    if (const auto parcel = parcels_.find(number); parcel != parcels_.end()) visit_received(number, parcel->second);
   }
+}
+
+PetscErrorCode BoxExchange::collect(const std::vector<const Field *> &fields, const Visit &visit) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exchange);
+  for (std::size_t b = 0; b < places_.size(); ++b)
+    for (int f = 0; f < components_; ++f)
+      for (const Run &run : places_[b].remote)
+        std::copy_n((*fields[b])[f].row(run.j, run.k) + run.i, run.count,
+                    buffer_.data() + f * buffer_size_ + run.elsewhere);
+  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  std::vector<double> values(components_);
+  const auto visit_own = [&](std::size_t b) {
+    for (const Run &run : places_[b].own)
+      for (int m = 0; m < run.count; ++m) {
+        for (int f = 0; f < components_; ++f) values[f] = (*fields[b])[f].row(run.j, run.k)[run.i + m];
+        visit(places_[b].number, run.elsewhere + m, values.data());
+      }
+  };
+  in_order(visit_own, [&](int number, const Parcel &parcel) {
+    const std::size_t points = parcel.slots.size() / components_;  // component after component
+    for (std::size_t n = 0; n < points; ++n) {
+      for (int f = 0; f < components_; ++f) values[f] = received_[parcel.slots[n + f * points]];
+      visit(number, parcel.offsets[n], values.data());
+    }
+  });
   PetscFunctionReturn(0);
 }
 

@@ -7,10 +7,27 @@
 #include "grid/active_segments.hpp"
 #include "grid/domain.hpp"
 
+#include <functional>
 #include <map>
 #include <vector>
 
 namespace eulastic {
+
+/// The values of a field in segments alone.
+class SegmentValues {
+public:
+  void take(const Field &field, const ActiveSegments &segments);
+  /// Those of a component in segment `which` of ActiveSegments::all().
+  const double *of(int component, std::ptrdiff_t which) const {
+    return values_.data() + component * size_ + starts_[which];
+  }
+  std::size_t bytes() const { return values_.size() * sizeof(double) + starts_.size() * sizeof(std::ptrdiff_t); }
+
+private:
+  std::vector<double> values_;          ///< component after component
+  std::vector<std::ptrdiff_t> starts_;  ///< of every segment in a component
+  std::ptrdiff_t size_ = 0;             ///< of a component
+};
 
 class BoxExchange {
 public:
@@ -19,26 +36,39 @@ public:
     const Box *box;
     int number;
   };
-  /// What a box adds to the grid: the values of a field in these segments.
+  /// What a box adds to the grid.
   struct Contribution {
-    const Field *field;
+    const SegmentValues *values;
     const ActiveSegments *segments;
+  };
+  /// A field of the grid that it is added to, and how many times.
+  struct Target {
+    Field *field;
+    double factor;
   };
 
   /// For fields of `components` components.
   BoxExchange(const Domain &domain, int components) : domain_(&domain), components_(components) {}
 
-  /// Sets the boxes of this rank. A box may cross periodic sides, but is no longer than the domain; it ends at sides of
-  /// any other kind. Collective.
+  /// Sets the boxes of this rank. A box may cross periodic sides, and even be longer than the domain; it ends at sides
+  /// of any other kind. Collective.
   PetscErrorCode connect(const std::vector<NumberedBox> &boxes);
 
   /// Fetches what the boxes of this rank need of the values that other ranks own. Collective.
   PetscErrorCode fetch(const Field &grid);
   /// Copies the grid's values to all points of box b, ghosts excluded, after fetch(grid).
   void copy_to_box(std::size_t b, const Field &grid, Field &to) const;
-  /// Adds one field of every box to the owned values of the grid. Where boxes overlap their values are added in the
-  /// order of the numbers, so that the sum does not depend on who owns the boxes. Collective.
-  PetscErrorCode add(const std::vector<Contribution> &contributions, Field &grid);
+  /// Adds values of every box to the owned values of fields of the grid. Where boxes overlap their values are added in
+  /// the order of the numbers, so that the sum does not depend on who owns the boxes. Collective.
+  PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<Target> &targets);
+  /// Calls visit(number, offset, values) for all points of this rank's grid that lie in boxes, box after box in the
+  /// order of the numbers: `offset` in a component of the grid's fields, `values`: the components of the box's field
+  /// there. One field of every box of this rank. Collective.
+  using Visit = std::function<void(int number, std::ptrdiff_t offset, const double *values)>;
+  PetscErrorCode collect(const std::vector<const Field *> &fields, const Visit &visit);
+  /// Sets `rows`, one value for each row of this rank's cells, where any box of any rank lies.
+  void mark_rows(std::vector<char> *rows) const;
+  std::size_t bytes() const;
 
 private:
   /// Points of a row of a box whose values have one owner.
@@ -56,9 +86,13 @@ private:
     std::vector<PetscInt> slots, offsets;
   };
   template <class Work>
-  static void for_pieces(const Run &run, const ActiveSegments &segments, const Work &work);
+  static void for_pieces(const Run &run, const Contribution &contribution, int component, const Work &work);
   PetscErrorCode list_runs(const Box &box, Place *place, std::vector<PetscSFNode> *roots);
   PetscErrorCode sort_received();
+  /// visit_own(b) and visit_received(number, parcel) for all boxes that lie on this rank's grid, in the order of the
+  /// numbers.
+  template <class VisitOwn, class VisitReceived>
+  void in_order(const VisitOwn &visit_own, const VisitReceived &visit_received) const;
 
   const Domain *domain_;
   int components_;

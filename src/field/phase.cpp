@@ -13,6 +13,7 @@ void Phase::copy_from(const Phase &other) {
   species = other.species;
   material = other.material;
   colour = other.colour;
+  boxed = other.boxed;
   fraction.copy_from(other.fraction);
   tensor.field.copy_from(other.tensor.field);
   tensor.centred = other.tensor.centred;

@@ -1,5 +1,6 @@
 // A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one,
-// and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp).
+// and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp). Where its bodies lie in
+// boxes of their own (physics/free_solids.hpp), each of them is a phase, and that of the species is empty.
 #pragma once
 
 #include "field/carried_tensor.hpp"
@@ -15,6 +16,7 @@ struct Phase {
   Material material;
   int colour = 0;         ///< 0: the first phase of the species; the others come after the first ones of all species
   bool separate = false;  ///< bodies that come near get phases of their own; needs labels
+  bool boxed = false;     ///< its bodies lie in boxes of their own
   Field fraction;         ///< phi, one centred field, 0 ... 1
   OccupiedRows rows;      ///< of phi; once they are known the tensor is I in all others
   CarriedTensor tensor;   ///< B
@@ -24,6 +26,15 @@ struct Phase {
   void empty(const Box &box, bool labels);
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);
+};
+
+/// A body in a box of its own, which is whole on this rank, as those see it who measure.
+struct BodyInBox {
+  int number;   ///< its label
+  int species;  ///< index
+  const Box *box;
+  const Phase *phase;               ///< of this body alone
+  const Field *velocity = nullptr;  ///< on the faces of the box, where it is wanted
 };
 
 }  // namespace eulastic

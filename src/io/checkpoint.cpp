@@ -165,6 +165,14 @@ PetscErrorCode CheckpointFile::read_records(CheckpointRecords *records) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CheckpointFile::read_own_records(CheckpointRecords *records) {
+  PetscFunctionBeginUser;
+  if (!file_.has(records->name)) PetscFunctionReturn(0);
+  PetscCall(require_checksum(records->name));
+  PetscCall(file_.read_own_records(records->name, records->numbers, &records->values));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CheckpointFile::read_fields(const Box &box, const std::vector<CheckpointField> &fields) {
   PetscFunctionBeginUser;
   for (const CheckpointField &field : fields) {

@@ -58,6 +58,8 @@ public:
   bool has(const std::string &name) const { return file_.has(name); }
   /// Each rank gets some; none if there are none.
   PetscErrorCode read_records(CheckpointRecords *records);
+  /// As many as `values` has room for, one rank's after the other's: all of them together.
+  PetscErrorCode read_own_records(CheckpointRecords *records);
   /// As Hdf5File::read_share().
   template <class T>
   PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {

@@ -225,6 +225,18 @@ PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode Hdf5File::read_own_records(const std::string &name, std::size_t numbers, std::vector<double> *values) {
+  unsigned long long mine = values->size() / numbers, end = 0, all = 0;
+  Hdf5Dataset dataset;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
+  PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
+  PetscCall(open_dataset(name, &dataset));
+  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{all, 1, numbers}, name + " is of another scene"));
+  PetscCall(read_values(name, dataset.get(), {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}}, values));
+  PetscFunctionReturn(0);
+}
+
 template <class T>
 PetscErrorCode Hdf5File::read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {
   Hdf5Dataset dataset;

@@ -59,6 +59,8 @@ public:
   template <class T>
   PetscErrorCode read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values);
 
+  /// The same, as many as `values` has room for; all ranks together read all of them.
+  PetscErrorCode read_own_records(const std::string &name, std::size_t numbers, std::vector<double> *values);
   /// Of an array of `total` values those that are this rank's, as many as there are `values`, from `begin` on; all
   /// ranks together read all of it.
   template <class T>

@@ -10,6 +10,7 @@
 #include "physics/solid_transport.hpp"
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace eulastic {
@@ -17,21 +18,35 @@ namespace eulastic {
 class FreeSolids {
 public:
   struct Body {
-    int number;   ///< from 1 on; no other body of any rank has it
-    Box box;      ///< its indices do not wrap around periodic sides
-    Phase phase;  ///< of this body alone, on the box; no labels
-    /// div(sigma)/rho on the faces phase.tensor.stressed, and the same before the last advance(), until add_forces()
-    /// puts the difference there.
-    Field force, change;
+    int number;           ///< from 1 on; no other body of any rank has it
+    int species;          ///< index
+    Box box;              ///< its indices do not wrap around periodic sides
+    Phase phase;          ///< of this body alone, on the box; no labels
+    SegmentValues force;  ///< div(sigma)/rho on the faces phase.tensor.stressed
   };
 
   /// `sides` must outlive this.
   FreeSolids(const Domain &domain, const Fluid &fluid, const BoxSides &sides);
 
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
-  /// block that holds the body. The body must be shorter than a periodic domain by the layers around it.
-  PetscErrorCode add(int number, const Box &box, Phase &&phase);
+  /// block that holds the body.
+  PetscErrorCode add(int number, int species, const Box &box, Phase &&phase);
+  /// The number, the species, first cell and cells of the box of a body of this rank, then its phi and the components
+  /// of B: all that add_packed() needs.
+  std::vector<double> packed(std::size_t body) const;
+  static constexpr int head = 8;  ///< numbers before phi
+  /// How many values a body with this head has after it.
+  static std::size_t packed_values(const DomainShape &domain, const double *head);
+  /// Adds such a body; `like`: a phase with its material and rule.
+  PetscErrorCode add_packed(const std::vector<double> &packed, const Phase &like);
+  /// Gives every body of this rank to one of `ranks`, in their order; `species`: phases with materials and rules of
+  /// all. Collective.
+  PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
+  void clear();
 
+  /// Makes boxes anew where bodies have come near an end of theirs. In every step before add_forces() and advance().
+  /// Collective.
+  PetscErrorCode follow();
   struct Step {
     double time;  ///< of the velocity
     double dt;
@@ -40,23 +55,44 @@ public:
   /// Moves all bodies over dt with a velocity on the grid's faces, of the middle of the step, and finds their forces.
   /// Collective.
   PetscErrorCode advance(const Step &step, const Field &velocity);
-  struct Slope {
-    Field *field = nullptr;  ///< null: not wanted
-    double scale = 0;
-  };
-  /// Adds the force per mass to `rate`, and `scale` times what the last advance() has changed it by to a slope. Once
-  /// after each advance(). Collective.
-  PetscErrorCode add_forces(Field &rate, const Slope &slope);
+  /// Adds so many times the force per mass to fields of the grid. Collective.
+  PetscErrorCode add_forces(const std::vector<BoxExchange::Target> &targets);
+  /// Sets `rows`, one value for each row of this rank's cells, where add_forces() may add anything.
+  void mark_rows(std::vector<char> *rows) const { exchange_.mark_rows(rows); }
+  /// Mends B where the grid does not resolve it (physics/unresolved.hpp). `trace`: the largest tr B of every species;
+  /// `count`: centres of all ranks. Collective.
+  PetscErrorCode forget_unresolved(const std::vector<double> &trace, long *count);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
+  /// The bodies of this rank as they are, without velocity.
+  std::vector<BodyInBox> list() const;
+  /// The bodies of this rank with a velocity, of step.time, in their boxes: copies that it has moved over step.dt, or
+  /// the bodies themselves if that is 0. Good until the next call of anything that changes bodies. Collective.
+  PetscErrorCode look(const Step &step, const Field &velocity, std::vector<BodyInBox> *seen);
+  /// Adds what look() has seen to empty phases of the grid, by species: phi is the sum over the bodies; B and the label
+  /// are those of the body that fills most of the point, the first of equals, and where no body has a part, B is what
+  /// the first one is extended to. Owned points; phases without labels get none. Collective.
+  PetscErrorCode show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const;
+  std::size_t bytes() const;
+
+  /// Cells around a body that its box has when it is made.
+  static constexpr int margin = 4;
 
 private:
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and the faces
   /// of another one feel its stress. And those for what moves until the next fit.
-  static constexpr int needed = 2, travel = 2;
+  static constexpr int needed = 2, travel = margin - needed;
+  template <class PhaseOrConst, class Visit>
+  static void for_values(const Box &box, PhaseOrConst &phase, const Visit &visit);
+  PetscErrorCode extend(Body *body);
   bool is_near_an_end(const Body &body) const;
   PetscErrorCode fit(Body *body, int layers) const;
-  PetscErrorCode fit_boxes();
+  /// Velocity in the box of a body, with what is behind sides of the domain, after exchange_.fetch().
+  void bring_velocity(std::size_t body, const Step &step, const Field &velocity, Field *flow) const;
+  void find_force(Body *body, double *memory) const;
+  PetscErrorCode move(const Box &box, const Step &step, const Field &flow, Field &stage, Phase *phase);
+  /// Memory for that many components on a box, until the next call.
+  double *scratch(const Box &box, int components);
 
   const Domain *domain_;
   Fluid fluid_;
@@ -65,6 +101,12 @@ private:
   InterfaceTransport interface_;
   SolidTransport solids_{true};
   std::vector<Body> bodies_;  ///< by their numbers
+  /// What look() has made of a body.
+  struct Seen {
+    Phase moved;
+    Field velocity;
+  };
+  std::vector<Seen> seen_;
   std::vector<double> scratch_;
   bool fitted_ = false;  ///< the boxes are those that the exchange knows
 };

@@ -63,55 +63,67 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
 }
 
 // Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
-std::vector<double> extremes_of_part(const Box &box, int part, int parts, const Field &velocity,
-                                     const std::vector<Phase> &phases) {
-  const Int3 n = box.cells(), &N = box.domain_cells(), &begin = box.layout().begin;
-  const RowPart rows = row_part(box, part, parts);
-  std::vector<double> largest(4 + phases.size());
-  largest[3] = -infinite;
-  const auto mark = [&](const double *row, int i0, int i1, int j, int k) {
-    for (int i = i0; i < i1; ++i)
-      if (!std::isfinite(row[i])) {
-        const double cell = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
-        largest[3] = std::max(largest[3], -cell);
-        return;
-      }
-  };
-  for (int d = 0; d < velocity.count(); ++d)
-    for (int k = rows.k_begin; k < rows.k_end; ++k)
-      for (int j = rows.j_begin; j < rows.j_end; ++j) {
-        const double *row = velocity[d].row(j, k);
-        const RowExtremes r = row_extremes(row, 0, n[0]);
-        largest[d] = std::max(largest[d], r.largest);
-        if (r.bad) mark(row, 0, n[0], j, k);
-      }
-  for (int d = 0; d < velocity.count() && part == 0; ++d)
-    for (const Segment &row : box.faces_on(d, true))
-      largest[d] = std::max(largest[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
-  for (std::size_t p = 0; p < phases.size(); ++p) {
-    const Phase &phase = phases[p];
+class Extremes {
+public:
+  explicit Extremes(std::size_t phases) : largest_(first_trace + phases) { largest_[bad_cell] = -infinite; }
+
+  void add_velocity(const Box &box, const RowPart &rows, const Field &velocity) {
+    const int n = box.cells()[0];
+    for (int d = 0; d < velocity.count(); ++d)
+      for (int k = rows.k_begin; k < rows.k_end; ++k)
+        for (int j = rows.j_begin; j < rows.j_end; ++j) {
+          const double *row = velocity[d].row(j, k);
+          const RowExtremes r = row_extremes(row, 0, n);
+          largest_[d] = std::max(largest_[d], r.largest);
+          if (r.bad) mark(box, row, {0, n, j, k});
+        }
+    for (int d = 0; d < velocity.count() && rows.first; ++d)
+      for (const Segment &row : box.faces_on(d, true))
+        largest_[d] =
+            std::max(largest_[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
+  }
+
+  /// Part `part` of `parts` of the segments in which a phase evolves.
+  void add_phase(const Box &box, int part, int parts, const Phase &phase, int number) {
+    const Int3 &n = box.cells();
     const std::vector<Segment> &solid = phase.tensor.evolving.all();
     const Piece piece(solid.size(), part, parts);
     double most = 3;
     for (std::size_t at = piece.begin; at < piece.end; ++at) {
-      const Segment &s = solid[at];
+      Segment s = solid[at];
       if (s.j >= n[1] || s.k >= n[2]) continue;
-      const int end = std::min(s.i_end, n[0]);
+      s.i_end = std::min(s.i_end, n[0]);
       const auto row = [&](int f) { return phase.tensor.field[f].row(s.j, s.k); };
       const double *xx = row(0), *yy = row(1), *zz = box.dimension() == 3 ? row(2) : nullptr;
       const RowExtremes r =
-          trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), phase.tensor.rule.centre, s.i_begin, end);
+          trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), phase.tensor.rule.centre, s.i_begin, s.i_end);
       most = std::max(most, r.largest);
-      if (r.bad) {
-        mark(xx, s.i_begin, end, s.j, s.k);
-        mark(yy, s.i_begin, end, s.j, s.k);
-        if (zz) mark(zz, s.i_begin, end, s.j, s.k);
-      }
+      if (!r.bad) continue;
+      mark(box, xx, s);
+      mark(box, yy, s);
+      if (zz) mark(box, zz, s);
     }
-    largest[4 + p] = most;
+    largest_[first_trace + number] = std::max(largest_[first_trace + number], most);
   }
-  return largest;
-}
+
+  const std::vector<double> &largest() const { return largest_; }
+  static constexpr int bad_cell = 3, first_trace = 4;
+
+private:
+  /// The first value of a row that is bad.
+  void mark(const Box &box, const double *row, const Segment &s) {
+    const Int3 &N = box.domain_cells(), &begin = box.layout().begin;
+    const double y = box.image(1, begin[1] + s.j), z = box.image(2, begin[2] + s.k);
+    for (int i = s.i_begin; i < s.i_end; ++i)
+      if (!std::isfinite(row[i])) {
+        const double cell = box.image(0, begin[0] + i) + double(N[0]) * (y + double(N[1]) * z);
+        largest_[bad_cell] = std::max(largest_[bad_cell], -cell);
+        return;
+      }
+  }
+
+  std::vector<double> largest_;
+};
 
 }  // namespace
 
@@ -143,16 +155,24 @@ double largest_stiffness(const Material &material, double trace, int dimension) 
 }
 
 PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                FlowExtremes *extremes) {
+                                FlowExtremes *extremes, const std::vector<BodyInBox> &bodies) {
   PetscFunctionBeginUser;
   const int parts = row_parts(domain);
   std::vector<std::vector<double>> found(parts);
-  in_parallel(parts, parts, [&](int part) { found[part] = extremes_of_part(domain, part, parts, velocity, phases); });
+  in_parallel(parts, parts, [&](int part) {
+    Extremes some(phases.size());
+    some.add_velocity(domain, row_part(domain, part, parts), velocity);
+    for (std::size_t p = 0; p < phases.size(); ++p) some.add_phase(domain, part, parts, phases[p], static_cast<int>(p));
+    const Piece own(bodies.size(), part, parts);
+    for (std::size_t b = own.begin; b < own.end; ++b)
+      some.add_phase(*bodies[b].box, 0, 1, *bodies[b].phase, bodies[b].species);
+    found[part] = some.largest();
+  });
   std::vector<double> largest;
   PetscCall(reduce_maxima(domain.comm(), found, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};
-  extremes->first_bad = largest[3] == -infinite ? -1 : -largest[3];
-  extremes->trace.assign(largest.begin() + 4, largest.end());
+  extremes->first_bad = largest[Extremes::bad_cell] == -infinite ? -1 : -largest[Extremes::bad_cell];
+  extremes->trace.assign(largest.begin() + Extremes::first_trace, largest.end());
   extremes->stiffness = 0;
   for (std::size_t p = 0; p < phases.size(); ++p)
     extremes->stiffness =

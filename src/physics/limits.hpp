@@ -18,9 +18,9 @@ struct FlowExtremes {
   double max_speed() const;   ///< of the components
 };
 
-/// `least`: the solid fraction of each phase from which on B is evolved.
+/// `bodies`: those of this rank that lie in boxes; they count with the phases of their species. Collective.
 PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                FlowExtremes *extremes);
+                                FlowExtremes *extremes, const std::vector<BodyInBox> &bodies = {});
 
 /// Largest principal stretch squared of an incompressible deformation with tr B = trace (uniaxial in 3-D).
 double stretch_squared(double trace, int dimension);

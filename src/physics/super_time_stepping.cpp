@@ -12,19 +12,6 @@
 namespace eulastic {
 namespace {
 
-// Whether any phase stresses an owned row.
-std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases) {
-  std::vector<char> stressed;
-  for (const Segment &row : box.rows()) {
-    const auto stresses = [&](const Phase &phase) {
-      return !phase.tensor.stressed.idle(row.j, row.k) ||
-             (phase.material.surface_tension > 0 && !phase.rows.idle(row.j, row.k));
-    };
-    stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
-  }
-  return stressed;
-}
-
 struct StageFields {
   Field *rate;  // M_0, with the first stage M_0 - dt/2 M_1
   const Field *slope;
@@ -242,6 +229,18 @@ void close_walls(const Box &box, Field &velocity) {
 
 }  // namespace
 
+std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases) {
+  std::vector<char> stressed;
+  for (const Segment &row : box.rows()) {
+    const auto stresses = [&](const Phase &phase) {
+      return !phase.tensor.stressed.idle(row.j, row.k) ||
+             (phase.material.surface_tension > 0 && !phase.rows.idle(row.j, row.k));
+    };
+    stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
+  }
+  return stressed;
+}
+
 int rkl_stages(double dt, double dt_explicit) {
   if (!(dt_explicit > 0) || std::isinf(dt_explicit)) return 3;
   const double s = std::ceil(0.5 * (std::sqrt(9 + 16 * dt / dt_explicit) - 1) - 1e-9);
@@ -266,19 +265,17 @@ void set_sides(const BoxSides &box_sides, double start, double now, int s, Pass 
 
 PetscErrorCode super_time_step(const Domain &domain, GhostExchange &exchange, const BoxSides &box_sides,
                                double kinematic_viscosity, double time, double dt, int stages,
-                               const std::vector<Phase> &phases, const Field &velocity, SuperTimeStepping &work,
+                               const std::vector<char> &stressed, const Field &velocity, SuperTimeStepping &work,
                                Field &velocity_star, const RigidFaces *rigid, RigidMeans *means) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::viscous);
   const InverseSquares h = domain.inverse_squares();
   const StageSides sides(domain, box_sides);
   const int depth = StagePass::depth(domain, domain.split(), 2, deepest);
-  std::vector<char> stressed;
   for (Field *field : {&work.rate, &work.slope, &work.now, &work.before})
     if (*field) close_walls(domain, *field);
   std::vector<WantedGhosts> forces{{&work.rate, depth, nullptr, false}};
   if (work.slope) forces.push_back({&work.slope, depth, nullptr, false});
-  if (work.slope) stressed = stressed_rows(domain, phases);
   PetscCall(exchange.update_ghosts(forces));
   const auto time_of = [&](int j) { return time + rkl_stage_time(j, stages) * dt; };
   Pass pass;

@@ -51,12 +51,11 @@ bool may_be_unresolved(double trace, int dimension) {
   return (dimension == 2 ? mean * mean : mean * mean * mean) > 0.99 * largest_determinant;  // round-off aside
 }
 
-PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count) {
-  PetscFunctionBeginUser;
+long forget_unresolved(const Box &box, Phase &phase) {
   VerbScope scope(Verb::left_cauchy_green);
-  const Layout &layout = domain.layout();
-  const Int3 n = domain.cells();
-  const int dimension = domain.dimension(), deep = dimension == 3 ? 1 : 0;
+  const Layout &layout = box.layout();
+  const Int3 n = box.cells();
+  const int dimension = box.dimension(), deep = dimension == 3 ? 1 : 0;
   const ConstView phi = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
   const bool extended = rule.layers > 0;
@@ -105,6 +104,12 @@ PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count
         for (int d = 0; d < dimension; ++d) phase.tensor.field[d](i, j, k) *= factor;
         ++found;
       }
+  return found;
+}
+
+PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count) {
+  PetscFunctionBeginUser;
+  const long found = forget_unresolved(static_cast<const Box &>(domain), phase);
   PetscCallMPI(MPI_Allreduce(&found, count, 1, MPI_LONG, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }

@@ -18,7 +18,9 @@ bool may_be_unresolved(double trace, int dimension);
 /// Of the centres that evolve with a det B above these limits, off-diagonals averaged from the edges: where B is
 /// extended, the diagonals get the factor that makes det B 1. Where it is reset, B = I there and B_ab = 0 on the edges
 /// around; full cells that exceed their limit then, as neighbours of those, get such a factor. Only owned points; what
-/// is extended from them is not made anew. `count`: such centres of all ranks. Collective. Two ghosts of B, one of phi.
+/// is extended from them is not made anew. Returns how many such centres the box has. Two ghosts of B, one of phi.
+long forget_unresolved(const Box &box, Phase &phase);
+/// The same of all ranks. Collective.
 PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count);
 
 /// The same, if the largest trace leaves room for it.

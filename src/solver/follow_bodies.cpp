@@ -48,11 +48,14 @@ PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < now_.phases.size(); ++p) {
     long count = 0;
-    if (!now_.phases[p].material.elastic()) continue;
+    if (!now_.phases[p].material.elastic() || now_.phases[p].boxed) continue;
     PetscCall(find_and_forget(*domain_, extremes.trace[p], now_.phases[p], &count));
     now_.forgotten += count;
     if (count > 0) PetscCall(settle(now_.phases[p]));
   }
+  long count = 0;
+  if (has_boxed()) PetscCall(boxed_->forget_unresolved(extremes.trace, &count));
+  now_.forgotten += count;
   PetscFunctionReturn(0);
 }
 
@@ -88,6 +91,7 @@ PetscErrorCode Solver::look_behind(const Look &look) {
   phases_now_step_ = -1;
   phases_now_.resize(now_.phases.size());
   const auto swap = [this] {
+    forget_looks();
     for (std::size_t p = 0; p < phases_now_.size(); ++p) {
       Phase &phase = now_.phases[p], &copy = phases_now_[p];
       if (phase.label) phase.label.swap(copy.label);
@@ -131,12 +135,14 @@ PetscErrorCode Solver::look_back(const std::vector<double> &times, const Look &l
       solver->now_.time = time;
       solver->looks_back_ = 0;
       solver->phases_now_step_ = -1;
+      solver->forget_looks();
     }
   } const restore{this, end, now_.time};
   const std::ptrdiff_t values = end.count() * end.layout().size;
   for (const double time : times) {
     looks_back_ = restore.time - time;
     phases_now_step_ = -1;
+    forget_looks();
     now_.time = time;
     const double share = looks_back_ / now_.dt, *from = begin.data(), *to = end.data();
     double *velocity = now_.velocity.data();
@@ -157,7 +163,8 @@ PetscErrorCode Solver::follow_bodies(double dt) {
   now_.travel += now_.crossing_rate * dt;
   if (bodies_.bodies() == 0 || now_.travel < allowed) PetscFunctionReturn(0);
   PetscCall(fill_rigid(now_.time + dt, &now_.phases));
-  for (Phase &phase : now_.phases) PetscCall(carry_labels(*domain_, *exchange_, &phase));
+  for (Phase &phase : now_.phases)
+    if (phase.label) PetscCall(carry_labels(*domain_, *exchange_, &phase));
   PetscCall(bodies_.follow(*domain_, now_.phases));
   if (feeders_) PetscCall(feed_bodies());
   PetscCall(separate_bodies());

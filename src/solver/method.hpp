@@ -29,6 +29,10 @@ struct Method {
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
   /// v* = v + dt dv/dt, without more stages.
   bool explicit_predictor() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
+  /// Whether free elastic bodies may lie in boxes of their own (physics/free_solids.hpp).
+  bool boxes_bodies() const {
+    return staggered() && interface == InterfaceScheme::plic && exterior == SolidExterior::extrapolate;
+  }
   /// One step of (11)-(13) and nothing else.
   bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };

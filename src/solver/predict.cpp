@@ -68,6 +68,11 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
   PetscCall(work_->take("viscous stage before", dim, &before));
   PetscCall(momentum_rate(*domain_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection,
                           rate.fields(), slope));
+  if (has_boxed()) {
+    std::vector<BoxExchange::Target> targets{{&rate.fields(), 1}};
+    if (slope.field) targets.push_back({slope.field, slope.factor});
+    PetscCall(boxed_->add_forces(targets));
+  }
   if (rigid_ && fluid.inertia)
     advect_from_surfaces(*domain_, rigid_->faces(), now_.time, weno_epsilon(step.speed_scale), step.weights.now,
                          now_.velocity, now_.advection ? &now_.advection : nullptr, rate.fields());
@@ -81,7 +86,12 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
                        rate.fields(), slope_ ? &slope_ : nullptr);
   PetscCall(add_local_viscous_force(1, rate.fields()));
   SuperTimeStepping viscous{rate.part(0, dim), {}, velocity_star_.part(0, dim), before.part(0, dim)};
-  if (slope_) viscous.slope = slope_.part(0, dim);
+  std::vector<char> stressed;
+  if (slope_) {
+    viscous.slope = slope_.part(0, dim);
+    stressed = stressed_rows(*domain_, now_.phases);
+    boxed_->mark_rows(&stressed);
+  }
   int stages = 1;
   RigidMeans *means = rigid_impulse_ ? rigid_impulse_->means() : nullptr;
   if (spec_.viscous == ViscousScheme::rkl) stages = rkl_stages(dt, limits(FlowExtremes{}).viscous);
@@ -90,7 +100,7 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
                               viscous, velocity_star_, rigid(), nu, means));
   else
     PetscCall(super_time_step(*domain_, *exchange_, spec_.sides, fluid.kinematic_viscosity(), now_.time, dt, stages,
-                              now_.phases, now_.velocity, viscous, velocity_star_, rigid(), means));
+                              stressed, now_.velocity, viscous, velocity_star_, rigid(), means));
   stages_ += stages;
   PetscFunctionReturn(0);
 }

@@ -36,6 +36,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   solids_ = SolidTransport(spec.exterior == SolidExterior::extrapolate);
   const int dim = domain.dimension();
   exchange_ = std::make_unique<GhostExchange>(domain);
+  boxed_ = std::make_unique<FreeSolids>(domain, spec_.fluid, spec_.sides);
   work_ = std::make_unique<WorkSpace>(domain);
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(domain, *exchange_, &pressure_solver_));
@@ -176,7 +177,7 @@ EvolveRule Solver::evolve_rule(const Material &material) const {
 
 PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(*domain_, now_.velocity, now_.phases, extremes));
+  PetscCall(measure_extremes(*domain_, now_.velocity, now_.phases, extremes, boxed_->list()));
   for (int d = 0; rigid_ && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid_->faces().speed[d]);
   double scale = extremes->max_speed();
   scale = std::max(scale, wall_speed(spec_.sides));
@@ -193,9 +194,10 @@ std::size_t Solver::bytes() const {
                     velocity_star_.bytes() + next_fraction_.bytes() + next_tensor_.bytes() + now_.advection.bytes() +
                     work_->bytes() + flow_.bytes() + viscosity_.bytes() + pressure_solver_->bytes() +
                     (rigid_ ? rigid_->bytes() : 0) + (rigid_impulse_ ? rigid_impulse_->bytes() : 0) +
-                    (loads_ ? loads_->bytes() : 0) + (membranes_ ? membranes_->bytes() : 0);
+                    (loads_ ? loads_->bytes() : 0) + (membranes_ ? membranes_->bytes() : 0) + boxed_->bytes();
   for (const std::vector<Phase> *phases : {&now_.phases, &phases_now_})
     for (const Phase &phase : *phases) {
+      if (phase.boxed) continue;  // nobody writes there
       sum += phase.fraction.bytes() + phase.label.bytes();
       if (phase.material.carries_tensor()) sum += phase.tensor.field.bytes();  // else nobody writes there
     }
@@ -204,6 +206,7 @@ std::size_t Solver::bytes() const {
 
 PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_pressure) {
   PetscFunctionBeginUser;
+  forget_looks();
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   if (in_middle) PetscCall(look_behind(in_middle));
   if (now_.pressure_before) expect_pressure(dt);
@@ -219,6 +222,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
   }
   PetscCall(update_velocity_ghosts(velocity_star_, now_.time + dt, 1));
   PetscCall(project(dt));  // (8)-(13)
+  forget_looks();
   if (with_pressure) {
     now_.velocity.swap(velocity_star_);
     PetscCall(with_pressure());
@@ -240,13 +244,16 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
+  if (has_boxed()) PetscCall(boxed_->follow());
   if (spec_.linear_force()) {
     const double scale = -1 / (dt * spec_.fluid.density);
     PetscCall(compute_elastic_force(*domain_, scale, now_.phases, slope_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
     if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, false, slope_));
+    if (has_boxed()) PetscCall(boxed_->add_forces({{&slope_, -1 / dt}}));
   }
   PetscCall(transport(now_.phases, dt));
+  if (has_boxed()) PetscCall(boxed_->advance({now_.time, dt, now_.step}, now_.velocity));
   PetscFunctionReturn(0);
 }
 

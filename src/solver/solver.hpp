@@ -9,6 +9,7 @@
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"
 #include "physics/fluid.hpp"
+#include "physics/free_solids.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/membrane.hpp"
@@ -24,6 +25,7 @@
 #include "solver/state.hpp"
 
 #include <functional>
+#include <map>
 #include <memory>
 
 namespace eulastic {
@@ -56,6 +58,22 @@ public:
 
   /// Before prepare(); null or without bodies where nothing is rigid. Collective.
   PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
+  /// Adds a body of a species, whose phase is `boxed` and empty, to this rank: `phase` has material, phi and B on `box`
+  /// (physics/free_solids.hpp).
+  PetscErrorCode add_body(int number, int species, const Box &box, Phase &&phase);
+  /// Takes the labelled bodies of a species, whose phase is `boxed`, off the grid. Collective, before prepare().
+  PetscErrorCode box_bodies(int species);
+  /// Whether any species has its bodies in boxes of their own.
+  bool has_boxed() const;
+  const FreeSolids &boxed() const { return *boxed_; }
+  /// Adds a body that FreeSolids::packed() has made to this rank.
+  PetscErrorCode add_packed_body(const std::vector<double> &packed);
+  /// Gives each body to the rank that has the middle of its box. Collective.
+  PetscErrorCode send_bodies_home();
+  /// Those of this rank, as they are, without velocity.
+  std::vector<BodyInBox> boxed_bodies() const { return boxed_->list(); }
+  /// Takes away those of all ranks; others are added then.
+  void clear_boxed_bodies() { boxed_->clear(); }
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
   PetscErrorCode prepare();
   /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
@@ -108,6 +126,12 @@ public:
   /// The phases at the time of the velocity. With the staggered integrator they live half a step behind: a copy is
   /// brought up, the state is not touched. Valid until the next step.
   PetscErrorCode phases_now(const std::vector<Phase> **phases);
+  /// Bodies of this rank in boxes of their own, with the velocity, at its time, as phases_now(). Valid until the next
+  /// step. Collective.
+  PetscErrorCode bodies_now(std::vector<BodyInBox> *bodies);
+  /// Calls look(phases) with phases_now() where species whose bodies lie in boxes have them on the grid: phi is the
+  /// sum, B and the label are of the body that fills most. Collective.
+  PetscErrorCode with_bodies_on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look);
   /// Calls look() for each of `times` within the last step, with velocity and phases of that time, to second order;
   /// pressure is that of the step. The state is then what it was. Only with the staggered integrator, after step() and
   /// before phases_now().
@@ -180,6 +204,8 @@ private:
   PetscErrorCode begin_loads(double dt);
   PetscErrorCode settle_loads(double dt, const Field &divergence, Field &increment);
   PetscErrorCode separate_bodies();
+  PetscErrorCode show_bodies();
+  void forget_looks();
   PetscErrorCode settle(Phase &phase);
   PetscErrorCode find_rows(Phase &phase);
   Field idle_tensor(int components);  ///< work space between the steps
@@ -203,6 +229,7 @@ private:
   LocalViscosity viscosity_;            ///< of the step, where bodies have their own; else empty
   SolidTransport solids_;
   InterfaceTransport interface_;
+  std::unique_ptr<FreeSolids> boxed_;                ///< bodies in boxes; null where no phase is `boxed`
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies
@@ -212,6 +239,9 @@ private:
   ObstacleSolver *obstacles_ = nullptr;  ///< pressure_solver_, if it sees them
   std::vector<Phase> phases_now_;        ///< copies for phases_now(), the first one's B an idle_tensor()
   std::int64_t phases_now_step_ = -1;
+  std::vector<BodyInBox> bodies_now_;    ///< for bodies_now()
+  bool bodies_are_known_ = false;        ///< these are of this time
+  std::map<int, Phase> shown_;           ///< for with_bodies_on_grid(), by species; empty: not made yet
   double looks_back_ = 0;                ///< before the end of the step
   bool as_they_are_ = false;             ///< phases_now(), see look_behind()
   long stages_ = 0, sweeps_before_ = 0;  ///< the latter: before a restart

@@ -18,6 +18,9 @@ struct MovedRows {
   }
 };
 
+// Rigid bodies stay where they are, and others may lie in boxes of their own.
+bool moves_on_grid(const Phase &phase) { return !phase.material.is_rigid() && !phase.boxed; }
+
 }  // namespace
 
 // All phases together, so that their ghosts come together.
@@ -29,7 +32,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   if (membranes_) PetscCall(update_velocity_ghosts(now_.velocity, now_.time, MembraneTransport::velocity_ghosts));
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
-    if (phase.material.is_rigid()) continue;
+    if (!moves_on_grid(phase)) continue;
     if ((rows[p].swaps = swaps)) {
       rows[p].swapped_in = next_rows_;
       if (phase.material.elastic())
@@ -51,7 +54,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   std::vector<OccupiedRows::Moved> moved;
   std::vector<WantedGhosts> fractions, tensors;
   for (std::size_t p = 0; p < phases.size(); ++p)
-    if (!phases[p].material.is_rigid()) {
+    if (moves_on_grid(phases[p])) {
       fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
     }
@@ -59,7 +62,7 @@ PetscErrorCode Solver::transport(std::vector<Phase> &phases, double dt) {
   PetscCall(OccupiedRows::follow(*domain_, moved));  // sees what has come into ghosts, even of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
-    if (phase.material.is_rigid()) continue;  // it stays where it is
+    if (!moves_on_grid(phase)) continue;
     rows[p].join(phase.rows);
     fill_wall_ghosts_even(*domain_, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
     if (!phase.material.carries_tensor()) continue;

@@ -114,21 +114,22 @@ TEST_P(BoxExchangeTest, AddsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
     for (int first = 0; first < domain.ranks(); ++first) {
       const std::vector<std::size_t> mine = owned(first, deal);
       ASSERT_EQ(exchange.connect(numbered(mine)), 0);
-      std::vector<Field> fields;
+      std::vector<SegmentValues> values(mine.size());
       std::vector<ActiveSegments> segments(mine.size());
       for (std::size_t n = 0; n < mine.size(); ++n) {
         const Box &box = boxes[mine[n]];
-        Field &field = fields.emplace_back(box, 3);
+        Field field(box, 3);
         for (int f = 0; f < 3; ++f)
           for_each_point(box,
                          [&](const Int3 &p, const Int3 &at) { field[f](p[0], p[1], p[2]) = share(mine[n], f, at); });
         build_all(box, &segments[n]);
+        values[n].take(field, segments[n]);
       }
       std::vector<BoxExchange::Contribution> contributions;
-      for (std::size_t n = 0; n < mine.size(); ++n) contributions.push_back({&fields[n], &segments[n]});
+      for (std::size_t n = 0; n < mine.size(); ++n) contributions.push_back({&values[n], &segments[n]});
       Field grid(domain, 3);
       for (int f = 0; f < 3; ++f) grid.fill(f, -0.0);
-      ASSERT_EQ(exchange.add(contributions, grid), 0);
+      ASSERT_EQ(exchange.add(contributions, {{&grid, 1}}), 0);
       std::ptrdiff_t wrong = 0;
       for (int f = 0; f < 3; ++f)
         for_each_point(domain, [&](const Int3 &p, const Int3 &) {

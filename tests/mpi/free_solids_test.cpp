@@ -118,13 +118,13 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
     const Solver &solver = scene->solver;
     FreeSolids solids(domain, solver.spec().fluid, solver.spec().sides);
     {
-      const FreeSolids::Body placed{1, box_of_ball(), {}, {}, {}};
+      const FreeSolids::Body placed{1, 0, box_of_ball(), {}, {}};
       Phase one;
       one.material = phase().material;
       one.tensor.rule = phase().tensor.rule;
       bring_phase(domain.rank() == owner ? &placed : nullptr, &one.fraction, &one.tensor.field);
       if (domain.rank() == owner) {
-        ASSERT_EQ(solids.add(1, placed.box, std::move(one)), 0);
+        ASSERT_EQ(solids.add(1, 0, placed.box, std::move(one)), 0);
       }
     }
     Int3 first_box{};
@@ -134,6 +134,7 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
       ASSERT_EQ(scene->solver.measure(&extremes), 0);
       const double dt = scene->solver.limits(extremes).automatic();
       const State &state = scene->solver.state();
+      ASSERT_EQ(solids.follow(), 0);
       ASSERT_EQ(solids.advance({state.time, 0.5 * (state.dt + dt), state.step}, state.velocity), 0);
       ASSERT_EQ(scene->solver.step(dt), 0);
       if (step % 5 != 4) continue;
@@ -148,7 +149,7 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
         if (step == 4) first_box = body->box.layout().begin;
         moved += body->box.layout().begin != first_box;
       }
-      ASSERT_EQ(solids.add_forces(rate, {}), 0);
+      ASSERT_EQ(solids.add_forces({{&rate, 1}}), 0);
       ASSERT_EQ(compute_elastic_force(domain, 1 / solver.spec().fluid.density, scene->solver.state().phases, expected),
                 0);
       int wrong = 0, forced = 0;

@@ -67,7 +67,7 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   const std::string line =
       "-time_end 1 -grid_length 8,8,8 -species vessel,ball -vessel_shape slab -vessel_axis y -vessel_interval 0,.1 "
       "-vessel_shear_modulus 1 -ball_shape sphere -ball_radius .3 -ball_shear_modulus 1 -ball_placement lattice "
-      "-ball_count 4,4,4 -grid_cells ";
+      "-ball_count 4,4,4 -ball_body_force 1,0,0 -grid_cells ";  // not in boxes of their own
   EXPECT_EQ(expected_phases(parse_line(line + "64,64,64").config), 2);
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32").config), 3);  // as on a chessboard
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32 -ball_contact merge").config), 2);
@@ -76,12 +76,23 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   EXPECT_DOUBLE_EQ(bytes_per_rank(apart, {1, 1, 1}),
                    bytes_per_rank(merged, {1, 1, 1}) + bytes_per_phase(apart, {1, 1, 1}));
   // Phi, label and six of B, and the same at the time of the output; without modulus no B, the first B lies elsewhere.
-  const double fluid = bytes_per_rank(parse_line("-time_end 1 -grid_cells 32,32,32 -grid_length 8,8,8").config, {1, 1, 1});
+  const double fluid =
+      bytes_per_rank(parse_line("-time_end 1 -grid_cells 32,32,32 -grid_length 8,8,8").config, {1, 1, 1});
   std::string without = line;
   without.replace(without.find("-vessel_shear_modulus 1"), 23, "-vessel_shear_modulus 0");
   const Config soft = parse_line(without + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(merged, {1, 1, 1}), bytes_per_rank(soft, {1, 1, 1}) + 8 * 12 * std::pow(42, 3));
   EXPECT_GT(bytes_per_rank(soft, {1, 1, 1}), fluid);
+  // Bodies in boxes: four cells around each, and five ghosts; phi, B, and a copy of both with a velocity at the time of
+  // the output; the force.
+  std::string boxed = line;
+  boxed.replace(boxed.find("-ball_body_force 1,0,0"), 22, "");
+  const Config boxes = parse_line(boxed + "32,32,32").config;
+  EXPECT_EQ(expected_phases(boxes), 2);
+  const double reach = 2 * .3 * 4 + 2 * 4;
+  EXPECT_NEAR(bytes_in_boxes(boxes), 64 * 8. * (17 * std::pow(reach + 10, 3) + 3 * std::pow(reach, 3)), 1);
+  EXPECT_DOUBLE_EQ(bytes_per_rank(boxes, {1, 1, 1}),
+                   bytes_per_rank(merged, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
   // Viscosities of the place, at centres, on edges and along surfaces, three of the normal, six of the stress there,
   // and the pressure of the step before.
   const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;
