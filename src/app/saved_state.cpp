@@ -21,8 +21,7 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
   for (int d = 0; d < state.velocity.count(); ++d)
     fields.push_back({std::string("velocity_") + "xyz"[d], at_face[d], state.velocity[d]});
   fields.push_back({"pressure", at_centre, state.pressure[0]});
-  if (state.pressure_before)  // may be missing: earlier versions had none where bodies travel
-    fields.push_back({"pressure_before", at_centre, state.pressure_before[0], Stored::float64, true});
+  if (state.pressure_before) fields.push_back({"pressure_before", at_centre, state.pressure_before[0]});
   for (int d = 0; d < state.advection.count(); ++d)
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   for (Phase &phase : state.phases) {
@@ -155,7 +154,7 @@ void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *posit
   o.snapshot_time = reals["output_times"][1];
   o.profile_time = reals["output_times"][2];
   o.energy.set_numbers(reals["energy_budget"]);
-  if (reals.count("energy_made") > 0) o.energy.set_made_numbers(reals["energy_made"]);
+  o.energy.set_made_numbers(reals["energy_made"]);
   o.mach_max = reals["mach_max"][0];
   if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
   if (reals.count("pressure_interval") > 0) s.pressure_interval = reals["pressure_interval"][0];
@@ -208,9 +207,8 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   std::vector<Int3> references(own.size());
   PetscFunctionBeginUser;
   if (all == 0) PetscFunctionReturn(0);
-  const std::string earlier = file->has("bodies.references") ? "bodies." : "body_";  // of version 0.2.0 and before
-  PetscCall(file->read_share(earlier + "references", 3 * all, 3 * begin, &cells));
-  PetscCall(file->read_share(earlier + "first_volumes", all, begin, &first_volumes));
+  PetscCall(file->read_share("bodies.references", 3 * all, 3 * begin, &cells));
+  PetscCall(file->read_share("bodies.first_volumes", all, begin, &first_volumes));
   PetscCall(require_range(domain, path, find_absurd_body(cells, first_volumes)));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
@@ -299,10 +297,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   const bool fits = set_colours(domain, colours, &solver->state().phases);
   PetscCall(fail_together(domain.comm(), fits ? "" : path + ": colours is of another scene"));
   CheckpointNumbers expected = numbers_of(*solver, *position);
-  if (solver->keeps_rigid_loads() && file->has("rigid_loads"))  // else of an earlier version
-    expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
-  if (!file->has("pressure_interval")) expected.reals.erase("pressure_interval");
-  if (!file->has("energy_made")) expected.reals.erase("energy_made");  // of version 0.2.0 and before
+  if (solver->keeps_rigid_loads()) expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char *kind = "eulastic checkpoint";
-constexpr long format = 2;  // raised whenever a file means something else
+constexpr long format = 3;  // raised whenever a file means something else
 
 // Those of rank 0, which alone knows all bodies.
 template <class T>
@@ -109,7 +109,6 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
                                     ? ""
                                     : path + ": has format " + std::to_string(long(number)) + " (written by version " +
                                           version_ + "), this program reads format " + std::to_string(format)));
-  if (!file_.has_attribute("/", "content")) PetscFunctionReturn(0);  // of version 0.2.0 and before
   std::string content, expected;
   PetscCall(file_.read_attribute("/", "content", &expected));
   PetscCall(find_content(file_, &content));

@@ -307,14 +307,14 @@ PetscErrorCode FreeSolids::advance(const Step &step, const Field &velocity) {
     Field flow = Field::in_memory(body.box, dimension, memory + components * body.box.layout().size);
     bring_velocity(b, step, velocity, &flow);
     PetscCall(move(body.box, step, flow, stage, &body.phase));
-    find_force(&body, memory);
   }
+  PetscCall(follow());
+  for (Body &body : bodies_) find_force(&body, scratch(body.box, body.box.dimension()));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode FreeSolids::look(const Step &step, const Field &velocity, std::vector<BodyInBox> *seen) {
   PetscFunctionBeginUser;
-  PetscCall(follow());
   PetscCall(exchange_.fetch(velocity));
   *seen = list();
   seen_.clear();

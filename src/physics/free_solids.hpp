@@ -44,8 +44,7 @@ public:
   PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
   void clear();
 
-  /// Makes boxes anew where bodies have come near an end of theirs. In every step before add_forces() and advance().
-  /// Collective.
+  /// Makes boxes anew where bodies have come near an end of theirs; once after bodies were added. Collective.
   PetscErrorCode follow();
   struct Step {
     double time;  ///< of the velocity

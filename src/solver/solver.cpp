@@ -110,6 +110,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(membranes_->find_walls(rigid));
   }
   PetscCall(place_markers());
+  if (has_boxed()) PetscCall(boxed_->follow());
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
@@ -147,6 +148,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
   PetscCall(start_rigid_loads());
+  if (has_boxed()) PetscCall(boxed_->follow());
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*domain_, phase));
@@ -244,7 +246,6 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
 PetscErrorCode Solver::transport_to_middle(double dt) {
   PetscFunctionBeginUser;
   if (now_.phases.empty()) PetscFunctionReturn(0);
-  if (has_boxed()) PetscCall(boxed_->follow());
   if (spec_.linear_force()) {
     const double scale = -1 / (dt * spec_.fluid.density);
     PetscCall(compute_elastic_force(*domain_, scale, now_.phases, slope_));

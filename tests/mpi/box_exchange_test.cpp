@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace eulastic {
 namespace {
@@ -17,10 +18,10 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 struct Block {
   Int3 begin, cells;
 };
-// In 13 x 10 x 11 cells with walls in y: inside, across each periodic side and all edges of x and z, at both walls, as
-// long as the domain, and two at the same place.
+// In 13 x 10 x 11 cells with walls in y: inside, across each periodic side and all edges of x and z, at both walls,
+// longer than the domain, so that it meets itself, as long as the domain, and two at the same place.
 const std::vector<Block> blocks{{{3, 2, 4}, {4, 5, 3}},     {{-2, 0, 3}, {6, 4, 6}},   {{11, 6, 9}, {5, 4, 5}},
-                                {{-13, 3, -3}, {13, 3, 5}}, {{4, 0, -5}, {3, 10, 11}}, {{4, 0, -5}, {3, 10, 11}}};
+                                {{-13, 3, -3}, {19, 3, 5}}, {{4, 0, -5}, {3, 10, 11}}, {{4, 0, -5}, {3, 10, 11}}};
 
 // On every rank count with x whole, and with x split.
 class BoxExchangeTest : public ::testing::TestWithParam<bool> {
@@ -91,22 +92,24 @@ TEST_P(BoxExchangeTest, BringsEveryPointAndNoMore) {
   }
 }
 
+// What box b gives to a component at a point of it.
+double share(std::size_t b, int f, const Int3 &p) {
+  static constexpr std::array<double, 6> sizes{1e16, 1, -1e16, 3, -1e16, 1e16};
+  return (p[0] + p[1] + f) % 3 == 0 ? 0 : sizes[b] * (1 + p[2] + 0.1 * p[0]);
+}
+
 // Of 1e16, 1 and -1e16 every order has another sum; what a box does not add leaves -0 as it is.
 TEST_P(BoxExchangeTest, AddsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
-  const auto share = [](std::size_t b, int f, const Int3 &at) {
-    static constexpr std::array<double, 6> sizes{1e16, 1, -1e16, 3, -1e16, 1e16};
-    return (at[0] + at[1] + f) % 3 == 0 ? 0 : sizes[b] * (1 + at[2]);
-  };
   Field expected(domain, 3);
   for (int f = 0; f < 3; ++f) expected.fill(f, -0.0);
   for (std::size_t b = 0; b < boxes.size(); ++b)
     for (int f = 0; f < 3; ++f)
-      for_each_point(boxes[b], [&](const Int3 &, const Int3 &at) {
+      for_each_point(boxes[b], [&](const Int3 &own, const Int3 &at) {
         const Int3 &begin = domain.layout().begin;
         const Int3 p{at[0] - begin[0], at[1] - begin[1], at[2] - begin[2]};
         for (int d = 0; d < 3; ++d)
           if (p[d] < 0 || p[d] >= domain.points_end(d, true)) return;
-        const double value = share(b, f, at);
+        const double value = share(b, f, own);
         if (value != 0) expected[f](p[0], p[1], p[2]) += value;
       });
   BoxExchange exchange(domain, 3);
@@ -120,8 +123,7 @@ TEST_P(BoxExchangeTest, AddsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
         const Box &box = boxes[mine[n]];
         Field field(box, 3);
         for (int f = 0; f < 3; ++f)
-          for_each_point(box,
-                         [&](const Int3 &p, const Int3 &at) { field[f](p[0], p[1], p[2]) = share(mine[n], f, at); });
+          for_each_point(box, [&](const Int3 &p, const Int3 &) { field[f](p[0], p[1], p[2]) = share(mine[n], f, p); });
         build_all(box, &segments[n]);
         values[n].take(field, segments[n]);
       }
@@ -140,13 +142,53 @@ TEST_P(BoxExchangeTest, AddsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
     }
 }
 
-TEST_P(BoxExchangeTest, RefusesABoxThatMeetsItself) {
-  const Box box(domain.domain_shape(), {0, 0, 0}, {14, 3, 3}, 3);
-  BoxExchange exchange(domain, 1);
-  PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr);
-  const PetscErrorCode error = exchange.connect({{&box, 1}});
-  PetscPopErrorHandler();
-  EXPECT_EQ(error, PETSC_ERR_ARG_SIZ);
+// Every point of every box once, with all of its values, box after box.
+TEST_P(BoxExchangeTest, CollectsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
+  struct Seen {
+    int number;
+    std::ptrdiff_t offset;
+    std::array<double, 3> values;
+    bool operator<(const Seen &other) const {
+      return std::tie(number, offset, values) < std::tie(other.number, other.offset, other.values);
+    }
+    bool operator==(const Seen &other) const {
+      return std::tie(number, offset, values) == std::tie(other.number, other.offset, other.values);
+    }
+  };
+  std::vector<Seen> expected;
+  for (std::size_t b = 0; b < boxes.size(); ++b)
+    for_each_point(boxes[b], [&](const Int3 &own, const Int3 &at) {
+      const Int3 &begin = domain.layout().begin;
+      const Int3 p{at[0] - begin[0], at[1] - begin[1], at[2] - begin[2]};
+      for (int d = 0; d < 3; ++d)
+        if (p[d] < 0 || p[d] >= domain.points_end(d, true)) return;
+      expected.push_back({numbered({b})[0].number,
+                          domain.layout().offset(p[0], p[1], p[2]),
+                          {share(b, 0, own), share(b, 1, own), share(b, 2, own)}});
+    });
+  std::sort(expected.begin(), expected.end());
+  BoxExchange exchange(domain, 3);
+  for (const bool deal : {true, false}) {
+    const std::vector<std::size_t> mine = owned(1, deal);
+    ASSERT_EQ(exchange.connect(numbered(mine)), 0);
+    std::vector<Field> fields;
+    std::vector<const Field *> list;
+    for (const std::size_t b : mine) {
+      Field &field = fields.emplace_back(boxes[b], 3);
+      for (int f = 0; f < 3; ++f)
+        for_each_point(boxes[b], [&](const Int3 &p, const Int3 &) { field[f](p[0], p[1], p[2]) = share(b, f, p); });
+    }
+    for (const Field &field : fields) list.push_back(&field);
+    std::vector<Seen> seen;
+    ASSERT_EQ(exchange.collect(list,
+                               [&](int number, std::ptrdiff_t offset, const double *values) {
+                                 EXPECT_TRUE(seen.empty() || seen.back().number <= number);
+                                 seen.push_back({number, offset, {values[0], values[1], values[2]}});
+                               }),
+              0);
+    std::sort(seen.begin(), seen.end());
+    EXPECT_TRUE(seen == expected) << seen.size() << " points, not " << expected.size();
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SplitX, BoxExchangeTest, ::testing::Bool());
