@@ -2,6 +2,7 @@
 #include "base/rank_zero.hpp"
 #include "kernels/interface_flux.hpp"
 #include "support/interface_scene.hpp"
+#include "support/on_one_rank.hpp"
 
 #include <gtest/gtest.h>
 
@@ -103,13 +104,6 @@ void sweep_whole_rows(InterfaceScene &scene, GhostExchange &exchange, double dt)
   }
 }
 
-// Scenes of one rank need not run on all of them.
-bool on_first_rank() {
-  int rank = 0;
-  MPI_Comm_rank(run_communicator(), &rank);
-  return rank == 0;
-}
-
 double largest_courant_sum(const InterfaceScene &scene) {
   Real3 largest{};
   scene.each_owned([&](int i, int j, int k) {
@@ -158,7 +152,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
 
 // Far from the interface nothing is computed, and what is there stays exact.
 TEST(InterfaceBand, IsThinAndLeavesTheRestAlone) {
-  if (!on_first_rank()) return;
+  if (!is_alone()) return;
   InterfaceScene scene;
   GridSpec spec = make_spec({64, 48, 40}, 0);
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);
@@ -180,7 +174,7 @@ TEST(InterfaceBand, IsThinAndLeavesTheRestAlone) {
 
 // Mirrored in any directions: the same bits at the mirrored place.
 TEST(InterfaceMirror, GivesTheMirroredBits) {
-  if (!on_first_rank()) return;
+  if (!is_alone()) return;
   for (const Int3 &cells : {Int3{12, 11, 13}, Int3{17, 14, 1}})
     for (int mirror = 1; mirror < (cells[2] == 1 ? 4 : 8); ++mirror)
       for (const int walls : {0, 2}) {
@@ -226,7 +220,7 @@ TEST(InterfaceMirror, GivesTheMirroredBits) {
 
 // 0 <= phi <= 1 always, and the volume to round-off, for any discretely solenoidal velocity; with walls as well.
 TEST(InterfaceVolume, IsKeptByARandomSolenoidalVelocity) {
-  if (!on_first_rank()) return;
+  if (!is_alone()) return;
   for (const int walls : {0, 2, 7}) {
     InterfaceScene scene;
     const GridSpec spec = make_spec({24, 22, 20}, walls);
@@ -248,7 +242,7 @@ TEST(InterfaceVolume, IsKeptByARandomSolenoidalVelocity) {
 
 // Also when it is not solenoidal: only the Courant numbers count.
 TEST(InterfaceVolume, StaysBoundedInACompressibleFlow) {
-  if (!on_first_rank()) return;
+  if (!is_alone()) return;
   InterfaceScene scene;
   const GridSpec spec = make_spec({16, 15, 14}, 0);
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, spec), 0);

@@ -4,6 +4,7 @@
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
 #include "pressure/smac.hpp"
+#include "support/on_one_rank.hpp"
 #include "support/open_boundaries.hpp"
 
 #include <cstring>
@@ -60,6 +61,7 @@ const std::vector<Int3> shapes{{24, 20, 1}, {13, 18, 1}, {16, 12, 14}, {9, 14, 7
 }  // namespace
 
 TEST(OpenPressure, AllSolversFindTheSame) {
+  if (!is_alone()) return;
   for (const Int3 &cells : shapes)
     for (const GridSpec &spec : open_boundaries(cells)) {
       OpenScene exact(PETSC_COMM_SELF, spec, Kind::smac);
@@ -94,6 +96,7 @@ TEST(OpenPressure, SameBitsOnAnyRanks) {
 
 // V-cycles converge as between walls: never more sweeps than half as many again.
 TEST(OpenPressure, SweepsStayFew) {
+  if (!is_alone()) return;
   for (const Int3 &cells : {Int3{64, 64, 1}, Int3{37, 50, 1}, Int3{32, 32, 32}, Int3{19, 21, 26}})
     for (const GridSpec &spec : open_boundaries(cells)) {
       OpenScene scene(PETSC_COMM_SELF, spec, Kind::sweeps);

@@ -1,6 +1,7 @@
 // Drops that reach across ranks, walls and planes of symmetry: the same bits on any number of ranks.
 #include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "support/on_one_rank.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,8 @@ End run(MPI_Comm comm, const Case &c) {
 class Drops : public testing::TestWithParam<Case> {};
 
 TEST_P(Drops, SameBitsAsOnOneRank) {
-  const End all = run(run_communicator(), GetParam()), alone = run(PETSC_COMM_SELF, GetParam());
+  const End all = run(run_communicator(), GetParam());
+  const End alone = on_one_rank([](MPI_Comm comm) { return run(comm, GetParam()); });
   EXPECT_EQ(all.hash, alone.hash);
   EXPECT_EQ(std::memcmp(&all.surface, &alone.surface, sizeof all.surface), 0);
 }
