@@ -46,7 +46,7 @@ History strong_disc(int cells, PressureKind pressure) {
   EXPECT_EQ(solver.prepare(), 0);
   History history;
   double volume = 0;
-  const int steps = 150 * cells / 64 * 10;  // fifteen times a whole number
+  const int steps = 375 * cells / 16;  // fifteen times a whole number
   for (int n = 0; n <= 15; ++n) {
     if (n > 0) {
       EXPECT_EQ(scene.run(10 * n, steps / 15), 0);
@@ -73,8 +73,8 @@ double distance(const std::vector<double> &a, const std::vector<double> &b) {
 }
 
 TEST(StrongDisc, ConvergesAndKeepsItsVolume) {
-  const History h[3] = {strong_disc(64, PressureKind::smac), strong_disc(128, PressureKind::smac),
-                        strong_disc(256, PressureKind::smac)};
+  const History h[3] = {strong_disc(48, PressureKind::smac), strong_disc(96, PressureKind::smac),
+                        strong_disc(192, PressureKind::smac)};
   const auto observed = [&](const char *name, std::vector<double> History::*q) {
     const double e[2] = {distance(h[0].*q, h[1].*q), distance(h[1].*q, h[2].*q)};
     std::printf("  disc, %s at t = 150: %.7f %.7f %.7f, order over the history %.2f\n", name, (h[0].*q).back(),
