@@ -101,9 +101,9 @@ class OpenSides(SceneCase):
         for extra in ((), ("-method", "classic", "-guard_divergence", "0", "-guard_mach", "0")):
             options = [*scene[:-1], "acm", *box[1], there, "2,.45,0", *extra]  # ends when half of it is out
             options[options.index("1.6")] = ".3"
-            hashes = {self.run_program(f"ranks{ranks}{len(extra)}", *options, ranks=ranks).summary["state_hash"]
-                      for ranks in (1, 2, 3)}
-            self.run_program(f"half{len(extra)}", *options, "-time_steps_max", "45", "-checkpoint_interval", "1")
+            runs = self.run_together({f"ranks{ranks}{len(extra)}": (options, {"ranks": ranks}) for ranks in (1, 2, 3)} |
+                                     {f"half{len(extra)}": ([*options, "-time_steps_max", "45", "-checkpoint_interval", "1"], {})})
+            hashes = {runs[f"ranks{ranks}{len(extra)}"].summary["state_hash"] for ranks in (1, 2, 3)}
             hashes.add(self.run_program(f"rest{len(extra)}", *options, "-restart", self.room / f"half{len(extra)}",
                                         ranks=2).summary["state_hash"])
             self.assertEqual(len(hashes), 1)
@@ -188,14 +188,12 @@ class OpenSides(SceneCase):
             self.assertAlmostEqual(outlet["flow_rate"], -.1, delta=1e-7)
             self.assertAlmostEqual(outlet["pressure"], 3, delta=1e-6)
             self.assertAlmostEqual((inlet["pressure"] - outlet["pressure"]) / drop, 1, delta=.02)
-            for ranks in (2, 3):
-                other = self.run_program(f"{solver}{ranks}", *scene, "-pressure_solver", solver, "-time_end", ".5",
-                                         "-snapshot_interval", ".5", "-pressure_xmax_resistance", "30", ranks=ranks)
-                self.assertEqual(other.summary["state_hash"], run.summary["state_hash"])
-        half = [*scene, "-pressure_xmax_resistance", "30", "-time_end", ".5"]
-        self.run_program("half", *half, "-time_steps_max", "20", "-checkpoint_interval", ".5")
-        rest = self.run_program("rest", *half, "-restart", self.room / "half", ranks=2).summary
-        self.assertEqual(rest["state_hash"], self.run_program("whole", *half).summary["state_hash"])
+            first = [*scene, "-pressure_solver", solver, "-pressure_xmax_resistance", "30", "-time_end", ".5", "-time_steps_max"]
+            runs = self.run_together({f"{solver}{ranks}": ([*first, "12"], {"ranks": ranks}) for ranks in (1, 2, 3)} |
+                                     {f"{solver}_half": ([*first, "6", "-checkpoint_interval", ".5"], {})})
+            rest = self.run_program(f"{solver}_rest", *first, "12", "-restart", self.room / f"{solver}_half", ranks=2)
+            for other in (runs[f"{solver}2"], runs[f"{solver}3"], rest):
+                self.assertEqual(other.summary["state_hash"], runs[f"{solver}1"].summary["state_hash"])
 
     def test_velocity_of_an_inlet_is_that_of_its_open_part(self):
         """In a rigid tube the flow rate is that velocity times the section of the lumen; in a box without bodies, of the side."""
@@ -254,10 +252,9 @@ class OpenSides(SceneCase):
             other = side[0] + ("min" if side.endswith("max") else "max")
             scene = (f"-grid_cells {grid} -boundary_{side} inflow -boundary_{other} pressure -fluid_viscosity .1 "
                      "-time_end .01").split()
-            hashes = {self.run_program(f"{side}_{path.stem}{ranks}", *scene, f"-inflow_{side}_profile", path,
-                                       ranks=ranks).summary["state_hash"]
-                      for path, ranks in ((text, 1), (plain, 1), (plain, 2), (vectors, 1), (vectors, 3))}
-            self.assertEqual(len(hashes), 1, side)
+            runs = self.run_together({f"{side}_{path.stem}{ranks}": ([*scene, f"-inflow_{side}_profile", path], {"ranks": ranks})
+                                      for path, ranks in ((text, 1), (plain, 1), (plain, 2), (vectors, 1), (vectors, 3))})
+            self.assertEqual(len({run.summary["state_hash"] for run in runs.values()}), 1, side)
 
     def test_profiles_that_are_refused(self):
         def file_of(name, **datasets):

@@ -77,8 +77,9 @@ class Pistons(SceneCase):
             if name == "deep":
                 at = options.index("-grid_cells")
                 del options[at:at + 2]
-            hashes = {self.run_program(f"{name}{ranks}", *options, ranks=ranks).summary["state_hash"] for ranks in (1, 2, 3)}
-            self.run_program(f"{name}_half", *options, "-time_steps_max", "8", "-checkpoint_interval", "1")
+            runs = self.run_together({f"{name}{ranks}": (options, {"ranks": ranks}) for ranks in (1, 2, 3)} |
+                                     {f"{name}_half": ([*options, "-time_steps_max", "8", "-checkpoint_interval", "1"], {})})
+            hashes = {runs[f"{name}{ranks}"].summary["state_hash"] for ranks in (1, 2, 3)}
             hashes.add(self.run_program(f"{name}_rest", *options, "-restart", self.room / f"{name}_half",
                                         ranks=2).summary["state_hash"])
             self.assertEqual(len(hashes), 1, name)

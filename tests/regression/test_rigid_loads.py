@@ -180,8 +180,9 @@ class RigidLoads(SceneCase):
                   "travels": [*JOURNEYS["sphere"].all_options(1, .2), "-part_angular_velocity", "1,0,2", "-body_force", "1,0,0"]}
         for scene, options in scenes.items():
             options = [*options, "-time_steps_max", "6"]
-            runs = [self.run_program(f"{scene}{ranks}", *options, ranks=ranks) for ranks in (1, 2, 3)]
-            self.run_program(f"{scene} half", *options[:-1], "3", "-checkpoint_interval", "1")
+            plan = {f"{scene}{ranks}": (options, {"ranks": ranks}) for ranks in (1, 2, 3)}
+            plan[f"{scene} half"] = [*options[:-1], "3", "-checkpoint_interval", "1"], {}
+            runs = list(self.run_together(plan).values())[:3]
             runs.append(self.run_program(f"{scene} rest", *options, "-restart", self.room / f"{scene} half", ranks=2))
             for run in runs[1:]:
                 for name in "force", "torque":

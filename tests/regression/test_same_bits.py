@@ -2,11 +2,9 @@
 """The same bits on 1 to 4 ranks, with threads, after a restart, with nothing skipped and with AVX-512 or without: scenes that
 together contain every pair of features (tests/support/scene_pairs.py), and scenes that are difficult in one respect.
 
-Needs EULASTIC_RUN_MANY, EULASTIC_RUN_MANY_AVX2 and EULASTIC_MPIEXEC. EULASTIC_PARTS and EULASTIC_PART (from 0) run a part
-of the paired scenes.
+Needs EULASTIC_RUN_MANY, EULASTIC_RUN_MANY_AVX2 and EULASTIC_MPIEXEC.
 """
 import math
-import os
 import pathlib
 import sys
 import tempfile
@@ -22,7 +20,6 @@ from eulastic import Run  # noqa: E402
 from many_runs import Plan  # noqa: E402
 from processor import has_avx512  # noqa: E402
 
-PARTS, PART = int(os.environ.get("EULASTIC_PARTS", 1)), int(os.environ.get("EULASTIC_PART", 0))
 CANDIDATES, SEED = 700, 1
 STEPS = 4
 
@@ -49,7 +46,7 @@ class WithRoom(unittest.TestCase):
 
 class PairedScenes(WithRoom):
     def chosen(self):
-        """{name: (values, words)} of this part of the scenes."""
+        """{name: (values, words)} of the scenes, and the number of pairs that they contain."""
         places = scene_pairs.files(self.room)
         plan = Plan(self.room)
         found = scene_pairs.candidates(CANDIDATES, SEED)
@@ -64,11 +61,10 @@ class PairedScenes(WithRoom):
         for feature, values in scene_pairs.FEATURES.items():  # nothing that a table names is refused altogether
             for value in values:
                 self.assertTrue(any((feature, value) in pair for pair in covered), f"{feature}: {value}")
-        return {f"scene{n}": (values, scene_pairs.words(values, places)) for n, values in enumerate(scenes)
-                if n % PARTS == PART}, len(scenes), len(covered)
+        return {f"scene{n}": (values, scene_pairs.words(values, places)) for n, values in enumerate(scenes)}, len(covered)
 
     def test_every_pair(self):
-        scenes, number, covered = self.chosen()
+        scenes, covered = self.chosen()
         whole = lambda words, *more: [*words, "-time_steps_max", STEPS, *more]
         plan, alone = Plan(self.room), Plan(self.room, ranks=1)
         for name, (_, words) in scenes.items():
@@ -95,7 +91,7 @@ class PairedScenes(WithRoom):
                 restarted = self.results(outcomes, f"{name}_restarted")
                 self.assertEqual(restarted["state_hash"], one["state_hash"], "restarted")
                 ran += 1
-        print(f"{number} scenes with {covered} pairs of features, {ran} of {len(scenes)} in this part ran and agree")
+        print(f"{len(scenes)} scenes with {covered} pairs of features, {ran} ran and agree")
 
 
 class DifficultScenes(WithRoom):

@@ -37,7 +37,7 @@ class Unresolved(unittest.TestCase):
         self.room = pathlib.Path(room.name)
 
     def run_scene(self, *options, directory="run"):
-        return self.run_in_ways({directory: (options, {})})[directory]
+        return self.run_in_ways({directory: (options, {})}, ranks=1)[directory]
 
     def run_in_ways(self, runs, ranks=4, program="EULASTIC_RUN_MANY"):
         """{name: (options, how Plan.add takes them)}, side by side; {name: (summary, what was said on standard error, but of

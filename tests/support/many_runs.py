@@ -11,6 +11,8 @@ import subprocess
 import h5py
 
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+# One rank by itself needs no daemon of Open MPI, nor a directory.
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
 
 
 @dataclasses.dataclass
@@ -59,8 +61,9 @@ class Plan:
         plan = self.room / "plan.txt"
         plan.write_text("\n".join(self.lines) + "\n")
         launcher = [MPIEXEC, "--oversubscribe", "-n", str(self.ranks)] if self.ranks > 1 else []
+        environment = os.environ if self.ranks > 1 else {**os.environ, **ALONE}
         done = subprocess.run([*launcher, os.environ[program], str(plan)], capture_output=True, text=True, timeout=timeout,
-                              stdin=subprocess.DEVNULL)
+                              stdin=subprocess.DEVNULL, env=environment)
         outcomes = {}
         for name in self.names:
             text = lambda end: (self.room / (name + end)).read_text() if (self.room / (name + end)).exists() else ""
