@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A run that is refused, or stops before its first step is done, leaves its directory as it was, whatever the reason.
 
-Needs EULASTIC and EULASTIC_MPIEXEC.
+Needs EULASTIC, EULASTIC_RUN_MANY and EULASTIC_MPIEXEC.
 """
 import fcntl
 import hashlib
@@ -11,8 +11,13 @@ import pathlib
 import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+sys.dont_write_bytecode = True
+from many_runs import Plan  # noqa: E402
 
 MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 SCENE = ("-grid_cells 16,16,1 -grid_length 1,1,1 -fluid_viscosity .1 -body_force 1,0,0 -species disc -disc_shape sphere "
@@ -72,16 +77,26 @@ class NothingIsLost(unittest.TestCase):
                               env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
 
     def refuse(self, cases):
+        """On one rank each by itself, on two one after the other in one start of MPI."""
         before = listing(self.room)
-        for ranks in (1, 2):
+        with tempfile.TemporaryDirectory() as beside:
+            plan, statuses = Plan(beside, ranks=2), {}
             for why, (words, status) in cases.items():
-                with self.subTest(why, ranks=ranks):
-                    for name in "RUN", "EMPTY", "DAMAGED":
-                        words = words.replace(name, str(self.room / name.lower()))
-                    done = self.start(*SCENE, "-output_dir", self.room / "run", *words.split(), ranks=ranks)
+                for name in "RUN", "EMPTY", "DAMAGED":
+                    words = words.replace(name, str(self.room / name.lower()))
+                case = [*SCENE, "-output_dir", self.room / "run", *words.split()]
+                with self.subTest(why):
+                    done = self.start(*case)
                     self.assertEqual(done.returncode, status, done.stdout + done.stderr)
                     self.assertEqual(done.stderr.count("eulastic: error:"), 1, done.stderr)
                     self.assertEqual(listing(self.room), before)
+                plan.add(why, *case, ranks=2, output=False)
+                statuses[why] = status
+            for why, outcome in plan.execute(cwd=self.room).items():
+                with self.subTest(why, ranks=2):
+                    self.assertEqual(outcome.code, statuses[why], outcome.out + outcome.err)
+                    self.assertEqual(outcome.err.count("eulastic: error:"), 1, outcome.err)
+            self.assertEqual(listing(self.room), before)
 
     def test_restarts(self):
         self.refuse(RESTARTS)

@@ -249,6 +249,8 @@ class Pictures(WithFolder):
 
 
 class RealRun(WithFolder):
+    """What scripts/run does with directories; nothing of it computes."""
+
     def test_half_a_run_goes_on_from_its_checkpoint(self):
         command = (SCRIPTS / "run", ROOT / "options/disc_in_channel.opts", self.folder, "-grid_cells", "16,16,1",
                    "-time_end", "20", "-series_interval", "2", "-checkpoint_interval", "7")
@@ -294,28 +296,6 @@ class RealRun(WithFolder):
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
         self.assertFalse((self.folder / "new").exists())
 
-    def test_figure_of_the_paper(self):
-        command = SCRIPTS / "studies/paper/paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10
-        done = start(*command)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        runs = [Run(self.folder / solver) for solver in ("smac", "acm")]
-        self.assertEqual([run.options["pressure_solver"] for run in runs], ["smac", "acm"])
-        times = [snapshot.time for snapshot in runs[0].snapshots]
-        self.assertEqual((times[0], times[-1]), (0, 10))
-        picture = matplotlib.image.imread(self.folder / "paper_figure2.png")[..., :3]
-        height, width = picture.shape[0] // 2, picture.shape[1] // 4
-        for row in range(2):
-            for column in range(3):
-                panel = picture[row * height:(row + 1) * height, column * width:(column + 1) * width]
-                self.assertGreater((numpy.ptp(panel, axis=2) > 0.3).sum(), 1000, (row, column))  # colours
-        last = (self.folder / "paper_figure2.txt").read_text().splitlines()[4].split()
-        self.assertEqual(float(last[0]), 10)
-        ways = numpy.linalg.norm(runs[0].bodies.centroid[-1] - runs[0].bodies.centroid[0], axis=1)
-        self.assertAlmostEqual(float(last[1]), ways.mean(), delta=1e-4)
-        self.assertLess(float(last[3]), 1e-3 * ways.mean())
-        again = start(*command)
-        self.assertEqual(again.stdout.count("holds this run already"), 2 if os.environ.get("DISPLAY") else 4)
-
     def test_a_finished_run_is_used_again(self):
         case = self.folder / "case.opts"
         case.write_text("# a disc in a periodic box\n-grid_cells 16,16,1\n-grid_length 1,1,1\n-fluid_viscosity 0.1\n"
@@ -338,6 +318,30 @@ class RealRun(WithFolder):
         self.assertEqual(results.snapshots[-1].velocity().shape, (3, 1, 16, 16))
         numpy.testing.assert_allclose(results.bodies.centroid[0, :, :2], [[0.5, 0.5]], atol=1e-6)
         self.assertEqual(start(SCRIPTS / "plot", self.folder / "out").returncode, 0)
+
+
+class Figure(WithFolder):
+    def test_figure_of_the_paper(self):
+        command = SCRIPTS / "studies/paper/paper_figure2", "--output", self.folder, "--cells", 16, "--time-end", 10
+        done = start(*command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        runs = [Run(self.folder / solver) for solver in ("smac", "acm")]
+        self.assertEqual([run.options["pressure_solver"] for run in runs], ["smac", "acm"])
+        times = [snapshot.time for snapshot in runs[0].snapshots]
+        self.assertEqual((times[0], times[-1]), (0, 10))
+        picture = matplotlib.image.imread(self.folder / "paper_figure2.png")[..., :3]
+        height, width = picture.shape[0] // 2, picture.shape[1] // 4
+        for row in range(2):
+            for column in range(3):
+                panel = picture[row * height:(row + 1) * height, column * width:(column + 1) * width]
+                self.assertGreater((numpy.ptp(panel, axis=2) > 0.3).sum(), 1000, (row, column))  # colours
+        last = (self.folder / "paper_figure2.txt").read_text().splitlines()[4].split()
+        self.assertEqual(float(last[0]), 10)
+        ways = numpy.linalg.norm(runs[0].bodies.centroid[-1] - runs[0].bodies.centroid[0], axis=1)
+        self.assertAlmostEqual(float(last[1]), ways.mean(), delta=1e-4)
+        self.assertLess(float(last[3]), 1e-3 * ways.mean())
+        again = start(*command)
+        self.assertEqual(again.stdout.count("holds this run already"), 2 if os.environ.get("DISPLAY") else 4)
 
 
 if __name__ == "__main__":

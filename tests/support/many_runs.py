@@ -56,14 +56,14 @@ class Plan:
         self.lines.append("wait")
         self.load = [0] * self.ranks
 
-    def execute(self, program="EULASTIC_RUN_MANY", timeout=600):
-        """{name: Outcome}."""
+    def execute(self, program="EULASTIC_RUN_MANY", timeout=600, cwd=None):
+        """{name: Outcome}. `cwd`: the directory in which all of them run."""
         plan = self.room / "plan.txt"
         plan.write_text("\n".join(self.lines) + "\n")
         launcher = [MPIEXEC, "--oversubscribe", "-n", str(self.ranks)] if self.ranks > 1 else []
         environment = os.environ if self.ranks > 1 else {**os.environ, **ALONE}
         done = subprocess.run([*launcher, os.environ[program], str(plan)], capture_output=True, text=True, timeout=timeout,
-                              stdin=subprocess.DEVNULL, env=environment)
+                              stdin=subprocess.DEVNULL, env=environment, cwd=cwd)
         outcomes = {}
         for name in self.names:
             text = lambda end: (self.room / (name + end)).read_text() if (self.room / (name + end)).exists() else ""
