@@ -39,8 +39,13 @@ double boxed_values(const Config &config) {
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!lies_in_boxes(config, s)) continue;
-    const double reach = Surface(config.species[s], dimension).bounding_radius();
-    double cells = 1, around = 1;
+    const Surface surface(config.species[s], dimension);
+    double reach = 0, cells = 1, around = 1;
+    for (int d = 0; d < dimension; ++d) {
+      Real3 along{};
+      along[d] = 1;
+      reach = std::max(reach, surface.support(along));
+    }
     for (int d = 0; d < dimension; ++d) {
       const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] + 2 * FreeSolids::margin;
       cells *= own;

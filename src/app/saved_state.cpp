@@ -1,12 +1,14 @@
 #include "app/saved_state.hpp"
 
 #include "app/checkpoint_range.hpp"
+#include "base/deliver.hpp"
 #include "bodies/colours.hpp"
 #include "diagnostics/state_hash.hpp"
 #include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace eulastic {
@@ -223,6 +225,25 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   PetscFunctionReturn(0);
 }
 
+// Collective: whether no two of the bodies that ranks have read are the same.
+PetscErrorCode require_different(const Domain &domain, const std::string &path, int bodies,
+                                 const std::vector<double> &heads) {
+  std::vector<int> numbers, owners;
+  PetscFunctionBeginUser;
+  for (std::size_t n = 0; n < heads.size(); n += FreeSolids::head) {
+    numbers.push_back(static_cast<int>(heads[n]));
+    owners.push_back(BodyRange::owner(numbers.back() - 1, bodies, domain.ranks()));
+  }
+  PetscCall(deliver(domain.comm(), owners, &numbers));
+  std::sort(numbers.begin(), numbers.end());
+  const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
+  PetscCall(require_range(domain, path,
+                          twice == numbers.end() ? ""
+                                                 : std::string(heads_name) + " holds body " + std::to_string(*twice) +
+                                                       " twice; accepted: every body once"));
+  PetscFunctionReturn(0);
+}
+
 // Some bodies in boxes for each rank, the same values whoever gets them.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
@@ -232,6 +253,7 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_records(&heads));
   const std::vector<Phase> &phases = solver->state().phases;
   PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
+  PetscCall(require_different(domain, path, solver->bodies().bodies(), heads.values));
   std::vector<std::size_t> sizes;
   for (std::size_t n = 0; n < heads.values.size(); n += FreeSolids::head)
     sizes.push_back(FreeSolids::packed_values(domain.domain_shape(), &heads.values[n]));
@@ -246,7 +268,6 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
     PetscCall(solver->add_packed_body(packed));
     next += sizes[b];
   }
-  PetscCall(solver->send_bodies_home());
   PetscFunctionReturn(0);
 }
 

@@ -16,15 +16,16 @@ namespace {
 // Cells around what is not zero of phi that hold anything: layers, edges, what moves in a step.
 constexpr int reach = ExteriorLayers::layers + 2;
 
-// Copies what two boxes share in memory, `layers` of the first one's ghosts included.
-void copy_shared(const Field &from, int layers, Field *to) {
+// Copies what two boxes share in memory, points on high sides of the domain and `layers` of the first one's ghosts
+// included.
+void copy_shared(const Box &box, const Field &from, int layers, Field *to) {
   const Layout &a = from.layout(), &b = to->layout();
   Int3 begin, end, shift;
   for (int d = 0; d < 3; ++d) {
-    const int ghosts = std::min(layers, a.ghosts[d]);
+    const int ghosts = std::min(layers, a.ghosts[d]), last = std::max(a.cells[d] + ghosts, box.points_end(d, true));
     shift[d] = a.begin[d] - b.begin[d];
     begin[d] = std::max(-ghosts, -shift[d] - b.ghosts[d]);
-    end[d] = std::max(begin[d], std::min(a.cells[d] + ghosts, b.cells[d] + b.ghosts[d] - shift[d]));
+    end[d] = std::max(begin[d], std::min(last, b.cells[d] + b.ghosts[d] - shift[d]));
   }
   for (int f = 0; f < from.count(); ++f)
     for (int k = begin[2]; k < end[2]; ++k)
@@ -233,8 +234,8 @@ PetscErrorCode FreeSolids::fit(Body *body, int layers) const {
   const Box box(domain_->domain_shape(), begin, cells, domain_->spec().ghosts);
   Body fitted{body->number, body->species, box, {}, {}};
   fitted.phase = empty_like(body->phase, fitted.box);
-  copy_shared(body->phase.fraction, layers, &fitted.phase.fraction);
-  copy_shared(body->phase.tensor.field, layers, &fitted.phase.tensor.field);
+  copy_shared(body->box, body->phase.fraction, layers, &fitted.phase.fraction);
+  copy_shared(body->box, body->phase.tensor.field, layers, &fitted.phase.tensor.field);
   fitted.phase.rows.find_in_box(fitted.box, std::as_const(fitted.phase).fraction[0], reach);
   fill_wall_ghosts_even(fitted.box, at_centre, fitted.phase.fraction[0], domain_->spec().ghosts, &fitted.phase.rows);
   PetscCall(find_solid(fitted.box, fitted.phase));

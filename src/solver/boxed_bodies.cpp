@@ -1,6 +1,7 @@
 // Solver: bodies that lie in boxes of their own.
 #include "base/deliver.hpp"
 #include "bodies/unwrap.hpp"
+#include "physics/share_out.hpp"
 #include "physics/transport.hpp"
 #include "solver/solver.hpp"
 
@@ -26,16 +27,25 @@ PetscErrorCode Solver::add_packed_body(const std::vector<double> &packed) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::send_bodies_home() {
+// What a phase costs goes with the cells that it occupies, in a box and on the grid.
+PetscErrorCode Solver::share_bodies() {
+  std::vector<BodyShare> bodies;
   std::vector<int> ranks;
+  double load = 0;
   PetscFunctionBeginUser;
+  if (!has_boxed()) PetscFunctionReturn(0);
+  forget_looks();
+  for (const Phase &phase : now_.phases)
+    if (!phase.boxed && !phase.material.is_rigid()) load += double(phase.rows.cells());
   for (const BodyInBox &body : boxed_->list()) {
     const Layout &layout = body.box->layout();
     Int3 middle{};
     for (int d = 0; d < 3; ++d) middle[d] = domain_->image(d, layout.begin[d] + layout.cells[d] / 2);
-    ranks.push_back(domain_->owner(middle[0], middle[1], middle[2]));
+    bodies.push_back({body.number, domain_->owner(middle[0], middle[1], middle[2]), double(body.phase->rows.cells())});
   }
+  PetscCall(share_out(domain_->comm(), load, bodies, &ranks));
   PetscCall(boxed_->give(ranks, now_.phases));
+  PetscCall(boxed_->follow());
   PetscFunctionReturn(0);
 }
 

@@ -110,7 +110,7 @@ PetscErrorCode Solver::prepare() {
     PetscCall(membranes_->find_walls(rigid));
   }
   PetscCall(place_markers());
-  if (has_boxed()) PetscCall(boxed_->follow());
+  PetscCall(share_bodies());
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
@@ -148,7 +148,6 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscCall(update_centre_ghosts(now_.pressure, 1));
   if (now_.pressure_before) PetscCall(update_centre_ghosts(now_.pressure_before, 1));
   PetscCall(start_rigid_loads());
-  if (has_boxed()) PetscCall(boxed_->follow());
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*domain_, phase));
@@ -157,6 +156,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
     else if (phase.material.elastic())
       PetscCall(place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
+  PetscCall(share_bodies());
   PetscFunctionReturn(0);
 }
 
@@ -207,8 +207,10 @@ std::size_t Solver::bytes() const {
 }
 
 PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_pressure) {
+  constexpr int shared_every = 100;  // steps: bodies move by some cells meanwhile
   PetscFunctionBeginUser;
   forget_looks();
+  if (now_.step > 0 && now_.step % shared_every == 0) PetscCall(share_bodies());
   if (spec_.staggered()) PetscCall(transport_to_middle(0.5 * (now_.dt + dt)));  // (4)(5)
   if (in_middle) PetscCall(look_behind(in_middle));
   if (now_.pressure_before) expect_pressure(dt);

@@ -68,8 +68,6 @@ public:
   const FreeSolids &boxed() const { return *boxed_; }
   /// Adds a body that FreeSolids::packed() has made to this rank.
   PetscErrorCode add_packed_body(const std::vector<double> &packed);
-  /// Gives each body to the rank that has the middle of its box. Collective.
-  PetscErrorCode send_bodies_home();
   /// Those of this rank, as they are, without velocity.
   std::vector<BodyInBox> boxed_bodies() const { return boxed_->list(); }
   /// Takes away those of all ranks; others are added then.
@@ -205,6 +203,8 @@ private:
   PetscErrorCode settle_loads(double dt, const Field &divergence, Field &increment);
   PetscErrorCode separate_bodies();
   PetscErrorCode show_bodies();
+  /// Hands bodies to ranks that have less to do. Collective.
+  PetscErrorCode share_bodies();
   void forget_looks();
   PetscErrorCode settle(Phase &phase);
   PetscErrorCode find_rows(Phase &phase);

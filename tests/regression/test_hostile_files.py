@@ -22,6 +22,9 @@ FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_x
           "-a_shape sphere -a_radius .2 -a_law membrane -a_surface_shear_modulus .1 -a_placement random -a_count 2 "
           "-initial_velocity_mean 1,0,0 -guard_volume_drift 0 -time_end 100").split()
 
+BOXES = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -fluid_viscosity .3 -body_force .1,0,0 -species cell "
+         "-cell_shape sphere -cell_radius .6 -cell_shear_modulus 1 -cell_placement lattice -cell_count 2,1,1 -time_end 100").split()
+
 
 class Numbers(Restart):
     def refuse_changed(self, case, path, name, index, value, says=None):
@@ -63,6 +66,13 @@ class Numbers(Restart):
         for name in ("nan", "cell", "label", "phase"):
             index, value = {"nan": 7, "cell": 3, "label": 1, "phase": 2}[name], {"nan": numpy.nan, "cell": 1e9, "label": 77., "phase": -1.}[name]
             self.refuse_changed(case, path, "membrane_markers", index, value)
+
+    def test_of_bodies_in_boxes(self):
+        self.run_case("run", *BOXES, "-time_steps_max", 4)
+        path = self.checkpoints()[0]
+        # Of each body: its number, its species, where its box begins, and how long that is.
+        for index, value in ((0, 0.), (0, 3.), (8, 1.), (1, 1.), (1, -1.), (2, .5), (3, -1.), (3, numpy.nan), (4, 1.), (5, 0.), (6, 1e6), (7, 2.)):
+            self.refuse_changed([*BOXES, "-time_steps_max", 6], path, "bodies_in_boxes", index, value)
 
 
 MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmax_windkessel 1,.1,2 "
@@ -113,6 +123,9 @@ class EveryDataset(Restart):
     def test_of_bodies_in_a_flow(self):
         self.check(FLAT, {"velocity_y", "pressure", "advection_x", "pressure_increment_0", "left_cauchy_green_xy_cell", "body_bead", "time",
                           "step", "time_step", "flow_scales", "bodies.references", "bodies.first_volumes"} | BESIDE)
+
+    def test_of_bodies_in_boxes(self):
+        self.check(BOXES, {"bodies_in_boxes", "values_in_boxes"}, others=False)
 
     def test_of_membranes_viscosities_and_a_load(self):
         self.check(MEMBRANE, {"membrane_markers", "pressure_before", "pressure_interval", "outlet_loads", "left_cauchy_green_xx_a"}, others=False)

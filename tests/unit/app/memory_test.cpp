@@ -93,6 +93,13 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   EXPECT_NEAR(bytes_in_boxes(boxes), 64 * 8. * (17 * std::pow(reach + 10, 3) + 3 * std::pow(reach, 3)), 1);
   EXPECT_DOUBLE_EQ(bytes_per_rank(boxes, {1, 1, 1}),
                    bytes_per_rank(merged, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
+  const Config flat = parse_line(
+                          "-time_end 1 -grid_cells 32,32,1 -grid_length 8,8,1 -species ball -ball_shape ellipsoid "
+                          "-ball_semi_axes .3,.5,1 "
+                          "-ball_shear_modulus 1 -ball_placement lattice -ball_count 4,4,1")
+                          .config;
+  const double flat_reach = 2 * .5 * 4 + 2 * 4;
+  EXPECT_NEAR(bytes_in_boxes(flat), 16 * 8. * (10 * std::pow(flat_reach + 10, 2) + 2 * std::pow(flat_reach, 2)), 1);
   // Viscosities of the place, at centres, on edges and along surfaces, three of the normal, six of the stress there,
   // and the pressure of the step before.
   const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;

@@ -177,9 +177,6 @@ def checks(runs):
     yield ("overlap of bodies, in parts of the red cells", {c: f"{measures.overlap(run):.1g}" for c, run in cells.items()}, "", None)
     yield ("centres whose strain the grid did not resolve, over all steps", {c: str(run.summary["strain_forgotten"]) for c, run in runs.items()},
            "", None)
-    phases = {case: estimate(run.directory / "options.txt", "phases", r"\d+") for case, run in runs.items()}
-    yield ("phases as -check_only estimates; at the end",
-           {c: f"{phases[c]}; {run.summary['phases']}" for c, run in runs.items()}, "", None)
     moved = {case: measures.wall_displacements(run) for case, run in runs.items()}
     yield ("wall: outward displacement, rms at the snapshots, µm",
            {c: ", ".join(f"{x.std():.3f}" for x in d) for c, d in moved.items()}, "", None)

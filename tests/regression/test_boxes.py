@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+"""Bodies in boxes of their own: the same bits on 1 to 4 ranks and after a restart wherever the bodies are, and the body itself
+wherever its box ends.
+
+Needs EULASTIC_RUN_MANY and EULASTIC_MPIEXEC.
+"""
+import pathlib
+import sys
+import unittest
+
+import h5py
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
+from scene_case import SceneCase  # noqa: E402
+
+ALL = ("-fluid_viscosity .2 -time_end 100 -guard_volume_drift 0 -guard_energy_growth 0 -series_interval .05 -species cell "
+       "-cell_shape ellipsoid -cell_shear_modulus .5 -cell_placement list -cell_positions").split()
+STIRRED = "-body_force .5,0,0 -initial_velocity taylor_green -initial_velocity_amplitude .3".split()
+
+
+class Boxes(SceneCase):
+    def same_on_ranks(self, rows, *scene, steps=6):
+        """Runs a scene of bodies with these centres on 1 to 4 ranks, and from the middle on; returns the one on one rank."""
+        file = self.room / "places.csv"
+        file.write_text("\n".join(["x,y,z", *(",".join(map(str, row)) for row in rows), ""]))
+        words = [*ALL, file, *map(str, scene)]
+        runs = {f"ranks{n}": ([*words, "-time_steps_max", steps], {"ranks": n}) for n in (1, 2, 3, 4)}
+        runs["half"] = ([*words, "-time_steps_max", steps // 2], {"ranks": 2})
+        found = self.run_together(runs)
+        found |= self.run_together({"restarted": ([*words, "-time_steps_max", steps, "-restart", self.room / "half"], {"ranks": 3})})
+        one = found["ranks1"]
+        self.assertEqual(one.summary["phases"], 1)
+        for name, run in found.items():
+            if name != "half":
+                self.assertEqual(run.summary["state_hash"], one.summary["state_hash"], name)
+                self.assertEqual(run.summary["bodies"], one.summary["bodies"], name)
+        return one
+
+    def test_a_body_as_long_as_the_domain(self):
+        # With the layers around it each box meets itself across the periodic side; one is turned along y and ends at both walls.
+        one = self.same_on_ranks([(.1, .3, 0), (1.5, .72, 0)], *"-grid_cells 32,16,1 -grid_length 2,1,1 -boundary_y wall".split(), *STIRRED,
+                                 *"-cell_semi_axes .98,.12,.12".split())
+        for body in one.summary["bodies"]:
+            self.assertAlmostEqual(body["volume"], numpy.pi * .98 * .12, delta=2e-4)
+
+    def test_bodies_at_all_sides(self):
+        # On the corner of two periodic sides, and pressed against walls.
+        rows = [(0, .5, 0), (.02, .81, 1.19), (.6, .19, .6), (.7, .81, .58)]
+        one = self.same_on_ranks(rows, *"-grid_cells 24,20,24 -grid_length 1.2,1,1.2 -boundary_y wall".split(), *STIRRED,
+                                 *"-cell_semi_axes .2,.17,.2".split())
+        self.assertEqual([round(body["centroid"][1], 2) for body in one.summary["bodies"]], [.5, .81, .19, .81])
+
+    def test_a_thousand_bodies(self):
+        places = [(x + .5, y + .5, z + .5) for x in range(10) for y in range(10) for z in range(10)]
+        one = self.same_on_ranks(places, *"-grid_cells 30,30,30 -grid_length 10,10,10".split(), *STIRRED,
+                                 *"-cell_semi_axes .4,.3,.4".split(), steps=4)
+        with h5py.File(one.directory / "bodies.h5") as bodies:
+            self.assertEqual(bodies["volume"].shape[1], 1000)
+            numpy.testing.assert_allclose(bodies["volume"][-1], 4 / 3 * numpy.pi * .4 * .3 * .4, rtol=.01)
+
+    def test_bodies_that_go_around(self):
+        # Ten times over the edges of four ranks and of the periodic box: what is measured does not jump.
+        one = self.same_on_ranks([(.3, .5, 0), (.8, .9, 0)], *("-grid_cells 16,16,1 -grid_length 1,1,1 -initial_velocity uniform "
+                                 "-initial_velocity_mean .2,1,0 -cell_semi_axes .14,.14,.14 -time_step .02").split(), steps=130)
+        for body, start in zip(one.summary["bodies"], ((.3, .5), (.8, .9))):
+            numpy.testing.assert_allclose(body["centroid"][:2], numpy.add(start, (.2 * 2.6, 2.6)), atol=.02)  # a third of a cell
+            self.assertAlmostEqual(body["volume"], numpy.pi * .14**2, delta=1e-5)
+
+    def test_snapshots_show_them_all(self):
+        # phi of the snapshot is the sum over the bodies, and their labels, volumes and B come back from a file.
+        scene = ("-grid_cells 24,24,1 -grid_length 1.2,1.2,1 -snapshot_interval .02 -snapshot_precision double -cell_semi_axes .2,.2,.2 "
+                 "-cell_initial_stretch 1.2,.9,1").split()
+        scene += ["-snapshot_fields", "solid_fraction,left_cauchy_green,body,velocity"]
+        one = self.same_on_ranks([(.3, .6, 0), (.72, .6, 0)], *scene)
+        with h5py.File(one.directory / "snapshot_000000.h5") as file:
+            phi, body = file["solid_fraction"][...].squeeze(), file["body"][...].squeeze()
+        self.assertEqual(set(body[phi > .5]), {1, 2})
+        for label in 1, 2:
+            self.assertAlmostEqual(phi[body == label].sum() * .05**2, numpy.pi * .04, delta=2e-3)
+        words = ALL[:ALL.index("-cell_shape")] + ["-cell_shear_modulus", ".5", *scene[:4], "-time_steps_max", 1, "-initial_state",
+                                                  one.directory / "snapshot_000000.h5"]
+        again = self.run_together({"again1": (words, {"ranks": 1}), "again3": (words, {"ranks": 3})})
+        self.assertEqual(again["again1"].summary["state_hash"], again["again3"].summary["state_hash"])
+        first = lambda run: run.bodies.elastic_energy[0]
+        numpy.testing.assert_allclose(first(again["again1"]), first(one), rtol=1e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()
