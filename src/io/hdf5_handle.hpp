@@ -33,12 +33,12 @@ public:
   /// Leaves the object open for ever.
   void forget() noexcept {
     id_ = H5I_INVALID_HID;
-    if constexpr (Close == H5Fclose) hdf5_file_left_open = true;
+    if (Close == H5Fclose) hdf5_file_left_open = true;
   }
   /// False if HDF5 could not: a file's last bytes may fail to reach the disk here.
   bool close() noexcept {
     const bool closed = id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0;
-    if constexpr (Close == H5Fclose) hdf5_file_left_open = hdf5_file_left_open || !closed;
+    if (Close == H5Fclose) hdf5_file_left_open = hdf5_file_left_open || !closed;
     return closed;
   }
 

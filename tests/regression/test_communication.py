@@ -45,15 +45,12 @@ ONCE = {"fast": {("", "Barrier"): (1, 0, 0), ("EulACM", "Barrier"): (4, 0, 0), (
 
 # Bytes for each rank in the largest collective: what the DMDA gathers when it is made.
 GROW_WITH_RANKS = {("Main Stage", "", "Allgather"): 4}
-# The largest with one body, in one phase, and with eight, in two: sums and maxima by phase. Barriers: who sends to whom
+# The largest of eight ranks with one body, on the grid, and with eight, in boxes. Barriers: who sends to whom
 # where there are several bodies, which may overlap or be near.
 GROW_WITH_BODIES = {
-    ("Main Stage", "", "Allreduce"): (40, 48),
     ("Main Stage", "", "Barrier"): (None, 0),
-    ("Output", "", "Allreduce"): (40, 48),
-    ("Setup", "EulContact", "Allreduce"): (None, 12),
-    ("Setup", "EulContact", "Barrier"): (None, 0),
-    ("Step", "", "Allreduce"): (40, 48),
+    ("Output", "EulWrite", "Scan"): (None, 8),  # of boxes in a checkpoint
+    ("Setup", "", "Allgather"): (None, 16 * 8),  # what each rank has to do: bodies are shared out
 }
 LARGEST = 65536
 
