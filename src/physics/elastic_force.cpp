@@ -132,6 +132,7 @@ PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::ve
 }
 
 void compute_elastic_force(const Box &box, double scale, const Phase &phase, Field &force) {
+  VerbScope scope(Verb::momentum);
   const int dim = box.dimension();
   for (int a = 0; a < dim; ++a)
     for (const Segment &s : phase.tensor.stressed.all()) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
@@ -140,14 +141,18 @@ void compute_elastic_force(const Box &box, double scale, const Phase &phase, Fie
   for (int a = 0; a < dim; ++a)
     for (const Segment &faces : box.open_high_faces(a))
       add_on_rows(box, phase, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, {});
+  scope.flops(elastic_flops(dim, phase));
 }
 
 double elastic_flops(int dimension, const std::vector<Phase> &phases) {
   double sum = 0;
-  for (const Phase &phase : phases)
-    sum += dimension * phase.tensor.stressed.points() *
-           with_law(phase.material, [&](const auto &law) { return law.flops(dimension); });
+  for (const Phase &phase : phases) sum += elastic_flops(dimension, phase);
   return sum;
+}
+
+double elastic_flops(int dimension, const Phase &phase) {
+  return dimension * phase.tensor.stressed.points() *
+         with_law(phase.material, [&](const auto &law) { return law.flops(dimension); });
 }
 
 }  // namespace eulastic

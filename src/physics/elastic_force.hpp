@@ -30,5 +30,6 @@ void compute_elastic_force(const Box &box, double scale, const Phase &phase, Fie
 
 /// Of all owned faces.
 double elastic_flops(int dimension, const std::vector<Phase> &phases);
+double elastic_flops(int dimension, const Phase &phase);
 
 }  // namespace eulastic
