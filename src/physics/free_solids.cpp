@@ -222,8 +222,8 @@ PetscErrorCode FreeSolids::fit(Body *body, int layers) const {
   const Extent extent = extent_of(body->box, body->phase);
   Int3 begin{}, cells{1, 1, 1};
   for (int d = 0; d < domain_->dimension(); ++d) {
-    int low = body->box.layout().begin[d] + extent.begin[d] - (needed + travel);
-    int high = body->box.layout().begin[d] + extent.end[d] + (needed + travel);
+    int low = body->box.layout().begin[d] + extent.begin[d] - margin;
+    int high = body->box.layout().begin[d] + extent.end[d] + margin;
     if (domain_->is_wall(d)) {
       low = std::max(low, 0);
       high = std::min(high, domain_->domain_cells()[d]);

@@ -79,8 +79,8 @@ public:
 
 private:
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and the faces
-  /// of another one feel its stress. And those for what moves until the next fit.
-  static constexpr int needed = 2, travel = margin - needed;
+  /// of another one feel its stress. The rest of the margin is for what moves until the next fit.
+  static constexpr int needed = 2;
   template <class PhaseOrConst, class Visit>
   static void for_values(const Box &box, PhaseOrConst &phase, const Visit &visit);
   PetscErrorCode extend(Body *body);
