@@ -37,7 +37,7 @@ EULASTIC_CLONES void add_up(const Box &box, const Run &run, const RunPlaces &pla
   const int n = run.size();
   const double *phi = run.of(run.phase.fraction, 0);
   const double *x = places.x;
-  Lanes lane(run.first % lanes, n);
+  Lanes lane(run.first & (lanes - 1), n);
   sums->fraction = lane.sum([=](int i) EULASTIC_BODY { return phi[i]; });
   sums->first_moment = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * x[i]; });
   sums->second_moment = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * (x[i] * x[i]); });

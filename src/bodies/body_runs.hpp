@@ -20,7 +20,7 @@ struct Run {
   const Phase &phase;
   int body;  ///< its slot
   int begin, end, j, k;
-  int first;  ///< absolute x index of the first cell, not negative: it gives cells their lanes
+  int first;  ///< absolute x index of the first cell, which gives cells their lanes
   int size() const { return end - begin; }
   const double *of(const Field &block, int f) const { return block[f].row(j, k) + begin; }
 };
@@ -38,7 +38,7 @@ void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> 
       if (row.i_begin < row.i_end) start(phase, row);
       const double *own = label.row(row.j, row.k);
       for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
-        const int block_end = begin + ExactSums::block - (first + begin) % ExactSums::block;
+        const int block_end = begin + ExactSums::block - ExactSums::place_in_block(first + begin);
         end = begin + 1;
         while (end < std::min(row.i_end, block_end) && own[end] == own[begin]) ++end;
         const int slot = owners.slot(static_cast<int>(own[begin]) - 1);

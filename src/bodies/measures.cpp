@@ -234,14 +234,16 @@ BodyMeasure evaluate(const Box &box, const BodySums &sums, int b, const Int3 &re
   return body;
 }
 
-// All of a body that lies in a box of its own. Places are taken from its middle cell.
+// All of a body that lies in a box of its own, from the cells in which phi is not 0 alone: the same bits wherever the
+// ends of the box are. Places are taken from the middle cell of their extent.
 BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
   const Box &box = *body.box;
   const Phase &phase = *body.phase;
   const Layout &layout = box.layout();
   Int3 middle{}, reference{};
+  const Extent extent = phase.extent(box);
   for (int d = 0; d < 3; ++d) {
-    middle[d] = layout.cells[d] / 2;
+    middle[d] = extent.begin[d] + (extent.end[d] - extent.begin[d]) / 2;
     reference[d] = layout.begin[d] + middle[d];
   }
   struct Piece {
@@ -252,11 +254,11 @@ BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
   std::vector<double> density(layout.cells[0]);
   Largest largest{0, 0, {0}};
   for (const Segment &whole : box.rows()) {
-    const Segment row = phase.rows.within(whole, phase.fraction[0]);
+    const Segment row = phase.filled(whole);
     energy(box, phase, row, density.data());
     for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
-      const int first = box.image(0, layout.begin[0] + begin);
-      end = std::min(row.i_end, begin + ExactSums::block - first % ExactSums::block);
+      const int first = layout.begin[0] + begin;
+      end = std::min(row.i_end, begin + ExactSums::block - ExactSums::place_in_block(first));
       const Run run{phase, 0, begin, end, row.j, row.k, first};
       for (int d = 0; d < box.dimension(); ++d) {
         const double *face = run.of(*body.velocity, d);

@@ -168,8 +168,7 @@ void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &
   for (const Segment &whole : rows) {
     const Segment row = phase.rows.within(whole, phase.fraction[0]);
     const double *phi = phase.fraction[0].row(row.j, row.k);
-    const auto add = [&, first = box.image(0, box.layout().begin[0] + row.i_begin)](int s,
-                                                                                    const std::vector<double> &values) {
+    const auto add = [&, first = box.layout().begin[0] + row.i_begin](int s, const std::vector<double> &values) {
       sums->add_row(s, values.data() + row.i_begin, row.size(), first);
     };
     strain_energy(box, phase, row, energy.data());

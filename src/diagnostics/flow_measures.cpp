@@ -218,7 +218,7 @@ PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &ph
                           ExactSums &sums) {
     const ConstView phi = phase.fraction[0];
     const Segment held = phase.rows.within(row, phi);
-    const int sum_of_phase = sums_of_phase * p, i = held.i_begin, first = box.image(0, box.layout().begin[0] + i);
+    const int sum_of_phase = sums_of_phase * p, i = held.i_begin, first = box.layout().begin[0] + i;
     strain_energy(box, phase, held, density.data());
     sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first);
     sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first);

@@ -44,6 +44,8 @@ double lane_sum(const double *values, int n, std::int64_t first) noexcept;
 class ExactSums {
 public:
   static constexpr int block = 256;
+  /// How many cells of its block come before the one with this absolute x index, which may be negative.
+  static int place_in_block(std::int64_t x) noexcept { return static_cast<int>(x & (block - 1)); }
 
   explicit ExactSums(int count) : sums_(count), waiting_(count) {}
   void clear() noexcept;

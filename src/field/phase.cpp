@@ -1,5 +1,7 @@
 #include "field/phase.hpp"
 
+#include <algorithm>
+
 namespace eulastic {
 
 void Phase::empty(const Box &box, bool labels) {
@@ -7,6 +9,28 @@ void Phase::empty(const Box &box, bool labels) {
   tensor.field = tensor_at_rest(box);
   tensor.centred = material.is_membrane();
   label = labels ? Field::at_rest(box, 1) : Field();
+}
+
+Segment Phase::filled(const Segment &row) const {
+  Segment filled = rows.within(row);
+  const double *phi = fraction[0].row(row.j, row.k);
+  while (filled.i_begin < filled.i_end && phi[filled.i_begin] == 0) ++filled.i_begin;
+  while (filled.i_begin < filled.i_end && phi[filled.i_end - 1] == 0) --filled.i_end;
+  return filled;
+}
+
+Extent Phase::extent(const Box &box) const {
+  Extent extent{box.cells(), {0, 0, 0}};
+  for (const Segment &row : box.rows()) {
+    const Segment held = filled(row);
+    if (held.size() == 0) continue;
+    const Int3 first{held.i_begin, row.j, row.k}, end{held.i_end, row.j + 1, row.k + 1};
+    for (int d = 0; d < 3; ++d) {
+      extent.begin[d] = std::min(extent.begin[d], first[d]);
+      extent.end[d] = std::max(extent.end[d], end[d]);
+    }
+  }
+  return extent;
 }
 
 void Phase::copy_from(const Phase &other) {

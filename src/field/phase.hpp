@@ -11,6 +11,11 @@
 
 namespace eulastic {
 
+/// A block of cells, begin to end in every direction.
+struct Extent {
+  Int3 begin, end;
+};
+
 struct Phase {
   std::string species;  ///< name of the species it belongs to
   Material material;
@@ -24,6 +29,10 @@ struct Phase {
 
   /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (Field::at_rest).
   void empty(const Box &box, bool labels);
+  /// The least block of cells that has all in which phi is not 0; `box`: whole on this rank.
+  Extent extent(const Box &box) const;
+  /// Of a row of cells, the least that has all in which phi is not 0.
+  Segment filled(const Segment &row) const;
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);
 };

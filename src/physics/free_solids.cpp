@@ -47,31 +47,6 @@ Phase empty_like(const Phase &phase, const Box &box) {
   return fresh;
 }
 
-// Cells in which phi is not 0, begin to end in every direction.
-struct Extent {
-  Int3 begin, end;
-};
-
-Extent extent_of(const Box &box, const Phase &phase) {
-  const Int3 &n = box.cells();
-  Extent extent{n, {0, 0, 0}};
-  const ConstView phi = phase.fraction[0];
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
-      const Segment known = phase.rows.within({0, n[0], j, k});
-      const double *row = phi.row(j, k), *begin = row + known.i_begin, *end = row + known.i_end;
-      while (begin < end && *begin == 0) ++begin;
-      if (begin == end) continue;
-      while (end[-1] == 0) --end;
-      const Int3 first{static_cast<int>(begin - row), j, k}, last{static_cast<int>(end - row), j + 1, k + 1};
-      for (int d = 0; d < 3; ++d) {
-        extent.begin[d] = std::min(extent.begin[d], first[d]);
-        extent.end[d] = std::max(extent.end[d], last[d]);
-      }
-    }
-  return extent;
-}
-
 }  // namespace
 
 FreeSolids::FreeSolids(const Domain &domain, const Fluid &fluid, const BoxSides &sides)
@@ -172,7 +147,7 @@ PetscErrorCode FreeSolids::give(const std::vector<int> &ranks, const std::vector
   }
   bodies_ = std::move(kept);
   seen_.clear();
-  fitted_ = false;
+  fitted_ = fitted_ && parts.empty();
   PetscCall(deliver(domain_->comm(), to, &parts));
   std::sort(parts.begin(), parts.end(), [](const Part &one, const Part &other) {
     return std::pair(one.number, one.begin) < std::pair(other.number, other.begin);
@@ -206,7 +181,7 @@ PetscErrorCode FreeSolids::extend(Body *body) {
 }
 
 bool FreeSolids::is_near_an_end(const Body &body) const {
-  const Extent extent = extent_of(body.box, body.phase);
+  const Extent extent = body.phase.extent(body.box);
   bool near = false;
   for (int d = 0; d < body.box.dimension(); ++d) {
     near = near || (!body.box.touches_low(d) && extent.begin[d] < needed);
@@ -219,7 +194,7 @@ bool FreeSolids::is_near_an_end(const Body &body) const {
 // ghosts included.
 PetscErrorCode FreeSolids::fit(Body *body, int layers) const {
   PetscFunctionBeginUser;
-  const Extent extent = extent_of(body->box, body->phase);
+  const Extent extent = body->phase.extent(body->box);
   Int3 begin{}, cells{1, 1, 1};
   for (int d = 0; d < domain_->dimension(); ++d) {
     int low = body->box.layout().begin[d] + extent.begin[d] - margin;
@@ -244,21 +219,29 @@ PetscErrorCode FreeSolids::fit(Body *body, int layers) const {
 }
 
 // All boxes at once, so that ranks seldom have to tell each other.
-PetscErrorCode FreeSolids::follow() {
+PetscErrorCode FreeSolids::fit_boxes(bool *changed) {
   PetscFunctionBeginUser;
   seen_.clear();
   int stale = !fitted_;
   for (const Body &body : bodies_) stale = stale || is_near_an_end(body);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stale, 1, MPI_INT, MPI_MAX, domain_->comm()));
+  *changed = stale;
   if (!stale) PetscFunctionReturn(0);
   std::vector<BoxExchange::NumberedBox> boxes;
   for (Body &body : bodies_) {
     PetscCall(fit(&body, domain_->spec().ghosts));
-    find_force(&body, scratch(body.box, body.box.dimension()));
     boxes.push_back({&body.box, body.number});
   }
   PetscCall(exchange_.connect(boxes));
   fitted_ = true;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeSolids::follow() {
+  PetscFunctionBeginUser;
+  bool changed = false;
+  PetscCall(fit_boxes(&changed));
+  if (changed) find_forces();
   PetscFunctionReturn(0);
 }
 
@@ -272,6 +255,10 @@ void FreeSolids::find_force(Body *body, double *memory) const {
   Field force = Field::in_memory(body->box, body->box.dimension(), memory);
   compute_elastic_force(body->box, 1 / fluid_.density, body->phase, force);
   body->force.take(force, body->phase.tensor.stressed);
+}
+
+void FreeSolids::find_forces() {
+  for (Body &body : bodies_) find_force(&body, scratch(body.box, body.box.dimension()));
 }
 
 double *FreeSolids::scratch(const Box &box, int components) {
@@ -309,8 +296,9 @@ PetscErrorCode FreeSolids::advance(const Step &step, const Field &velocity) {
     bring_velocity(b, step, velocity, &flow);
     PetscCall(move(body.box, step, flow, stage, &body.phase));
   }
-  PetscCall(follow());
-  for (Body &body : bodies_) find_force(&body, scratch(body.box, body.box.dimension()));
+  bool changed = false;
+  PetscCall(fit_boxes(&changed));
+  find_forces();
   PetscFunctionReturn(0);
 }
 

@@ -88,7 +88,9 @@ private:
   PetscErrorCode fit(Body *body, int layers) const;
   /// Velocity in the box of a body, with what is behind sides of the domain, after exchange_.fetch().
   void bring_velocity(std::size_t body, const Step &step, const Field &velocity, Field *flow) const;
+  PetscErrorCode fit_boxes(bool *changed);
   void find_force(Body *body, double *memory) const;
+  void find_forces();
   PetscErrorCode move(const Box &box, const Step &step, const Field &flow, Field &stage, Phase *phase);
   /// Memory for that many components on a box, until the next call.
   double *scratch(const Box &box, int components);
