@@ -62,16 +62,16 @@ bool near_rows(const OccupiedRows &rows, int j, int k, int across, int deep) {
 MembraneBending::Window MembraneBending::around(const Phase &phase, int ghosts) const {
   Window box;
   for (int d = 0; d < 3; ++d) {
-    const bool alone = phase.rows.inside() && !(d == 0 && box_->wraps_x());
-    const int near = d < box_->dimension() && !alone ? ghosts : 0;
-    box.range[d] = {-near, box_->cells()[d] + near};
+    const bool alone = phase.rows.inside() && !(d == 0 && place_.box->wraps_x());
+    const int near = d < place_.box->dimension() && !alone ? ghosts : 0;
+    box.range[d] = {-near, place_.box->cells()[d] + near};
   }
   return box;
 }
 
 template <int Dim>
 void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
-  const Local local(*box_, fields[smoothed]);
+  const Local local(*place_.box, fields[smoothed]);
   const View psi = fields[smoothed];
   const Window box = around(phase, curvature_ghosts), forced = around(phase, force_ghosts);
   cells_.clear();
@@ -86,7 +86,7 @@ void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
   const kernels::Membrane &membrane = phase.material.membrane;
   const double *level_of = fields[level].origin;
   double *curvature_of = fields[curvature].origin, *delta_of = fields[delta].origin, *force_of = fields[force].origin;
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(cells_.size(), part, parts);
     for (std::size_t c = piece.begin; c < piece.end; ++c) {
@@ -108,12 +108,12 @@ void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
 // E_b (div(delta P grad kappa) + delta ...), where all faces around are known.
 template <int Dim>
 void MembraneBending::find_force(const Phase &phase, Field &fields) {
-  const Local local(*box_, fields[smoothed]);
+  const Local local(*place_.box, fields[smoothed]);
   const double *level_of = fields[level].origin, *curvature_of = fields[curvature].origin,
                *delta_of = fields[delta].origin;
   double *force_of = fields[force].origin;
   const double modulus = phase.material.membrane.bending_modulus;
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(cells_.size(), part, parts);
     for (std::size_t c = piece.begin; c < piece.end; ++c) {
@@ -136,15 +136,15 @@ void MembraneBending::find_force(const Phase &phase, Field &fields) {
 // averaged like the fraction that they come from.
 PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
-  const int far = mean_ghosts + smooth_reach, dim = box_->dimension();
+  const int far = mean_ghosts + smooth_reach, dim = place_.box->dimension();
   Field both = fields.part(delta, 2);
-  PetscCall(exchange_->update_ghosts(both, far, &phase.rows));
-  for (const int f : {delta, force}) fill_wall_ghosts_even(*box_, at_centre, fields[f], far, &phase.rows);
-  const Int3 &n = box_->cells();
+  PetscCall(place_.exchange_ghosts(both, far, &phase.rows));
+  for (const int f : {delta, force}) fill_wall_ghosts_even(*place_.box, at_centre, fields[f], far, &phase.rows);
+  const Int3 &n = place_.box->cells();
   const int deep = dim == 3 ? mean_ghosts : 0, rows = n[1] + 2 * mean_ghosts, planes = n[2] + 2 * deep;
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
-    RowScratch scratch(*box_, 1);
+    RowScratch scratch(*place_.box, 1);
     const Piece piece(std::size_t(rows) * planes, part, parts);
     for (std::size_t r = piece.begin; r < piece.end; ++r) {
       const int j = static_cast<int>(r % rows) - mean_ghosts, k = static_cast<int>(r / rows) - deep;
@@ -158,13 +158,13 @@ PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) 
 
 PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field &fields) {
   PetscFunctionBeginUser;
-  const int dim = box_->dimension();
+  const int dim = place_.box->dimension();
   const Window box = around(phase, level_ghosts);
-  for (const int f : {delta, force}) clear_around(*box_, phase.rows, mean_ghosts + smooth_reach, fields[f]);
+  for (const int f : {delta, force}) clear_around(*place_.box, phase.rows, mean_ghosts + smooth_reach, fields[f]);
   const int rows = box.range[1].end - box.range[1].begin, planes = box.range[2].end - box.range[2].begin;
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
-    RowScratch scratch(*box_, 1);
+    RowScratch scratch(*place_.box, 1);
     const Piece piece(std::size_t(rows) * planes, part, parts);
     for (std::size_t r = piece.begin; r < piece.end; ++r) {
       const int j = box.range[1].begin + static_cast<int>(r % rows),
@@ -190,7 +190,7 @@ PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field
 void MembraneBending::force_row(const Field &fields, int a, int j, int k, double *out) const {
   const ForceRows rows{fields[smoothed].row(j, k), fields[mean].row(j, k), fields[weight].row(j, k),
                        fields[delta].row(j, k)};
-  force_of_row(rows, fields[smoothed].stride(a), 1 / box_->spacing()[a], box_->cells()[0], out);
+  force_of_row(rows, fields[smoothed].stride(a), 1 / place_.box->spacing()[a], place_.box->cells()[0], out);
 }
 
 double MembraneBending::energy(const Material &material, const Field &fields, std::ptrdiff_t at) {

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
-#include "grid/box.hpp"
+#include "field/phase_place.hpp"
 
 namespace eulastic {
 
@@ -13,7 +12,7 @@ class MembraneBending {
 public:
   static constexpr int work_fields = 6;
 
-  MembraneBending(const Box &box, GhostExchange &exchange) : box_(&box), exchange_(&exchange) {}
+  explicit MembraneBending(const PhasePlace &place) : place_(place) {}
   /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
   /// around the rows of the phase.
   PetscErrorCode find(const Phase &phase, ConstView smooth, Field &fields);
@@ -45,8 +44,7 @@ private:
 
   PetscErrorCode smooth_force(const Phase &phase, Field &fields);
 
-  const Box *box_;
-  GhostExchange *exchange_;
+  PhasePlace place_;
   std::vector<Cell> cells_;  ///< where there is a curvature
 };
 

@@ -155,13 +155,13 @@ EULASTIC_CLONES bool strain_3d(const Sources &from, const int *marker_of, const 
 // Those whose cell is one of the nearest or beside one, which every rank sees as far as it needs them. In an order that
 // is the same on any ranks.
 void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
-  const Layout &layout = domain_->layout();
+  const Layout &layout = box_->layout();
   near_.clear();
   for (std::size_t m = 0; m < all_.size(); ++m) {
     if (all_[m].phase != phase) continue;
     Box::Range images[3]{{0, 1}, {0, 1}, {0, 1}};
-    for (int d = 0; d < domain_->dimension(); ++d)
-      if (!domain_->is_wall(d)) images[d] = {-1, 2};
+    for (int d = 0; d < box_->dimension(); ++d)
+      if (domain_ && !box_->is_wall(d)) images[d] = {-1, 2};
     for (int z = images[2].begin; z < images[2].end; ++z)
       for (int y = images[1].begin; y < images[1].end; ++y)
         for (int x = images[0].begin; x < images[0].end; ++x) {
@@ -169,8 +169,8 @@ void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
           Int3 local;
           bool here = true;
           for (int d = 0; d < 3; ++d) {
-            const int ghosts = d < domain_->dimension() ? reach : 0;
-            local[d] = all_[m].cell[d] - layout.begin[d] + image[d] * domain_->domain_cells()[d];
+            const int ghosts = d < box_->dimension() ? reach : 0;
+            local[d] = all_[m].cell[d] - layout.begin[d] + image[d] * box_->domain_cells()[d];
             here = here && local[d] >= -ghosts && local[d] < layout.cells[d] + ghosts;
           }
           if (!here) continue;
@@ -195,7 +195,7 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
   sort(surface, phase);
   std::vector<int> marker_of;
   for (const Near &near : near_) marker_of.push_back(near.marker);
-  const Sources from{domain_, &surface, all_.data(), begin_.data() + domain_->layout().origin};
+  const Sources from{box_, &surface, all_.data(), begin_.data() + box_->layout().origin};
   const int parts = row_parts(*domain_);
   std::vector<std::vector<Strain>> found(parts);
   in_parallel(parts, parts, [&](int part) {
@@ -203,14 +203,13 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
     for (std::size_t c = piece.begin; c < piece.end; ++c) {
       const SurfaceCells::Cell &cell = surface.all()[c];
       Strain strain{c, {}};
-      if (cell.owned &&
-          (domain_->dimension() == 2 ? strain_2d : strain_3d)(from, marker_of.data(), cell, strain.B.data()))
+      if (cell.owned && (box_->dimension() == 2 ? strain_2d : strain_3d)(from, marker_of.data(), cell, strain.B.data()))
         found[part].push_back(strain);
     }
   });
   strains->clear();
   for (const auto &part : found) strains->insert(strains->end(), part.begin(), part.end());
-  scope.flops(double(strains->size()) * (domain_->dimension() == 2 ? 500 : 4000));
+  scope.flops(double(strains->size()) * (box_->dimension() == 2 ? 500 : 4000));
 }
 
 }  // namespace eulastic

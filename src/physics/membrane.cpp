@@ -99,32 +99,18 @@ EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std
 
 }  // namespace
 
-bool MembraneTransport::exists(const std::vector<Phase> &phases) {
-  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.is_membrane(); });
-}
-
-bool MembraneTransport::marks(const std::vector<Phase> &phases) {
-  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-    return phase.material.is_membrane() && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
-  });
-}
-
-PetscErrorCode MembraneTransport::find_walls(const std::vector<const Phase *> &rigid) {
+PetscErrorCode MembraneMechanics::find(const Phase &phase, Field &work) {
   PetscFunctionBeginUser;
-  WorkSpace::Lease scratch;
-  PetscCall(work_->take("walls beside membranes", WallFilm::work_fields, &scratch));
-  film_.find(*sides_, rigid, scratch.fields());
+  surface_fields_ = work.part(0, SurfaceCells::work_fields);
+  others_ = work.part(SurfaceCells::work_fields, work_fields - SurfaceCells::work_fields);
+  PetscCall(surface_.find(phase, surface_fields_));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::start(Phase *phase) {
+PetscErrorCode MembraneMechanics::start(Phase *phase) {
   PetscFunctionBeginUser;
-  force_known_ = false;
-  WorkSpace::Lease surface;
-  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-  PetscCall(surface_.find(*phase, surface.fields()));
   const double area = phase->material.membrane.initial_area_stretch;
-  const double stretch = domain_->dimension() == 2 ? area * area : area;  // squared, of lengths
+  const double stretch = place_.box->dimension() == 2 ? area * area : area;  // squared, of lengths
   for (std::size_t c = 0; c < surface_.nearest(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
@@ -135,7 +121,7 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
         for (double &entry : row) entry *= stretch;
       set_tensor<dim>(phase->tensor.field, cell.at, value);
     };
-    if (domain_->dimension() == 2)
+    if (place_.box->dimension() == 2)
       set(std::integral_constant<int, 2>());
     else
       set(std::integral_constant<int, 3>());
@@ -144,24 +130,14 @@ PetscErrorCode MembraneTransport::start(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::extend(Phase *phase) {
-  PetscFunctionBeginUser;
-  force_known_ = false;
-  WorkSpace::Lease surface;
-  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-  PetscCall(surface_.find(*phase, surface.fields()));
-  PetscCall(surface_.extend(*phase, phase->tensor.field));
-  PetscFunctionReturn(0);
-}
-
 // First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same. Areas stay above half of
 // those at the start.
 template <int Dim>
-PetscErrorCode MembraneTransport::heun(double dt, const Field &velocity, Phase *phase, Field &next) {
+PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *phase, Field &next, long *unresolved) {
   PetscFunctionBeginUser;
   const double least = least_area_squared(*phase);
-  std::vector<long> kept(row_parts(*domain_));
-  const Local<Dim> local(*domain_, velocity[0]);
+  std::vector<long> kept(row_parts(*place_.box));
+  const Local<Dim> local(*place_.box, velocity[0]);
   std::vector<Flow<Dim>> flows(surface_.nearest());
   Field &tensor = phase->tensor.field;
   const auto stage = [&](bool second, std::size_t c, long *lost) {
@@ -183,7 +159,7 @@ PetscErrorCode MembraneTransport::heun(double dt, const Field &velocity, Phase *
     }
     set_tensor<Dim>(second ? tensor : next, cell.at, value);
   };
-  const int parts = row_parts(*domain_);
+  const int parts = row_parts(*place_.box);
   for (const bool second : {false, true}) {
     {
       VerbScope scope(Verb::membrane);
@@ -195,11 +171,11 @@ PetscErrorCode MembraneTransport::heun(double dt, const Field &velocity, Phase *
     }
     if (!second) PetscCall(surface_.extend(*phase, next));
   }
-  unresolved_ = std::accumulate(kept.begin(), kept.end(), unresolved_);
+  *unresolved = std::accumulate(kept.begin(), kept.end(), *unresolved);
   PetscFunctionReturn(0);
 }
 
-double MembraneTransport::least_area_squared(const Phase &phase) {
+double MembraneMechanics::least_area_squared(const Phase &phase) {
   const double stretch = phase.material.membrane.initial_area_stretch;
   return 0.25 * std::min(1.0, stretch * stretch);
 }
@@ -208,8 +184,8 @@ double MembraneTransport::least_area_squared(const Phase &phase) {
 // does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
 // tell of something else altogether lie where a quadratic is not determined, or have been carried by a flow that the
 // grid does not resolve, as at an edge that is pressed to a wall.
-void MembraneTransport::recall(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains,
-                               Phase *phase) {
+void MembraneMechanics::recall(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt,
+                               Phase *phase, long *unresolved) {
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
@@ -227,7 +203,7 @@ void MembraneTransport::recall(double dt, const Field &velocity, const std::vect
       double passed = 0;
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
-                  domain_->spacing()[d];
+                  place_.box->spacing()[d];
       const double share = std::min(passed, 1.0);
       for (int f = 0; f < tensor.count(); ++f) {
         double &B = tensor[f].origin[cell.at];
@@ -235,72 +211,27 @@ void MembraneTransport::recall(double dt, const Field &velocity, const std::vect
       }
       Tensor<dim> value = tensor_at<dim>(tensor, cell.at);
       if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
-      ++unresolved_;
+      ++*unresolved;
       set_tensor<dim>(tensor, cell.at, value);
     }
   };
-  if (domain_->dimension() == 2)
+  if (place_.box->dimension() == 2)
     each(std::integral_constant<int, 2>());
   else
     each(std::integral_constant<int, 3>());
 }
 
-PetscErrorCode MembraneTransport::advance(double dt, const Field &velocity, Memory *memory,
-                                          std::vector<Phase> *phases) {
+PetscErrorCode MembraneMechanics::move(double dt, const Field &velocity,
+                                       const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase,
+                                       long *unresolved) {
   PetscFunctionBeginUser;
-  unresolved_ = 0;
-  NetForce net(*domain_, memory && drives_all(*phases));
-  if (memory) begin_force();
-  if (memory && marks(*phases)) PetscCall(markers_.move(dt, velocity, memory->markers));
-  for (std::size_t p = 0; p < phases->size(); ++p) {
-    Phase &phase = (*phases)[p];
-    if (!phase.material.is_membrane()) continue;
-    WorkSpace::Lease surface;
-    PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-    PetscCall(surface_.find(phase, surface.fields()));
-    const bool marked = memory && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
-    std::vector<SurfaceMarkers::Strain> strains;
-    if (marked) markers_.find_strain(surface_, static_cast<int>(p), &strains);
-    {
-      WorkSpace::Lease next;
-      PetscCall(work_->take("first stage of B_s", phase.tensor.field.count(), &next));
-      if (domain_->dimension() == 2)
-        PetscCall(heun<2>(dt, velocity, &phase, next.fields()));
-      else
-        PetscCall(heun<3>(dt, velocity, &phase, next.fields()));
-    }
-    recall(dt, velocity, strains, &phase);
-    PetscCall(surface_.extend(phase, phase.tensor.field));
-    if (marked) markers_.settle(surface_, surface.fields(), static_cast<int>(p), memory->markers);
-    if (memory) PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
-  }
-  if (!memory) PetscFunctionReturn(0);
-  PetscCall(end_force(&net));
-  PetscCallMPI(MPI_Allreduce(&unresolved_, &memory->unresolved, 1, MPI_LONG, MPI_SUM, domain_->comm()));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, int label,
-                                                std::vector<SurfaceMarker> *markers) {
-  PetscFunctionBeginUser;
-  if (phase.material.membrane.scheme != kernels::MembraneScheme::markers) PetscFunctionReturn(0);
-  WorkSpace::Lease surface;
-  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-  PetscCall(surface_.find(phase, surface.fields()));
-  markers_.place(surface_, surface.fields(), phase, number, label, markers);
-  PetscCall(markers_.send_home(markers));  // the surface beside a rank's last cell may lie in the next one
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers) {
-  std::vector<WantedGhosts> labels;
-  PetscFunctionBeginUser;
-  if (!marks(*phases)) PetscFunctionReturn(0);
-  for (Phase &phase : *phases)
-    if (phase.material.is_membrane() && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
-  if (labels.empty()) PetscFunctionReturn(0);
-  PetscCall(exchange_->update_ghosts(labels));
-  markers_.follow(*phases, markers);
+  Field next = others_.part(0, phase->tensor.field.count());
+  if (place_.box->dimension() == 2)
+    PetscCall(heun<2>(dt, velocity, phase, next, unresolved));
+  else
+    PetscCall(heun<3>(dt, velocity, phase, next, unresolved));
+  recall(strains, velocity, dt, phase, unresolved);
+  PetscCall(extend(phase));
   PetscFunctionReturn(0);
 }
 

@@ -1,18 +1,14 @@
-// Elastic membranes: their deformation B_s, which lives in a few cells around the surface of a body, and their force on
-// the flow; docs/method.md, section 18.
+// The elastic membranes of one phase, on the grid or in a box of their own: their deformation B_s, which lives in a few
+// cells around the surface of a body, and their force on the flow; docs/method.md, section 18.
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/exact_sum.hpp"
+#include "field/phase_place.hpp"
 #include "field/surface_sample.hpp"
-#include "field/work_space.hpp"
-#include "grid/domain.hpp"
 #include "physics/bending.hpp"
-#include "physics/elastic_force.hpp"
-#include "physics/net_force.hpp"
 #include "physics/surface_cells.hpp"
 #include "physics/surface_markers.hpp"
-#include "physics/surface_tension.hpp"
-#include "physics/transport.hpp"
 #include "physics/wall_film.hpp"
 
 #include <functional>
@@ -22,93 +18,60 @@ namespace eulastic {
 /// Nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
 inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
 
-class MembraneTransport {
+class MembraneMechanics {
 public:
-  /// Ghosts of the velocity that `advance` reads.
+  /// Ghosts of the velocity that move() reads.
   static constexpr int velocity_ghosts = SurfaceMarkers::velocity_ghosts;
-  /// Of the work space, during each call.
+  /// Scratch fields.
   static constexpr int work_fields = SurfaceCells::work_fields + 6;
+  /// How many cells away from its phi a phase exerts forces, and what these are found from lies.
+  static constexpr int reach = around_membranes.reach;
 
-  /// `sides`: of the box, which must outlive this; `drifts`: as of SurfaceTension, for bending.
-  MembraneTransport(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const BoxSides &sides, bool drifts)
-      : domain_(&domain),
-        work_(&work),
-        exchange_(&exchange),
-        sides_(&sides),
-        surface_(domain, exchange, sides),
-        bending_(domain, exchange),
-        markers_(domain),
-        film_(domain),
-        drifts_(drifts),
-        force_(domain, domain.dimension()) {}
-  static bool exists(const std::vector<Phase> &phases);
-  static bool marks(const std::vector<Phase> &phases);  ///< whether any has markers
-  std::size_t bytes() const { return force_.bytes(); }
+  /// What `place` points to must outlive this.
+  explicit MembraneMechanics(const PhasePlace &place) : place_(place), surface_(place), bending_(place) {}
 
-  /// Where walls are: solid sides of the box, and `rigid` bodies, which do not travel; before any force.
-  PetscErrorCode find_walls(const std::vector<const Phase *> &rigid);
-  /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch. Five
-  /// ghosts of phi, here and below.
+  /// Finds the surface of a phase, five ghosts of phi. All that follows is of that phase and uses `work`, work_fields
+  /// fields, until the next find(). Collective on the grid, as all of these.
+  PetscErrorCode find(const Phase &phase, Field &work);
+  const SurfaceCells &surface() const { return surface_; }
+  /// As SurfaceCells leaves them.
+  const Field &surface_fields() const { return surface_fields_; }
+  /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch.
   PetscErrorCode start(Phase *phase);
-  /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
-  /// Collective.
-  PetscErrorCode place_markers(const Phase &phase, int number, int label, std::vector<SurfaceMarker> *markers);
-  /// Each to the phase that its body is in now; those of bodies that are gone away.
-  PetscErrorCode follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers);
   /// Fills layers and ghosts from the cells where B_s evolves.
-  PetscErrorCode extend(Phase *phase);
-  /// What a state has beside its phases, and what advance() finds of it.
-  struct Memory {
-    std::vector<SurfaceMarker> *markers;
-    /// Cells of all ranks in which the area would have fallen below half of that at the start: strain is lost there.
-    long unresolved = 0;
-  };
-  /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `memory`: that
-  /// of the state whose force add_force() adds; null: copies of its phases, without markers. Collective.
-  PetscErrorCode advance(double dt, const Field &velocity, Memory *memory, std::vector<Phase> *phases);
-  /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
-  /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
-  /// divergence of a stress adds up to nothing.
-  PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                           const ForceSlope &slope = {});
-  /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
-  PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured,
-                         std::vector<SurfaceSample> *samples = nullptr);
+  PetscErrorCode extend(Phase *phase) { return surface_.extend(*phase, phase->tensor.field); }
+  /// B_s over dt with the flow; phi has moved. Leaves layers and ghosts filled. Adds to `unresolved` the cells of this
+  /// rank in which the area would have fallen below half of that at the start: strain is lost there. `strains`: what
+  /// markers tell.
+  PetscErrorCode move(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains,
+                      Phase *phase, long *unresolved);
+  /// Called with the part of the rows, whether it is the force of bending, component, j, k and the force per volume on
+  /// the owned faces of the row, which it may spoil.
+  using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
+  /// Forces of the stress and of bending. `bending_energy`: per area at each cell of surface().
+  PetscErrorCode for_force_rows(const Phase &phase, const ForceRow &use, std::vector<double> *bending_energy = nullptr);
+  enum Sum { power, stored, sums };
+  /// Adds the power that the flow gives to the phase and the energy stored in it, both over the volume of a cell, to
+  /// sums of every part of the rows; `samples`: of all owned cells at surfaces, if it is not null and bodies have
+  /// labels or `label` is that of the only one.
+  PetscErrorCode measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
+                         std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples);
 
 private:
   /// delta tau at centres, of the cells in surface_.
   PetscErrorCode find_stress(const Phase &phase, Field &stress);
-  /// Called with the part, whether it is of bending, component, j, k and the force on the owned faces of the row, which
-  /// it may spoil.
-  using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
-  /// Of the cells in surface_. `bending_energy`: per area at each of them.
-  PetscErrorCode for_force_rows(const Phase &phase, ConstView smooth, const ForceRow &use,
-                                std::vector<double> *bending_energy = nullptr);
-  void begin_force();
-  PetscErrorCode gather_force(const Phase &phase, ConstView smooth, NetForce *net);
-  PetscErrorCode end_force(NetForce *net);
-  bool drives_all(const std::vector<Phase> &phases) const;
-  PetscErrorCode measure_phase(const Phase &phase, const Field &velocity, SurfaceEnergy *measured,
-                               std::vector<SurfaceSample> *samples);
   /// Leaves the layers to the caller.
   template <int Dim>
-  PetscErrorCode heun(double dt, const Field &velocity, Phase *phase, Field &next);
-  void recall(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase);
+  PetscErrorCode heun(double dt, const Field &velocity, Phase *phase, Field &next, long *unresolved);
+  void recall(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt, Phase *phase,
+              long *unresolved);
   static double least_area_squared(const Phase &phase);
+  ConstView smooth() const { return surface_fields_[SurfaceCells::smoothed]; }
 
-  const Domain *domain_;
-  WorkSpace *work_;
-  GhostExchange *exchange_;
-  const BoxSides *sides_;
-  SurfaceCells surface_;     ///< of the phase that is worked on
-  MembraneBending bending_;  ///< the same
-  SurfaceMarkers markers_;
-  WallFilm film_;
-  bool drifts_;
-  long unresolved_ = 0;
-  Field force_;        ///< at faces, if it is known
-  Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
-  bool force_known_ = false;
+  PhasePlace place_;
+  SurfaceCells surface_;
+  MembraneBending bending_;
+  Field surface_fields_, others_;  ///< parts of the work fields
 };
 
 }  // namespace eulastic

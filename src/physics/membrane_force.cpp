@@ -1,10 +1,9 @@
-// MembraneTransport: the force of membranes on the flow.
+// Membrane: the force of membranes on the flow.
 #include "base/events.hpp"
 #include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "physics/membrane.hpp"
 #include "physics/membrane_tensor.hpp"
-#include "physics/net_force.hpp"
 #include "physics/smooth_row.hpp"
 
 #include <algorithm>
@@ -52,11 +51,11 @@ constexpr int force_reach = 2;
 }  // namespace
 
 // delta tau at centres, with the ghosts that the force takes; 0 elsewhere on rows that feel it.
-PetscErrorCode MembraneTransport::find_stress(const Phase &phase, Field &stress) {
+PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
-  const int dim = domain_->dimension();
-  for (int f = 0; f < stress.count(); ++f) clear_around(*domain_, phase.rows, force_reach, stress[f]);
+  const int dim = place_.box->dimension();
+  for (int f = 0; f < stress.count(); ++f) clear_around(*place_.box, phase.rows, force_reach, stress[f]);
   const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
     auto B = zero;
     const kernels::MembraneState state = kernels::membrane_state(
@@ -77,32 +76,29 @@ PetscErrorCode MembraneTransport::find_stress(const Phase &phase, Field &stress)
           stress, cell.at,
           set(cell, tensor_at<3>(phase.tensor.field, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
   }
-  PetscCall(exchange_->update_ghosts(stress, force_reach, &phase.rows));
-  fill_wall_ghosts_centred_tensor(*domain_, stress, force_reach, &phase.rows);
+  PetscCall(place_.exchange_ghosts(stress, force_reach, &phase.rows));
+  fill_wall_ghosts_centred_tensor(*place_.box, stress, force_reach, &phase.rows);
   PetscFunctionReturn(0);
 }
 
 // That of the stress, then that of bending.
-PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView smooth, const ForceRow &use,
+PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const ForceRow &use,
                                                  std::vector<double> *bending_energy) {
   PetscFunctionBeginUser;
-  const int dim = domain_->dimension();
-  const Real3 &h = domain_->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
-  const int n = domain_->cells()[0];
+  const int dim = place_.box->dimension();
+  const Real3 &h = place_.box->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const int n = place_.box->cells()[0];
   if (bending_energy) bending_energy->assign(surface_.all().size(), 0);
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
-    WorkSpace::Lease lease;
-    Field &fields = lease.fields();
-    PetscCall(work_->take(bending ? "bending" : "stress of a membrane",
-                          bending ? MembraneBending::work_fields : phase.tensor.field.count(), &lease));
+    Field fields = others_.part(0, bending ? MembraneBending::work_fields : phase.tensor.field.count());
     if (bending)
-      PetscCall(bending_.find(phase, smooth, fields));
+      PetscCall(bending_.find(phase, smooth(), fields));
     else
       PetscCall(find_stress(phase, fields));
     VerbScope scope(Verb::membrane);
-    in_row_parts(*domain_, [&](const RowPart &part) {
-      RowScratch scratch(*domain_, 1);
+    in_row_parts(*place_.box, [&](const RowPart &part) {
+      RowScratch scratch(*place_.box, 1);
       double *force = scratch.row(0);
       for (int k = part.k_begin; k < part.k_end; ++k)
         for (int j = part.j_begin; j < part.j_end; ++j) {
@@ -121,75 +117,6 @@ PetscErrorCode MembraneTransport::for_force_rows(const Phase &phase, ConstView s
         (*bending_energy)[c] = MembraneBending::energy(phase.material, fields, cell.at);
     scope.flops(double(phase.rows.cells()) * dim * (bending ? 6 : 12 * dim));
   }
-  PetscFunctionReturn(0);
-}
-
-bool MembraneTransport::drives_all(const std::vector<Phase> &phases) const {
-  return drifts_ && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-           return phase.material.is_membrane() && phase.material.membrane.bending_modulus > 0;
-         });
-}
-
-void MembraneTransport::begin_force() {
-  const int n = domain_->cells()[0];
-  in_row_parts(*domain_, [&](const RowPart &part) {
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = part.j_begin; j < part.j_end; ++j)
-        for (int a = 0; a < force_.count(); ++a) std::fill_n(force_[a].row(j, k), n, 0.0);
-  });
-}
-
-PetscErrorCode MembraneTransport::gather_force(const Phase &phase, ConstView smooth, NetForce *net) {
-  PetscFunctionBeginUser;
-  const int n = domain_->cells()[0];
-  PetscCall(for_force_rows(phase, smooth, [&](int part, bool bending, int a, int j, int k, const double *added) {
-    add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
-    if (bending) net->add_row(part, a, added);
-  }));
-  film_.add_force(phase, force_);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::end_force(NetForce *net) {
-  PetscFunctionBeginUser;
-  PetscCall(net->find_mean(&net_force_));
-  force_known_ = true;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                                            const ForceSlope &slope) {
-  PetscFunctionBeginUser;
-  if (!force_known_) {
-    NetForce net(*domain_, drives_all(phases));
-    begin_force();
-    for (const Phase &phase : phases) {
-      if (!phase.material.is_membrane()) continue;
-      WorkSpace::Lease surface;
-      PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-      PetscCall(surface_.find(phase, surface.fields()));
-      PetscCall(gather_force(phase, surface.fields()[SurfaceCells::smoothed], &net));
-    }
-    PetscCall(end_force(&net));
-  }
-  const int n = domain_->cells()[0];
-  in_row_parts(*domain_, [&](const RowPart &part) {
-    RowScratch scratch(*domain_, 1);
-    double *added = scratch.row(0);
-    for (int k = part.k_begin; k < part.k_end; ++k)
-      for (int j = part.j_begin; j < part.j_end; ++j) {
-        const auto felt = [&](const Phase &phase) { return phase.material.is_membrane() && !phase.rows.idle(j, k); };
-        if (std::none_of(phases.begin(), phases.end(), felt)) continue;
-        for (int a = 0; a < force_.count(); ++a) {
-          const double *f = force_[a].row(j, k);
-          for (int i = 0; i < n; ++i) added[i] = scale * f[i];
-          add_force_row(n, added, slope.factor, force[a].row(j, k),
-                        slope.field ? (*slope.field)[a].row(j, k) : nullptr);
-        }
-      }
-  });
-  const Real3 &mean = net_force_;
-  if (balanced) take_off_mean(*domain_, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
   PetscFunctionReturn(0);
 }
 

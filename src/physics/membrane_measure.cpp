@@ -1,4 +1,4 @@
-// MembraneTransport: energies and power of membranes.
+// Membrane: energies and power of membranes.
 #include "base/events.hpp"
 #include "field/exact_sum.hpp"
 #include "physics/membrane.hpp"
@@ -44,54 +44,40 @@ Real3 centre_velocity(const Field &velocity, std::ptrdiff_t at) {
 
 }  // namespace
 
-PetscErrorCode MembraneTransport::measure_phase(const Phase &phase, const Field &velocity, SurfaceEnergy *measured,
-                                                std::vector<SurfaceSample> *samples) {
+PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
+                                          std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
-  enum Sum { power, stored, sums };
-  const int dim = domain_->dimension(), n = domain_->cells()[0], first = domain_->layout().begin[0];
-  WorkSpace::Lease surface;
-  PetscCall(work_->take("surface of a membrane", SurfaceCells::work_fields, &surface));
-  PetscCall(surface_.find(phase, surface.fields()));
-  std::vector<ExactSums> sum(row_parts(*domain_), ExactSums(sums));
-  const double volume = domain_->cell_volume();
-  const ConstView smooth = surface.fields()[SurfaceCells::smoothed];
+  const Box &box = *place_.box;
+  const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
+  const double volume = box.cell_volume();
   std::vector<double> bending;
   PetscCall(for_force_rows(
-      phase, smooth,
+      phase,
       [&](int part, bool, int a, int j, int k, double *force) {
         const double *v = velocity[a].row(j, k);
         for (int i = 0; i < n; ++i) force[i] *= -v[i];
-        sum[part].add_row(power, force, n, first);
+        (*sum)[part].add_row(power, force, n, first);
       },
       &bending));
   VerbScope scope(Verb::sums);
-  film_.add_energy(phase, velocity, power, stored, &sum[0]);
+  film.add_energy(phase, velocity, power, stored, &sum->front());
   for (std::size_t c = 0; c < bending.size(); ++c)
-    if (bending[c] > 0) bending[c] *= smoothed_delta(*domain_, smooth, surface_.all()[c].at);
-  std::vector<int> label;
-  if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface.fields(), &label));
+    if (bending[c] > 0) bending[c] *= smoothed_delta(box, smooth(), surface_.all()[c].at);
+  std::vector<int> labels;
+  if (samples && label > 0)
+    labels.assign(bending.size(), label);
+  else if (samples && phase.label)
+    PetscCall(surface_.find_labels(phase, surface_fields_, &labels));
   for (std::size_t c = 0; c < bending.size(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
     const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
-    sum[0].add(stored, energies.total() + bending[c]);
-    if (!label.empty())
-      samples->push_back({label[c], cell.place, cell.delta, energies.rest, energies.stretch,
+    sum->front().add(stored, energies.total() + bending[c]);
+    if (!labels.empty())
+      samples->push_back({labels[c], cell.place, cell.delta, energies.rest, energies.stretch,
                           centre_velocity(velocity, cell.at), energies.shear * volume, energies.area * volume,
                           bending[c] * volume});
   }
-  double total[sums];
-  PetscCall(reduce_parts(domain_->comm(), sum, total));
-  measured->power += total[power] * volume;
-  measured->energy += total[stored] * volume;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const Field &velocity,
-                                          SurfaceEnergy *measured, std::vector<SurfaceSample> *samples) {
-  PetscFunctionBeginUser;
-  for (const Phase &phase : phases)
-    if (phase.material.is_membrane()) PetscCall(measure_phase(phase, velocity, measured, samples));
   PetscFunctionReturn(0);
 }
 

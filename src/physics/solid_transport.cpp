@@ -5,13 +5,6 @@
 
 namespace eulastic {
 
-PetscErrorCode PhasePlace::update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const {
-  PetscFunctionBeginUser;
-  if (exchange) PetscCall(exchange->update_ghosts(tensor, width, rows));
-  fill_wall_ghosts_tensor(*box, *sides, tensor, width, rows);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode SolidTransport::find_layers(const Box &box, const Phase &phase) {
   PetscFunctionBeginUser;
   if (extends_) PetscCall(layers_.build(box, phase));

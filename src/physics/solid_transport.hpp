@@ -2,24 +2,13 @@
 // 7. The phase may lie on the grid of all ranks or in a box that is whole on this one.
 #pragma once
 
-#include "field/ghost_exchange.hpp"
+#include "field/phase_place.hpp"
 #include "physics/exterior.hpp"
 #include "physics/surface_correction.hpp"
 
 #include <cstdint>
 
 namespace eulastic {
-
-/// The box of a phase, and what is at its ends.
-struct PhasePlace {
-  const Box *box;
-  const BoxSides *sides;
-  /// Null where the box is whole on this rank: its ghosts are behind sides of the domain, or hold I.
-  GhostExchange *exchange;
-
-  /// Ghosts of B from other ranks and behind sides; `rows` as in WantedGhosts.
-  PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;
-};
 
 class SolidTransport {
 public:

@@ -60,9 +60,9 @@ EULASTIC_CLONES void steps_row(const double *level, int begin, int end, double *
 // (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which turns normals towards the axes.
 void SurfaceCells::describe(const Field &fields, Cell *described) const {
   Cell &cell = *described;
-  const Real3 &h = box_->spacing();
+  const Real3 &h = place_.box->spacing();
   Real3 sharp_step{}, spread_step{};
-  for (int d = 0; d < box_->dimension(); ++d) {
+  for (int d = 0; d < place_.box->dimension(); ++d) {
     const std::ptrdiff_t s = fields[level].stride(d);
     const double *at_sharp = fields[sharp].origin + cell.at, *at_spread = fields[spread].origin + cell.at;
     sharp_step[d] = (at_sharp[s] - at_sharp[-s]) / (2 * h[d]);
@@ -91,20 +91,20 @@ void SurfaceCells::describe(const Field &fields, Cell *described) const {
   cell.delta = dot(cell.normal, sharp_step);
   cell.spread = dot(cell.normal, spread_step);
   cell.owned = true;
-  for (int d = 0; d < 3; ++d) cell.owned = cell.owned && cell.place[d] >= 0 && cell.place[d] < box_->cells()[d];
+  for (int d = 0; d < 3; ++d) cell.owned = cell.owned && cell.place[d] >= 0 && cell.place[d] < place_.box->cells()[d];
 }
 
 // Levels are nearly linear: a quadratic through three along each direction.
 double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const {
   const ConstView levels = fields[level];
   double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0;
-  for (int d = 0; d < box_->dimension(); ++d) {
+  for (int d = 0; d < place_.box->dimension(); ++d) {
     const double o = offset[d];
     weight[d][0] = 0.5 * o * (o - 1);
     weight[d][1] = 1 - o * o;
     weight[d][2] = 0.5 * o * (o + 1);
   }
-  const int deep = box_->dimension() == 3 ? 1 : 0;
+  const int deep = place_.box->dimension() == 3 ? 1 : 0;
   for (int k = -deep; k <= deep; ++k)
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i)
@@ -116,8 +116,8 @@ double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Re
 // Of delta.
 double SurfaceCells::width(const Real3 &normal) const {
   double square = 0;
-  for (int d = 0; d < box_->dimension(); ++d) {
-    const double step = normal[d] * box_->spacing()[d];
+  for (int d = 0; d < place_.box->dimension(); ++d) {
+    const double step = normal[d] * place_.box->spacing()[d];
     square += variance * step * step;
   }
   return __builtin_sqrt(square);
@@ -125,18 +125,18 @@ double SurfaceCells::width(const Real3 &normal) const {
 
 // Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
 Box::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
-  const bool alone = phase.rows.inside() && !(d == 0 && box_->wraps_x());
-  return box_->points_near(d, false, d < box_->dimension() && !alone ? ghosts : 0);
+  const bool alone = phase.rows.inside() && !(d == 0 && place_.box->wraps_x());
+  return place_.box->points_near(d, false, d < place_.box->dimension() && !alone ? ghosts : 0);
 }
 
 // Whether the first filter reads behind one: also from cells of other ranks, which are ghosts here, so that all ranks
 // that see a body there agree.
 bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
-  const Int3 &n = box_->cells();
-  for (const auto [d, high] : box_->sides()) {
-    if (!is_solid((*sides_)[d][high].kind) || !box_->touches(d, high)) continue;
+  const Int3 &n = place_.box->cells();
+  for (const auto [d, high] : place_.box->sides()) {
+    if (!is_solid((*place_.sides)[d][high].kind) || !place_.box->touches(d, high)) continue;
     Int3 begin{}, end = n;
-    for (int e = 0; e < box_->dimension(); ++e) {
+    for (int e = 0; e < place_.box->dimension(); ++e) {
       begin[e] = e != d ? -smooth_reach : high ? std::max(0, n[e] - smooth_reach) : 0;
       end[e] = e != d ? n[e] + smooth_reach : high ? n[e] : std::min(smooth_reach, n[e]);
     }
@@ -151,23 +151,23 @@ bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
 // too.
 PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
-  const int dim = box_->dimension(), ghosts = box_->layout().ghosts[0], deep = dim == 3 ? ghosts : 0;
-  const Int3 &n = box_->cells();
+  const int dim = place_.box->dimension(), ghosts = place_.box->layout().ghosts[0], deep = dim == 3 ? ghosts : 0;
+  const Int3 &n = place_.box->cells();
   ConstView phi = phase.fraction[0];
   if (is_beside_solid_side(phase)) {
     const View copy = fields[sharp];
     for (int k = -deep; k < n[2] + deep; ++k)
       for (int j = -ghosts; j < n[1] + ghosts; ++j)
-        if (cleared_around(*box_, phase.rows, j, k))
+        if (cleared_around(*place_.box, phase.rows, j, k))
           std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
-    clear_solid_ghosts(*box_, *sides_, copy, ghosts, &phase.rows);
+    clear_solid_ghosts(*place_.box, *place_.sides, copy, ghosts, &phase.rows);
     phi = copy;
   }
   const auto fill = [&](int field, const auto &row) {
     PetscFunctionBeginUser;
-    clear_around(*box_, phase.rows, ghosts, fields[field]);
-    in_row_parts(*box_, [&](const RowPart &part) {
-      RowScratch scratch(*box_, 2);
+    clear_around(*place_.box, phase.rows, ghosts, fields[field]);
+    in_row_parts(*place_.box, [&](const RowPart &part) {
+      RowScratch scratch(*place_.box, 2);
       for (int k = part.k_begin; k < part.k_end; ++k)
         for (int j = part.j_begin; j < part.j_end; ++j) {
           const OccupiedRows::Span s = phase.rows.span(j, k);
@@ -176,9 +176,9 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
         }
     });
     Field filled = fields.part(field, 1);
-    PetscCall(exchange_->update_ghosts(filled, ghosts, &phase.rows));
-    fill_wall_ghosts_even(*box_, at_centre, fields[field], ghosts, &phase.rows);
-    clear_solid_ghosts(*box_, *sides_, fields[field], ghosts, &phase.rows);
+    PetscCall(place_.exchange_ghosts(filled, ghosts, &phase.rows));
+    fill_wall_ghosts_even(*place_.box, at_centre, fields[field], ghosts, &phase.rows);
+    clear_solid_ghosts(*place_.box, *place_.sides, fields[field], ghosts, &phase.rows);
     PetscFunctionReturn(0);
   };
   PetscCall(fill(smoothed, [&](int j, int k, int begin, int end, RowScratch &scratch) {
@@ -190,12 +190,12 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
     level_row(once.row(j, k), scratch.row(1), begin, end, fields[level].row(j, k));
   }));
   const int rows = n[1] + 2 * ghosts, planes = n[2] + 2 * deep;
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(std::size_t(rows) * planes, part, parts);
     for (std::size_t r = piece.begin; r < piece.end; ++r) {
       const int j = static_cast<int>(r % rows) - ghosts, k = static_cast<int>(r / rows) - deep;
-      if (cleared_around(*box_, phase.rows, j, k))
+      if (cleared_around(*place_.box, phase.rows, j, k))
         steps_row(fields[level].row(j, k), -ghosts, n[0] + ghosts, fields[sharp].row(j, k), fields[spread].row(j, k));
     }
   });
@@ -227,7 +227,7 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   PetscCall(find_level(phase, fields));
   find_nearest(phase, fields[level]);
   const auto describe_from = [&](std::size_t first) {
-    const int parts = row_parts(*box_);
+    const int parts = row_parts(*place_.box);
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(cells_.size() - first, part, parts);
       for (std::size_t c = first + piece.begin; c < first + piece.end; ++c) describe(fields, &cells_[c]);
@@ -238,15 +238,15 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   cells_.erase(std::remove_if(cells_.begin(), cells_.end(), is_between_sides), cells_.end());
   find_layers(phase);
   describe_from(nearest());
-  scope.flops(double(phase.rows.cells()) * (box_->dimension() == 2 ? 90 : 270));
+  scope.flops(double(phase.rows.cells()) * (place_.box->dimension() == 2 ? 90 : 270));
   PetscFunctionReturn(0);
 }
 
 // Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order
 // of memory.
 void SurfaceCells::find_layers(const Phase &phase) {
-  const Layout &layout = box_->layout();
-  const int deep = box_->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
+  const Layout &layout = place_.box->layout();
+  const int deep = place_.box->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
   enum : unsigned char { nothing, first };  // first + L: of layer L
   std::vector<unsigned char> layer(layout.size, nothing);
   std::vector<int> last_layer(std::size_t(rows_y) * (layout.cells[2] + 2 * layout.ghosts[2]), -1);  // of every row
@@ -314,13 +314,13 @@ PetscErrorCode SurfaceCells::find_labels(const Phase &phase, Field &scratch, std
   const View all = scratch[0];
   for (std::size_t c = 0; c < nearest(); ++c)
     if (cells_[c].owned) all.origin[cells_[c].at] = phase.label[0].origin[cells_[c].at];
-  PetscCall(exchange_->update_ghosts(scratch, layers, &phase.rows));
-  const Layout &layout = box_->layout();
+  PetscCall(place_.exchange_ghosts(scratch, layers, &phase.rows));
+  const Layout &layout = place_.box->layout();
   const int *number = number_.data() + layout.origin;
   labels->assign(cells_.size(), 0);
   const auto within = [&](const Int3 &place, int ghosts) {
     bool inside = true;
-    for (int d = 0; d < box_->dimension(); ++d)
+    for (int d = 0; d < place_.box->dimension(); ++d)
       inside = inside && place[d] >= -ghosts && place[d] < layout.cells[d] + ghosts;
     return inside;
   };
@@ -329,7 +329,7 @@ PetscErrorCode SurfaceCells::find_labels(const Phase &phase, Field &scratch, std
     if (!within(cell.place, layers - cell.layer)) continue;
     int &label = (*labels)[c];
     if (cell.layer == 0) label = static_cast<int>(all.origin[cell.at]);
-    const int depth = box_->dimension() == 3 ? 1 : 0;
+    const int depth = place_.box->dimension() == 3 ? 1 : 0;
     for (int z = -depth; z <= depth && cell.layer > 0; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {

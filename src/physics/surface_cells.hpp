@@ -3,10 +3,8 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
-#include "grid/box.hpp"
+#include "field/phase_place.hpp"
 
 namespace eulastic {
 
@@ -25,9 +23,8 @@ public:
     bool owned;
   };
 
-  /// `sides`: of the box; they must outlive this.
-  SurfaceCells(const Box &box, GhostExchange &exchange, const BoxSides &sides)
-      : box_(&box), exchange_(&exchange), sides_(&sides) {}
+  /// What `place` points to must outlive this.
+  explicit SurfaceCells(const PhasePlace &place) : place_(place) {}
   /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
   /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
@@ -41,7 +38,7 @@ public:
   /// Of a point so many cells from the centre of one of all(), a cell at most; `fields` as find() left them.
   double distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const;
   /// Which of all() lies at an offset from the origin; -1: none.
-  int number(std::ptrdiff_t at) const { return number_[box_->layout().origin + at]; }
+  int number(std::ptrdiff_t at) const { return number_[place_.box->layout().origin + at]; }
   /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
   PetscErrorCode extend(const Phase &phase, Field &tensor) const;
   /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one
@@ -58,9 +55,7 @@ private:
   double width(const Real3 &normal) const;
   PetscErrorCode exchange(const Phase &phase, Field &tensor, int width) const;
 
-  const Box *box_;
-  GhostExchange *exchange_;
-  const BoxSides *sides_;
+  PhasePlace place_;
   std::vector<Cell> cells_;
   std::array<std::size_t, layers + 2> first_{};  ///< of every layer
   std::vector<int> number_;                      ///< of the cells, -1: none; by offset from the memory's start

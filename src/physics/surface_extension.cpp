@@ -130,8 +130,8 @@ EULASTIC_CLONES void fill_3d(const Source &source, const Around<3> &around, std:
 
 PetscErrorCode SurfaceCells::exchange(const Phase &phase, Field &tensor, int width) const {
   PetscFunctionBeginUser;
-  PetscCall(exchange_->update_ghosts(tensor, width, &phase.rows));
-  fill_wall_ghosts_centred_tensor(*box_, tensor, width, &phase.rows);
+  PetscCall(place_.exchange_ghosts(tensor, width, &phase.rows));
+  fill_wall_ghosts_centred_tensor(*place_.box, tensor, width, &phase.rows);
   PetscFunctionReturn(0);
 }
 
@@ -139,22 +139,22 @@ PetscErrorCode SurfaceCells::extend(const Phase &phase, Field &tensor) const {
   PetscFunctionBeginUser;
   PetscCall(exchange(phase, tensor, layers + 1));
   VerbScope scope(Verb::membrane);
-  const Layout &layout = box_->layout();
+  const Layout &layout = place_.box->layout();
   const Around<2> flat(layout);
   const Around<3> around(layout);
-  const int parts = row_parts(*box_);
+  const int parts = row_parts(*place_.box);
   for (int l = 1; l <= layers; ++l) {
     const Source source{&cells_, number_.data() + layout.origin, static_cast<int>(first_[l])};
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(first_[l + 1] - first_[l], part, parts);
       const std::size_t begin = first_[l] + piece.begin, end = first_[l] + piece.end;
-      if (box_->dimension() == 2)
+      if (place_.box->dimension() == 2)
         fill_2d(source, flat, begin, end, tensor);
       else
         fill_3d(source, around, begin, end, tensor);
     });
   }
-  scope.flops(double(first_[layers + 1] - first_[1]) * (box_->dimension() == 2 ? 200 : 900));
+  scope.flops(double(first_[layers + 1] - first_[1]) * (place_.box->dimension() == 2 ? 200 : 900));
   PetscCall(exchange(phase, tensor, Box::stencil_width));
   PetscFunctionReturn(0);
 }

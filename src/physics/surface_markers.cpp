@@ -16,29 +16,6 @@ namespace {
 constexpr double settling = 0.2;     // of the distance from the surface, in every step
 constexpr double least_label = 0.5;  // of a cell that has one
 
-int in_box(const Box &box, int d, int index) {
-  const int n = box.domain_cells()[d];
-  return std::clamp(box.image(d, index), 0, n - 1);
-}
-
-// Into the cell where it is; at a wall not beyond.
-void renew_cell(const Box &box, SurfaceMarker *marker) {
-  for (int d = 0; d < box.dimension(); ++d) {
-    double &offset = marker->offset[d];
-    const double cells = std::floor(offset + 0.5);
-    const int to = marker->cell[d] + static_cast<int>(cells);
-    offset -= cells;
-    marker->cell[d] = in_box(box, d, to);
-    if (box.is_wall(d) && to != marker->cell[d]) offset = to < 0 ? -0.5 : 0.5;
-  }
-}
-
-Int3 local_cell(const Box &box, const SurfaceMarker &marker) {
-  Int3 local;
-  for (int d = 0; d < 3; ++d) local[d] = marker.cell[d] - box.layout().begin[d];
-  return local;
-}
-
 std::ptrdiff_t offset_of(const Layout &layout, const Int3 &c) { return c[0] + c[1] * layout.sy + c[2] * layout.sz; }
 
 // Component a of the velocity at so many cells from a cell's centre.
@@ -63,14 +40,12 @@ double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
 }
 
 template <int Dim>
-void move_marker(const Box &box, double dt, const Field &velocity, SurfaceMarker *marker) {
-  const Int3 cell = local_cell(box, *marker);
+void move_marker(const Real3 &spacing, double dt, const Field &velocity, const Int3 &cell, SurfaceMarker *marker) {
   Real3 half = marker->offset, end = half;
   for (int d = 0; d < Dim; ++d)
-    half[d] += 0.5 * dt / box.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, marker->offset);
-  for (int d = 0; d < Dim; ++d) end[d] += dt / box.spacing()[d] * velocity_at<Dim>(velocity[d], d, cell, half);
+    half[d] += 0.5 * dt / spacing[d] * velocity_at<Dim>(velocity[d], d, cell, marker->offset);
+  for (int d = 0; d < Dim; ++d) end[d] += dt / spacing[d] * velocity_at<Dim>(velocity[d], d, cell, half);
   marker->offset = end;
-  renew_cell(box, marker);
 }
 
 template <int Dim>
@@ -91,20 +66,44 @@ std::array<double, 6> metric_of(const kernels::Tensor<Dim> &B, const kernels::Ve
 
 }  // namespace
 
+Int3 SurfaceMarkers::local_cell(const SurfaceMarker &marker) const {
+  Int3 local;
+  for (int d = 0; d < 3; ++d) local[d] = marker.cell[d] - box_->layout().begin[d];
+  return local;
+}
+
+// Where a cell is counted that a marker has come to; at a wall not beyond.
+int SurfaceMarkers::in_domain(int d, int index) const {
+  if (box_->is_wall(d)) return std::clamp(index, 0, box_->domain_cells()[d] - 1);
+  return domain_ ? box_->image(d, index) : index;
+}
+
+// Into the cell where it is.
+void SurfaceMarkers::renew_cell(SurfaceMarker *marker) const {
+  for (int d = 0; d < box_->dimension(); ++d) {
+    double &offset = marker->offset[d];
+    const double cells = std::floor(offset + 0.5);
+    const int to = marker->cell[d] + static_cast<int>(cells);
+    offset -= cells;
+    marker->cell[d] = in_domain(d, to);
+    if (box_->is_wall(d) && to != marker->cell[d]) offset = to < 0 ? -0.5 : 0.5;
+  }
+}
+
 bool SurfaceMarkers::approach(const SurfaceCells &surface, const Field &fields, double part,
                               SurfaceMarker *marker) const {
-  const int number = surface.number(offset_of(domain_->layout(), local_cell(*domain_, *marker)));
+  const int number = surface.number(offset_of(box_->layout(), local_cell(*marker)));
   if (number < 0) return false;
   const SurfaceCells::Cell &cell = surface.all()[number];
   const double distance = part * surface.distance_at(fields, cell, marker->offset);
-  for (int d = 0; d < 3; ++d) marker->offset[d] -= distance * cell.normal[d] / domain_->spacing()[d];
+  for (int d = 0; d < 3; ++d) marker->offset[d] -= distance * cell.normal[d] / box_->spacing()[d];
   return true;
 }
 
 void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, const Phase &phase, int number, int label,
                            std::vector<SurfaceMarker> *markers) const {
   constexpr int approaches = 3;
-  const Int3 &begin = domain_->layout().begin, &cells = domain_->domain_cells();
+  const Int3 &begin = box_->layout().begin, &cells = box_->domain_cells();
   for (std::size_t c = 0; c < surface.nearest(); ++c) {
     const SurfaceCells::Cell &cell = surface.all()[c];
     const int own = phase.label ? static_cast<int>(phase.label[0].origin[cell.at]) : 0;
@@ -114,14 +113,14 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, con
     marker.number =
         marker.cell[0] + std::int64_t(cells[0]) * (marker.cell[1] + std::int64_t(cells[1]) * marker.cell[2]);
     for (int n = 0; n < approaches; ++n) (void)approach(surface, fields, 1, &marker);
-    for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * domain_->spacing()[d];
+    for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * box_->spacing()[d];
     marker.normal = cell.normal;
     marker.label = own;
     marker.phase = number;
-    marker.metric = domain_->dimension() == 2
+    marker.metric = box_->dimension() == 2
                         ? metric_of<2>(tensor_at<2>(phase.tensor.field, cell.at), normal_of<2>(cell.normal))
                         : metric_of<3>(tensor_at<3>(phase.tensor.field, cell.at), normal_of<3>(cell.normal));
-    renew_cell(*domain_, &marker);
+    renew_cell(&marker);
     markers->push_back(marker);
   }
 }
@@ -130,13 +129,17 @@ PetscErrorCode SurfaceMarkers::move(double dt, const Field &velocity, std::vecto
   PetscFunctionBeginUser;
   {
     VerbScope scope(Verb::membrane);
-    const int parts = row_parts(*domain_);
+    const int parts = row_parts(*box_);
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(markers->size(), part, parts);
-      for (std::size_t m = piece.begin; m < piece.end; ++m)
-        (domain_->dimension() == 2 ? move_marker<2> : move_marker<3>)(*domain_, dt, velocity, &(*markers)[m]);
+      for (std::size_t m = piece.begin; m < piece.end; ++m) {
+        SurfaceMarker *marker = &(*markers)[m];
+        const auto move = box_->dimension() == 2 ? move_marker<2> : move_marker<3>;
+        move(box_->spacing(), dt, velocity, local_cell(*marker), marker);
+        renew_cell(marker);
+      }
     });
-    scope.flops(double(markers->size()) * (domain_->dimension() == 2 ? 300 : 1200));
+    scope.flops(double(markers->size()) * (box_->dimension() == 2 ? 300 : 1200));
   }
   PetscCall(exchange(markers));
   PetscFunctionReturn(0);
@@ -154,14 +157,14 @@ PetscErrorCode SurfaceMarkers::send_home(std::vector<SurfaceMarker> *markers) co
 // A rank has three cells at least, so that it or its neighbours along a direction own all that is within three.
 PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   PetscFunctionBeginUser;
-  if (domain_->ranks() == 1) {
+  if (!domain_ || domain_->ranks() == 1) {
     all_ = *markers;
     PetscFunctionReturn(0);
   }
   std::vector<int> ranks;
   all_.clear();
   for (const SurfaceMarker &marker : *markers) {
-    const Int3 local = local_cell(*domain_, marker);
+    const Int3 local = local_cell(marker);
     bool inside = true;  // nobody else needs it
     for (int d = 0; d < domain_->dimension(); ++d)
       inside = inside && (domain_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < domain_->cells()[d]));
@@ -175,8 +178,8 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
     for (const int z : {-reach_z, 0, reach_z})
       for (const int y : {-reach, 0, reach})
         for (const int x : {-reach, 0, reach})
-          to.insert(domain_->owner(in_box(*domain_, 0, marker.cell[0] + x), in_box(*domain_, 1, marker.cell[1] + y),
-                                   in_box(*domain_, 2, marker.cell[2] + z)));
+          to.insert(domain_->owner(in_domain(0, marker.cell[0] + x), in_domain(1, marker.cell[1] + y),
+                                   in_domain(2, marker.cell[2] + z)));
     for (const int rank : to) {
       ranks.push_back(rank);
       all_.push_back(marker);
@@ -202,7 +205,7 @@ void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<Surfac
   const int deep = domain_->dimension() == 3 ? 1 : 0;
   const auto lost = [&](SurfaceMarker &marker) {
     if (marker.label == 0) return false;
-    const Int3 cell = local_cell(*domain_, marker);
+    const Int3 cell = local_cell(marker);
     for (const int beside : {0, 1})  // its own cell as a rule
       for (std::size_t p = 0; p < phases.size(); ++p) {
         if (!phases[p].material.is_membrane()) continue;

@@ -18,14 +18,16 @@ public:
   static constexpr int velocity_ghosts = 4;
   /// Cells along each direction: those whose markers a cell's strain comes from, at most.
   static constexpr int reach = 3;
-  explicit SurfaceMarkers(const Domain &domain) : domain_(&domain) {}
+  explicit SurfaceMarkers(const Domain &domain) : box_(&domain), domain_(&domain) {}
+  /// In a box that is whole on this rank: no cell is wrapped around periodic sides.
+  explicit SurfaceMarkers(const Box &box) : box_(&box), domain_(nullptr) {}
 
   /// One more at the surface beside each of the owned cells nearest to it, of the body `label`, or of all: the strain
   /// of the phase is now that against their rest. `number`: of the phase; `fields` as SurfaceCells left them.
   void place(const SurfaceCells &surface, const Field &fields, const Phase &phase, int number, int label,
              std::vector<SurfaceMarker> *markers) const;
-  /// Over dt, by the midpoint rule in a flow that stays. Collective: each goes to the rank that owns its cell, copies
-  /// to those nearby.
+  /// Over dt, by the midpoint rule in a flow that stays. On the grid collective: each goes to the rank that owns its
+  /// cell, copies to those nearby.
   PetscErrorCode move(double dt, const Field &velocity, std::vector<SurfaceMarker> *markers);
   struct Strain {
     std::size_t cell;  ///< position among those of the surface
@@ -50,7 +52,12 @@ private:
   bool approach(const SurfaceCells &surface, const Field &fields, double part, SurfaceMarker *marker) const;
   void sort(const SurfaceCells &surface, int phase);
 
-  const Domain *domain_;
+  Int3 local_cell(const SurfaceMarker &marker) const;
+  int in_domain(int d, int index) const;
+  void renew_cell(SurfaceMarker *marker) const;
+
+  const Box *box_;
+  const Domain *domain_;            ///< null in a box of its own
   std::vector<SurfaceMarker> all_;  ///< since move(): owned ones and those near owned cells
   std::vector<Near> near_;          ///< of the phase that is worked on, by their place in memory
   std::vector<int> begin_;          ///< of those at every offset from the memory's start, and the end

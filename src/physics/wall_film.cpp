@@ -24,42 +24,44 @@ double nearness(double smoothed) { return std::clamp(4 * smoothed - 0.25, 0.0, 1
 
 }  // namespace
 
-void WallFilm::find(const BoxSides &sides, const std::vector<const Phase *> &rigid, Field &scratch) {
-  const Layout &layout = box_->layout();
-  const int dim = box_->dimension(), reach = 1 + smooth_reach, deep = dim == 3 ? 1 : 0;
+void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch) {
+  const Layout &layout = box.layout();
+  const int dim = box.dimension(), reach = 1 + smooth_reach, deep = dim == 3 ? 1 : 0;
   const View solid = scratch[0], near = scratch[1];
   const auto behind_wall = [&](int d, int i) {
     const int global = layout.begin[d] + i;
-    if (!box_->is_wall(d) || (global >= 0 && global < box_->domain_cells()[d])) return false;
+    if (!box.is_wall(d) || (global >= 0 && global < box.domain_cells()[d])) return false;
     return is_solid(sides[d][global >= 0].kind);
   };
-  const Int3 &n = box_->cells();
+  const Int3 &n = box.cells();
   for (int k = -reach * deep; k < n[2] + reach * deep; ++k)
     for (int j = -reach; j < n[1] + reach; ++j)
       for (int i = -reach; i < n[0] + reach; ++i) {
         double sum = 0;
-        for (const Phase *phase : rigid) sum += phase->fraction[0](i, j, k);
+        for (const ConstView &phi : rigid) sum += phi(i, j, k);
         const bool wall = behind_wall(0, i) || behind_wall(1, j) || behind_wall(2, k);
         solid(i, j, k) = wall ? 1 : std::min(sum, 1.0);
       }
-  RowScratch row(*box_, 1);
+  RowScratch row(box, 1);
   for (int k = -deep; k < n[2] + deep; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       smooth_row(dim, solid, j, k, -1, n[0] + 1, row.row(0), near.row(j, k));
       for (int i = -1; i < n[0] + 1; ++i) near(i, j, k) = nearness(near(i, j, k));
     }
+  const Real3 &h = box.spacing();
+  longest_spacing_ = *std::max_element(h.begin(), h.begin() + dim);
   cells_.clear();
   faces_.clear();
-  for_points(box_->rows(), [&](int i, int j, int k) {
+  for_points(box.rows(), [&](int i, int j, int k) {
     const double *here = &near(i, j, k);
     const std::ptrdiff_t at = here - near.origin;
     if (*here > 0 && solid(i, j, k) < full) cells_.push_back({at, *here});
     for (int a = 0; a < dim; ++a) {
       const std::ptrdiff_t s = near.stride(a);
-      const bool on_side = box_->is_wall(a) && layout.begin[a] + Int3{i, j, k}[a] == 0;
+      const bool on_side = box.is_wall(a) && layout.begin[a] + Int3{i, j, k}[a] == 0;
       if (on_side || here[0] == here[-s]) continue;
       const bool up = here[0] > here[-s];
-      faces_.push_back({a, at, up ? at : at - s, up ? at - s : at, (here[0] - here[-s]) / box_->spacing()[a]});
+      faces_.push_back({a, at, up ? at : at - s, up ? at - s : at, (here[0] - here[-s]) / box.spacing()[a]});
     }
   });
 }
@@ -72,8 +74,7 @@ double WallFilm::force_on(const Face &face, double pressure, const double *phi) 
 
 // As stiff as the step of the membrane allows.
 double WallFilm::pressure_of(const Phase &phase) const {
-  const Real3 &h = box_->spacing();
-  return phase.material.membrane.largest_modulus() / *std::max_element(h.begin(), h.begin() + box_->dimension());
+  return phase.material.membrane.largest_modulus() / longest_spacing_;
 }
 
 void WallFilm::add_force(const Phase &phase, Field &force) const {

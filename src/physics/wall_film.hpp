@@ -3,7 +3,6 @@
 #pragma once
 
 #include "field/exact_sum.hpp"
-#include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 
@@ -13,10 +12,9 @@ class WallFilm {
 public:
   static constexpr int work_fields = 2;  ///< scratch of find()
 
-  explicit WallFilm(const Box &box) : box_(&box) {}
-  /// Finds the cells and faces beside walls: solid sides of the box, and rigid bodies of `phases` that do not travel.
-  /// Three ghosts of phi; `scratch`: work_fields fields.
-  void find(const BoxSides &sides, const std::vector<const Phase *> &rigid, Field &scratch);
+  /// Finds the cells and faces of a block beside walls: solid sides of the domain, and rigid bodies that do not travel,
+  /// of which `rigid` has the solid fractions with three ghosts; `scratch`: work_fields fields.
+  void find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch);
   /// Adds the force of the walls on the bodies of a membrane's phase; one ghost of phi.
   void add_force(const Phase &phase, Field &force) const;
   /// Adds, per cell volume, minus the power of that force and the energy that is stored in it.
@@ -35,7 +33,7 @@ private:
   static double force_on(const Face &face, double pressure, const double *phi);
   double pressure_of(const Phase &phase) const;
 
-  const Box *box_;
+  double longest_spacing_ = 0;
   std::vector<Face> faces_;  ///< owned
   std::vector<Cell> cells_;  ///< owned
 };

@@ -12,7 +12,7 @@
 #include "physics/free_solids.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
-#include "physics/membrane.hpp"
+#include "physics/membrane_transport.hpp"
 #include "physics/momentum.hpp"
 #include "physics/rigid_impulse.hpp"
 #include "physics/solid_transport.hpp"

@@ -1,6 +1,6 @@
 // What bodies.h5 says of membranes: areas, energies, and how fast they go round.
 #include "bodies/surface_measures.hpp"
-#include "physics/membrane.hpp"
+#include "physics/membrane_transport.hpp"
 #include "support/interface_scene.hpp"
 
 #include <gtest/gtest.h>

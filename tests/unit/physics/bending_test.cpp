@@ -1,6 +1,6 @@
 // Bending of membranes: curvatures, energy, and the force as minus its derivative.
 #include "kernels/bending.hpp"
-#include "physics/membrane.hpp"
+#include "physics/membrane_transport.hpp"
 #include "support/interface_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Laws of membranes, and the surface cells they live in.
 #include "kernels/membrane.hpp"
-#include "physics/membrane.hpp"
+#include "physics/membrane_transport.hpp"
 #include "support/interface_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -187,7 +187,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
     const BoxSides sides{};
-    SurfaceCells cells(ball.domain, *ball.exchange, sides);
+    SurfaceCells cells({&ball.domain, &sides, ball.exchange.get()});
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     const double h = 1. / Ball::cells;
     double area = 0;
@@ -214,7 +214,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
     const BoxSides sides{};
-    SurfaceCells cells(ball.domain, *ball.exchange, sides);
+    SurfaceCells cells({&ball.domain, &sides, ball.exchange.get()});
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     Field tensor(ball.domain, dim == 2 ? 3 : 6);
     const auto &components = tensor_components(dim);

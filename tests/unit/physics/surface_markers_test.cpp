@@ -41,7 +41,7 @@ struct MarkedBall : InterfaceScene {
     EXPECT_EQ(exchange->update_ghosts(phase.fraction, 5), 0);
     EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     smooth = Field(domain, SurfaceCells::work_fields);
-    surface = std::make_unique<SurfaceCells>(domain, *exchange, sides);
+    surface = std::make_unique<SurfaceCells>(PhasePlace{&domain, &sides, exchange.get()});
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(domain);
   }

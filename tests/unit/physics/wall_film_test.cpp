@@ -16,7 +16,7 @@ struct Film {
   Domain domain;
   Phase phase, floor;
   Field scratch, force;
-  WallFilm film{domain};
+  WallFilm film;
 
   // A floor below row `bottom`: a side of the box, or a rigid body in a box without sides.
   explicit Film(int bottom, SideKind side = SideKind::wall) {
@@ -34,10 +34,11 @@ struct Film {
     BoxSides sides;
     for (auto &one : sides[1]) one.kind = side;
     for (int j = 0; j < bottom; ++j) std::fill_n(floor.fraction[0].row(j, 0), cells_x, 1.0);
-    const std::vector<const Phase *> rigid(bottom > 0, &floor);
+    const ConstView floor_fraction = std::as_const(floor).fraction[0];
+    const std::vector<ConstView> rigid(bottom > 0 ? 1 : 0, floor_fraction);
     GhostExchange exchange(domain);
     EXPECT_EQ(exchange.update_ghosts(floor.fraction, 5), 0);
-    film.find(sides, rigid, scratch);
+    film.find(domain, sides, rigid, scratch);
   }
   // A body that fills the box above a film of part 1 - beside(i) of row `bottom`.
   void fill(int bottom, const std::function<double(int)> &beside) {
