@@ -2,7 +2,7 @@
 
 #include "app/option_values.hpp"
 #include "field/surface_marker.hpp"
-#include "physics/free_solids.hpp"
+#include "physics/free_bodies.hpp"
 
 #include <cmath>
 #include <set>
@@ -70,9 +70,9 @@ std::string find_absurd_feeder(const std::vector<long> &inside, int feeders) {
 std::string find_absurd_box(const std::vector<double> &heads, const Box &domain, const BodyTracker &bodies,
                             const std::vector<Phase> &phases) {
   const std::string name = "bodies_in_boxes";
-  for (std::size_t n = 0; n < heads.size(); n += FreeSolids::head) {
+  for (std::size_t n = 0; n < heads.size(); n += FreeBodies::head) {
     const double *head = &heads[n], number = head[0], species = head[1];
-    for (int part = 0; part < FreeSolids::head; ++part)
+    for (int part = 0; part < FreeBodies::head; ++part)
       if (!is_within(head[part], -1e9, 1e9) || head[part] != std::floor(head[part]))
         return absurd(name, head[part], "whole numbers");
     if (!is_within(number, 1, bodies.bodies())) return absurd(name, number, "the label of a body");

@@ -20,7 +20,7 @@ std::string find_absurd_body(const std::vector<long> &cells, const std::vector<d
 std::string find_absurd_feeder(const std::vector<long> &inside, int feeders);
 /// Markers of membranes, packed as by SurfaceMarker::packed().
 std::string find_absurd_marker(const std::vector<double> &packed, const Box &box, int bodies, int phases);
-/// Heads of bodies in boxes (FreeSolids::packed) on the domain of a scene with these bodies and phases.
+/// Heads of bodies in boxes (FreeBodies::packed) on the domain of a scene with these bodies and phases.
 std::string find_absurd_box(const std::vector<double> &heads, const Box &domain, const BodyTracker &bodies,
                             const std::vector<Phase> &phases);
 

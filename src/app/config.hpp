@@ -149,13 +149,12 @@ struct Config {
     return spec.law != Law::rigid && spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
            method.interface == InterfaceScheme::plic;
   }
-  /// Whether several free bodies of a species lie in boxes of their own (physics/free_solids.hpp), rather than in
+  /// Whether several free bodies of a species lie in boxes of their own (physics/free_bodies.hpp), rather than in
   /// phases of the grid.
   bool boxes(const SpeciesSpec &spec) const {
     const Material material = spec.material();
-    return separates(spec) && method.boxes_bodies() && material.elastic() && !spec.is_membrane() &&
-           !material.attached && material.surface_tension == 0 && material.viscosity == 0 &&
-           !material.body_force.acts() && spec.shape != Shape::cylinder && !volume_crosses(sides);
+    return separates(spec) && method.boxes_bodies() && material.carries_tensor() && !material.attached &&
+           material.surface_tension == 0 && spec.shape != Shape::cylinder && !volume_crosses(sides);
   }
 };
 

@@ -47,7 +47,8 @@ double boxed_values(const Config &config) {
       reach = std::max(reach, surface.support(along));
     }
     for (int d = 0; d < dimension; ++d) {
-      const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] + 2 * FreeSolids::margin;
+      const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] +
+                         2 * FreeBodies::margin(config.species[s].material());
       cells *= own;
       around *= own + 2 * config.grid.ghosts;
     }

@@ -53,15 +53,15 @@ CheckpointRecords markers_of(const State &state) {
   return records;
 }
 
-// Bodies in boxes of their own: their heads (FreeSolids::packed), and what follows them, one body after the other.
+// Bodies in boxes of their own: their heads (FreeBodies::packed), and what follows them, one body after the other.
 constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
 
 std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
-  CheckpointRecords heads{heads_name, FreeSolids::head, {}}, values{values_name, 1, {}};
+  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
   for (std::size_t b = 0; b < solver.boxed_bodies().size(); ++b) {
     const std::vector<double> packed = solver.boxed().packed(b);
-    heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeSolids::head);
-    values.values.insert(values.values.end(), packed.begin() + FreeSolids::head, packed.end());
+    heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeBodies::head);
+    values.values.insert(values.values.end(), packed.begin() + FreeBodies::head, packed.end());
   }
   return {heads, values};
 }
@@ -230,7 +230,7 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
                                  const std::vector<double> &heads) {
   std::vector<int> numbers, owners;
   PetscFunctionBeginUser;
-  for (std::size_t n = 0; n < heads.size(); n += FreeSolids::head) {
+  for (std::size_t n = 0; n < heads.size(); n += FreeBodies::head) {
     numbers.push_back(static_cast<int>(heads[n]));
     owners.push_back(BodyRange::owner(numbers.back() - 1, bodies, domain.ranks()));
   }
@@ -247,7 +247,7 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
 // Some bodies in boxes for each rank, the same values whoever gets them.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
-  CheckpointRecords heads{heads_name, FreeSolids::head, {}}, values{values_name, 1, {}};
+  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
   PetscFunctionBeginUser;
   if (!solver->has_boxed()) PetscFunctionReturn(0);
   PetscCall(file->read_records(&heads));
@@ -255,15 +255,16 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
   PetscCall(require_different(domain, path, solver->bodies().bodies(), heads.values));
   std::vector<std::size_t> sizes;
-  for (std::size_t n = 0; n < heads.values.size(); n += FreeSolids::head)
-    sizes.push_back(FreeSolids::packed_values(domain.domain_shape(), &heads.values[n]));
+  for (std::size_t n = 0; n < heads.values.size(); n += FreeBodies::head)
+    sizes.push_back(FreeBodies::packed_values(
+        domain.domain_shape(), phases[static_cast<int>(heads.values[n + 1])].tensor.centred, &heads.values[n]));
   values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   PetscCall(file->read_own_records(&values));
   solver->clear_boxed_bodies();
   const double *next = values.values.data();
   for (std::size_t b = 0; b < sizes.size(); ++b) {
-    const double *head = &heads.values[b * FreeSolids::head];
-    std::vector<double> packed(head, head + FreeSolids::head);
+    const double *head = &heads.values[b * FreeBodies::head];
+    std::vector<double> packed(head, head + FreeBodies::head);
     packed.insert(packed.end(), next, next + sizes[b]);
     PetscCall(solver->add_packed_body(packed));
     next += sizes[b];

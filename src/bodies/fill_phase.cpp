@@ -157,6 +157,7 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
   phase.species = spec.name;
   phase.material = spec.material();
   phase.fraction = Field(box, 1);
+  phase.tensor.centred = phase.material.is_membrane();
   const PlacedBody body(surface, box.domain_shape(), place);
   const Int3 &first = box.layout().begin;
   const auto fraction = [&](const Int3 &p) {
@@ -174,7 +175,7 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
       for (int j = 0; j < box.points_end(1, at[1]); ++j)
         for (int i = 0; i < box.points_end(0, at[0]); ++i) {
           double sum = 0;  // of the four cells around an edge
-          for (int n = 0; n < (a == b ? 1 : 4); ++n) {
+          for (int n = 0; n < (component.on_edge() ? 4 : 1); ++n) {
             Int3 beside{i, j, k};
             beside[a] -= n % 2;
             beside[b] -= n / 2;

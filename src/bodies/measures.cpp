@@ -240,12 +240,9 @@ BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
   const Box &box = *body.box;
   const Phase &phase = *body.phase;
   const Layout &layout = box.layout();
-  Int3 middle{}, reference{};
-  const Extent extent = phase.extent(box);
-  for (int d = 0; d < 3; ++d) {
-    middle[d] = extent.begin[d] + (extent.end[d] - extent.begin[d]) / 2;
-    reference[d] = layout.begin[d] + middle[d];
-  }
+  const Int3 middle = phase.extent(box).middle();
+  Int3 reference{};
+  for (int d = 0; d < 3; ++d) reference[d] = layout.begin[d] + middle[d];
   struct Piece {
     Run run;
     std::vector<double> energy;

@@ -71,12 +71,63 @@ double area_of(ConstView phi, const double *q, const Real3 &h) {
   return *q > 0 && *q < 1 ? kernels::plane_area<Dim>(q, stride, face) : sum;
 }
 
+// The largest of all samples.
 struct Scales {
   double speed, shear, area, bending;
   explicit Scales(const std::vector<double> &v) : speed(v[0]), shear(v[1]), area(v[2]), bending(v[3]) {}
 };
 
+std::vector<double> largest_of(const std::vector<SurfaceSample> &samples, int dim) {
+  std::vector<double> found(4, 0.0);
+  for (const SurfaceSample &s : samples) {
+    for (int d = 0; d < dim; ++d) found[0] = std::max(found[0], std::fabs(s.velocity[d]));
+    found[1] = std::max(found[1], std::fabs(s.shear_energy));
+    found[2] = std::max(found[2], std::fabs(s.area_energy));
+    found[3] = std::max(found[3], std::fabs(s.bending_energy));
+  }
+  return found;
+}
+
 double scaled(double value, double scale) { return scale > 0 ? value / scale : 0; }
+
+// Of faces, in units of which areas are summed up.
+struct Units {
+  double face = 0, area = 1;
+  explicit Units(const Box &box) {
+    const Real3 &h = box.spacing();
+    face = *std::min_element(h.begin(), h.begin() + box.dimension());
+    for (int d = 0; d < box.dimension() - 1; ++d) area *= face;
+  }
+};
+
+// A sample at x cells from the reference of body b.
+void add_sample(const SurfaceSample &s, int b, const Real3 &x, int dim, double face, const Scales &scale,
+                BodySums *sums) {
+  const double w = s.delta * face;
+  sums->add(b, weight, w);
+  sums->add(b, weight_at_rest, s.rest * face);
+  for (int d = 0; d < dim; ++d) {
+    const double v = scaled(s.velocity[d], scale.speed);
+    sums->add(b, first_moment + d, w * x[d]);
+    sums->add(b, momentum + d, w * v);
+    for (int e = 0; e < dim; ++e) sums->add(b, moment_of_velocity + 3 * d + e, w * (v * x[e]));
+  }
+  for (int c = 0; c < 6; ++c) sums->add(b, second_moment + c, w * (x[pairs[c][0]] * x[pairs[c][1]]));
+  sums->add(b, energies, scaled(s.shear_energy, scale.shear));
+  sums->add(b, energies + 1, scaled(s.area_energy, scale.area));
+  sums->add(b, energies + 2, scaled(s.bending_energy, scale.bending));
+}
+
+SurfaceMeasure evaluate(const Box &box, const BodySums &sums, int b, const Scales &scale, double largest_stretch) {
+  const double at_rest = sums.value(b, weight_at_rest);
+  return {sums.value(b, area) * Units(box).area,
+          sums.value(b, energies) * scale.shear,
+          sums.value(b, energies + 1) * scale.area,
+          sums.value(b, energies + 2) * scale.bending,
+          turning_rate(sums, b, box.spacing(), box.dimension(), scale.speed),
+          at_rest > 0 ? sums.value(b, weight) / at_rest - 1 : 0,
+          largest_stretch};
+}
 
 }  // namespace
 
@@ -87,39 +138,17 @@ PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &
   VerbScope scope(Verb::bodies);
   const int dim = domain.dimension();
   const Real3 &h = domain.spacing();
-  const double face = *std::min_element(h.begin(), h.begin() + dim);
-  double unit = 1;  // of areas
-  for (int d = 0; d < dim - 1; ++d) unit *= face;
-  std::vector<std::vector<double>> found(1, std::vector<double>(4, 0.0));
-  for (const SurfaceSample &s : samples) {
-    for (int d = 0; d < dim; ++d) found[0][0] = std::max(found[0][0], std::fabs(s.velocity[d]));
-    found[0][1] = std::max(found[0][1], std::fabs(s.shear_energy));
-    found[0][2] = std::max(found[0][2], std::fabs(s.area_energy));
-    found[0][3] = std::max(found[0][3], std::fabs(s.bending_energy));
-  }
+  const Units units(domain);
   std::vector<double> most;
-  PetscCall(reduce_maxima(domain.comm(), found, &most));
+  PetscCall(reduce_maxima(domain.comm(), {largest_of(samples, dim)}, &most));
   const Scales scale(most);
   BodySums sums(references.size(), all_sums);
   std::vector<double> stretch(references.size(), 1.0), largest_stretch;
   for (const SurfaceSample &s : samples) {
     const int b = owners.slot(s.label - 1);
     if (b < 0) continue;
-    const Real3 x = offset(domain, references[b], s.place);
-    const double w = s.delta * face;
-    sums.add(b, weight, w);
-    sums.add(b, weight_at_rest, s.rest * face);
     stretch[b] = std::max(stretch[b], s.stretch);
-    for (int d = 0; d < dim; ++d) {
-      const double v = scaled(s.velocity[d], scale.speed);
-      sums.add(b, first_moment + d, w * x[d]);
-      sums.add(b, momentum + d, w * v);
-      for (int e = 0; e < dim; ++e) sums.add(b, moment_of_velocity + 3 * d + e, w * (v * x[e]));
-    }
-    for (int c = 0; c < 6; ++c) sums.add(b, second_moment + c, w * (x[pairs[c][0]] * x[pairs[c][1]]));
-    sums.add(b, energies, scaled(s.shear_energy, scale.shear));
-    sums.add(b, energies + 1, scaled(s.area_energy, scale.area));
-    sums.add(b, energies + 2, scaled(s.bending_energy, scale.bending));
+    add_sample(s, b, offset(domain, references[b], s.place), dim, units.face, scale, &sums);
   }
   for (const Phase &phase : phases) {
     if (!phase.material.is_membrane() || !phase.label) continue;
@@ -129,7 +158,7 @@ PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &
       const double *q = phi.row(row.j, row.k);
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int b = owners.slot(static_cast<int>(label(i, row.j, row.k)) - 1);
-        if (b >= 0) sums.add(b, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, q + i, h) / unit);
+        if (b >= 0) sums.add(b, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, q + i, h) / units.area);
       }
     }
   }
@@ -138,17 +167,32 @@ PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &
   largest_stretch.assign(owned, 1.0);
   PetscCall(owners.reduce(1, MPI_MAX, stretch, &largest_stretch));
   result->assign(owned, {});
-  for (int b = 0; b < owned; ++b) {
-    const double at_rest = sums.value(b, weight_at_rest);
-    (*result)[b] = {sums.value(b, area) * unit,
-                    sums.value(b, energies) * scale.shear,
-                    sums.value(b, energies + 1) * scale.area,
-                    sums.value(b, energies + 2) * scale.bending,
-                    turning_rate(sums, b, h, dim, scale.speed),
-                    at_rest > 0 ? sums.value(b, weight) / at_rest - 1 : 0,
-                    largest_stretch[b]};
-  }
+  for (int b = 0; b < owned; ++b) (*result)[b] = evaluate(domain, sums, b, scale, largest_stretch[b]);
   PetscFunctionReturn(0);
+}
+
+SurfaceMeasure measure_surface_in_box(const BodyInBox &body, const std::vector<SurfaceSample> &samples) {
+  const Box &box = *body.box;
+  const int dim = box.dimension();
+  const Real3 &h = box.spacing();
+  const Units units(box);
+  const Scales scale(largest_of(samples, dim));
+  const Int3 middle = body.phase->extent(box).middle();
+  BodySums sums(1, all_sums);
+  double stretch = 1;
+  for (const SurfaceSample &s : samples) {
+    Real3 x{};
+    for (int d = 0; d < dim; ++d) x[d] = s.place[d] - middle[d];
+    stretch = std::max(stretch, s.stretch);
+    add_sample(s, 0, x, dim, units.face, scale, &sums);
+  }
+  const ConstView phi = body.phase->fraction[0];
+  for (const Segment &whole : box.rows()) {
+    const Segment row = body.phase->filled(whole);
+    for (int i = row.i_begin; i < row.i_end; ++i)
+      sums.add(0, area, (dim == 2 ? area_of<2> : area_of<3>)(phi, &phi(i, row.j, row.k), h) / units.area);
+  }
+  return evaluate(box, sums, 0, scale, stretch);
 }
 
 }  // namespace eulastic

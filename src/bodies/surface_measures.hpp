@@ -25,5 +25,7 @@ struct SurfaceMeasure {
 PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &phases,
                                 const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
                                 const std::vector<Int3> &references, std::vector<SurfaceMeasure> *bodies);
+/// Of a body in a box of its own, from the samples at all its surface.
+SurfaceMeasure measure_surface_in_box(const BodyInBox &body, const std::vector<SurfaceSample> &samples);
 
 }  // namespace eulastic

@@ -57,9 +57,12 @@ std::uint64_t hash_body(const BodyInBox &body) {
   };
   add(phi, at_centre, {0, 0}, 0);
   for (int c = 0; c < body.phase->tensor.field.count(); ++c) {
-    const auto &[a, b, at] = body.phase->tensor.components()[c];
-    const bool edge = a != b;
-    add(body.phase->tensor.field[c], at, {edge ? phi.stride(a) : 0, edge ? phi.stride(b) : 0}, 1 + c);
+    const TensorComponent &component = body.phase->tensor.components()[c];
+    add(body.phase->tensor.field[c], component.at, component.steps(phi), 1 + c);
+  }
+  for (const SurfaceMarker &marker : *body.markers) {
+    const auto values = marker.packed();
+    hash += hash_values(values.data(), values.size());
   }
   return hash;
 }

@@ -35,6 +35,7 @@ void SegmentValues::take(const Field &field, const ActiveSegments &segments) {
 // work(first point, values, count) for the pieces of a run that lie in segments.
 template <class Work>
 void BoxExchange::for_pieces(const Run &run, const Contribution &contribution, int component, const Work &work) {
+  if (!contribution.segments) return;
   const Segment *all = contribution.segments->all().data();
   for (const Segment &s : contribution.segments->row(run.j, run.k)) {
     const int first = std::max(s.i_begin, run.i), last = std::min(s.i_end, run.i + run.count);

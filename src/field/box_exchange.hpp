@@ -36,10 +36,10 @@ public:
     const Box *box;
     int number;
   };
-  /// What a box adds to the grid.
+  /// What a box adds to the grid; nothing, if these are null.
   struct Contribution {
-    const SegmentValues *values;
-    const ActiveSegments *segments;
+    const SegmentValues *values = nullptr;
+    const ActiveSegments *segments = nullptr;
   };
   /// A field of the grid that it is added to, and how many times.
   struct Target {

@@ -5,6 +5,8 @@
 #include "grid/active_segments.hpp"
 #include "kernels/solid_shear.hpp"
 
+#include <array>
+#include <cstddef>
 #include <string>
 
 namespace eulastic {
@@ -14,6 +16,11 @@ struct TensorComponent {
   Staggering at{};  ///< where it lives
 
   bool on_edge() const { return at != at_centre; }  ///< between four centres
+  /// The centres around a point on an edge are itself, and less one, the other, and both of these steps in a field; 0
+  /// of a point at a centre.
+  std::array<std::ptrdiff_t, 2> steps(ConstView view) const {
+    return {on_edge() ? view.stride(a) : 0, on_edge() ? view.stride(b) : 0};
+  }
   double rest() const { return a == b ? 1 : 0; }
   std::string name() const { return {"xyz"[a], "xyz"[b]}; }
 };

@@ -1,19 +1,24 @@
 // A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one,
 // and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp). Where its bodies lie in
-// boxes of their own (physics/free_solids.hpp), each of them is a phase, and that of the species is empty.
+// boxes of their own (physics/free_bodies.hpp), each of them is a phase, and that of the species is empty.
 #pragma once
 
 #include "field/carried_tensor.hpp"
 #include "field/material.hpp"
+#include "field/surface_marker.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <string>
+#include <vector>
 
 namespace eulastic {
 
 /// A block of cells, begin to end in every direction.
 struct Extent {
   Int3 begin, end;
+  Int3 middle() const {
+    return {begin[0] + (end[0] - begin[0]) / 2, begin[1] + (end[1] - begin[1]) / 2, begin[2] + (end[2] - begin[2]) / 2};
+  }
 };
 
 struct Phase {
@@ -42,8 +47,9 @@ struct BodyInBox {
   int number;   ///< its label
   int species;  ///< index
   const Box *box;
-  const Phase *phase;               ///< of this body alone
-  const Field *velocity = nullptr;  ///< on the faces of the box, where it is wanted
+  const Phase *phase;                         ///< of this body alone
+  const std::vector<SurfaceMarker> *markers;  ///< of a membrane
+  const Field *velocity = nullptr;            ///< on the faces of the box, where it is wanted
 };
 
 }  // namespace eulastic

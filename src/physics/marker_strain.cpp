@@ -196,7 +196,7 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
   std::vector<int> marker_of;
   for (const Near &near : near_) marker_of.push_back(near.marker);
   const Sources from{box_, &surface, all_.data(), begin_.data() + box_->layout().origin};
-  const int parts = row_parts(*domain_);
+  const int parts = row_parts(*box_);
   std::vector<std::vector<Strain>> found(parts);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(surface.nearest(), part, parts);

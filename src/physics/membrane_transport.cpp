@@ -125,7 +125,7 @@ PetscErrorCode MembraneTransport::gather_force(const Phase &phase, NetForce *net
   const int n = domain_->cells()[0];
   PetscCall(membrane_.for_force_rows(phase, [&](int part, bool bending, int a, int j, int k, const double *added) {
     add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
-    if (bending) net->add_row(part, a, added);
+    if (bending) net->add_row(*domain_, part, a, added);
   }));
   film_.add_force(phase, force_);
   PetscFunctionReturn(0);

@@ -6,7 +6,7 @@
 namespace eulastic {
 
 NetForce::NetForce(const Domain &domain, bool wanted) : domain_(&domain) {
-  if (wanted) sums_.assign(row_parts(domain), ExactSums(domain.dimension()));
+  if (wanted) sums_.assign(threads(), ExactSums(domain.dimension()));
 }
 
 EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, double *force, double *slope) {

@@ -237,7 +237,7 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
           for_owned(*domain_, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
           add_force_row(n, added.data(), slope.factor, force[d].row(j, k),
                         slope.field ? (*slope.field)[d].row(j, k) : nullptr);
-          net.add_row(part.number, d, added.data());
+          net.add_row(*domain_, part.number, d, added.data());
         });
       }
     });

@@ -66,13 +66,15 @@ Phase take_body(const Box &box, const Phase &like, int number, const Field &brou
   phase.material = like.material;
   phase.fraction = Field(box, 1);
   phase.tensor.field = tensor_at_rest(box);
+  phase.tensor.centred = like.tensor.centred;
   for_points(box.rows(), [&](int i, int j, int k) {
     if (label(i, j, k) == number) phase.fraction[0](i, j, k) = phi(i, j, k);
   });
   const ConstView own = std::as_const(phase).fraction[0];
   for (int c = 0; c < phase.tensor.field.count(); ++c) {
-    const auto &[a, b, at] = phase.tensor.components()[c];
-    const std::ptrdiff_t low_a = a == b ? 0 : own.stride(a), low_b = a == b ? 0 : own.stride(b);
+    const TensorComponent &component = phase.tensor.components()[c];
+    const Staggering &at = component.at;
+    const auto [low_a, low_b] = component.steps(own);
     for (int k = 0; k < box.points_end(2, at[2]); ++k)
       for (int j = 0; j < box.points_end(1, at[1]); ++j)
         for (int i = 0; i < box.points_end(0, at[0]); ++i) {
@@ -157,6 +159,35 @@ PetscErrorCode Solver::bodies_now(std::vector<BodyInBox> *bodies) {
     bodies_are_known_ = true;
   }
   *bodies = bodies_now_;
+  PetscFunctionReturn(0);
+}
+
+// phi on the grid of species in boxes whose viscosity or force the flow has to know.
+PetscErrorCode Solver::show_fractions(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases) {
+  std::map<int, Phase *> shown;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    const Material &material = (*phases)[p].material;
+    if ((*phases)[p].boxed &&
+        (viscosity_of(material, spec_.fluid) != spec_.fluid.viscosity || material.body_force.acts()))
+      shown[static_cast<int>(p)] = &(*phases)[p];
+  }
+  if (shown.empty()) PetscFunctionReturn(0);
+  PetscCall(boxed_->show_fractions(bodies, shown));
+  for (const auto &[p, phase] : shown) PetscCall(find_rows(*phase));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::start_boxed_membranes(const std::vector<const Phase *> &rigid) {
+  bool any = false, bends = false;
+  PetscFunctionBeginUser;
+  for (const Phase &phase : now_.phases) {
+    any = any || (phase.boxed && phase.material.is_membrane());
+    bends = bends || (phase.boxed && phase.material.membrane.bending_modulus > 0);
+  }
+  if (!any) PetscFunctionReturn(0);
+  boxed_->set_surroundings(drifts() && bends, rigid);
+  PetscCall(boxed_->start_membranes());
   PetscFunctionReturn(0);
 }
 

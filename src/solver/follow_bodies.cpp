@@ -13,8 +13,9 @@ PetscErrorCode Solver::settle(Phase &phase) {
   PetscFunctionBeginUser;
   const OccupiedRows before = phase.rows;
   PetscCall(find_rows(phase));
-  if (phase.material.is_membrane()) {
+  if (phase.material.is_membrane() || phase.boxed) {
     PetscCall(find_solid(*domain_, phase));
+    if (phase.boxed) PetscFunctionReturn(0);
     PetscCall(membranes_->extend(&phase));
     PetscFunctionReturn(0);
   }
@@ -40,7 +41,7 @@ PetscErrorCode Solver::find_rows(Phase &phase) {
   const Int3 &n = domain_->cells();
   if (double(phase.rows.cells()) > much * n[0] * n[1] * n[2])
     for (Field *block : {&phase.fraction, &phase.tensor.field, &next_fraction_, &next_tensor_})
-      if (block != &phase.tensor.field || phase.material.carries_tensor()) block->leave_rest();
+      if (block != &phase.tensor.field || (phase.material.carries_tensor() && !phase.boxed)) block->leave_rest();
   PetscFunctionReturn(0);
 }
 
@@ -78,6 +79,9 @@ PetscErrorCode Solver::phases_now(const std::vector<Phase> **phases) {
     }
   for (std::size_t p = 0; p < phases_now_.size(); ++p) phases_now_[p].copy_from(now_.phases[p]);
   PetscCall(transport(phases_now_, 0.5 * now_.dt - looks_back_));
+  std::vector<BodyInBox> bodies;
+  PetscCall(bodies_now(&bodies));
+  PetscCall(show_fractions(bodies, &phases_now_));
   PetscCall(fill_rigid(now_.time, &phases_now_));
   for (Phase &copy : phases_now_)
     if (copy.label) PetscCall(carry_labels(*domain_, *exchange_, &copy));  // cells that the half step has reached

@@ -9,6 +9,7 @@ namespace eulastic {
 PetscErrorCode Solver::predict(double dt) {
   PetscFunctionBeginUser;
   Fluid fluid = spec_.fluid;
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
   if (viscosity_) {
     PetscCall(compute_viscosity(*domain_, fluid, spec_.sides, now_.phases, &viscosity_));
     fluid.viscosity = 0;  // the stress of the varying one is added
@@ -72,6 +73,7 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
     std::vector<BoxExchange::Target> targets{{&rate.fields(), 1}};
     if (slope.field) targets.push_back({slope.field, slope.factor});
     PetscCall(boxed_->add_forces(targets));
+    take_off_mean(*domain_, boxed_->mean_force(), rate.fields());
   }
   if (rigid_ && fluid.inertia)
     advect_from_surfaces(*domain_, rigid_->faces(), now_.time, weno_epsilon(step.speed_scale), step.weights.now,

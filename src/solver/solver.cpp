@@ -36,7 +36,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   solids_ = SolidTransport(spec.exterior == SolidExterior::extrapolate);
   const int dim = domain.dimension();
   exchange_ = std::make_unique<GhostExchange>(domain);
-  boxed_ = std::make_unique<FreeSolids>(domain, spec_.fluid, spec_.sides);
+  boxed_ = std::make_unique<FreeBodies>(domain, spec_.fluid, spec_.sides);
   work_ = std::make_unique<WorkSpace>(domain);
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(domain, *exchange_, &pressure_solver_));
@@ -101,14 +101,13 @@ PetscErrorCode Solver::prepare() {
   for (Phase &phase : now_.phases) {
     phase.tensor.rule = evolve_rule(phase.material);
     PetscCall(settle(phase));
-    if (phase.material.is_membrane()) PetscCall(membranes_->start(&phase));
+    if (phase.material.is_membrane() && !phase.boxed) PetscCall(membranes_->start(&phase));
   }
-  if (membranes_) {
-    std::vector<const Phase *> rigid;
-    for (const Phase &phase : now_.phases)
-      if (phase.material.is_rigid() && !(rigid_ && rigid_->travels(phase))) rigid.push_back(&phase);
-    PetscCall(membranes_->find_walls(rigid));
-  }
+  std::vector<const Phase *> rigid;
+  for (const Phase &phase : now_.phases)
+    if (phase.material.is_rigid() && !(rigid_ && rigid_->travels(phase))) rigid.push_back(&phase);
+  if (membranes_) PetscCall(membranes_->find_walls(rigid));
+  PetscCall(start_boxed_membranes(rigid));
   PetscCall(place_markers());
   PetscCall(share_bodies());
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
@@ -125,8 +124,9 @@ PetscErrorCode Solver::place_markers() {
   PetscFunctionBeginUser;
   now_.markers.clear();
   for (std::size_t p = 0; p < now_.phases.size(); ++p)
-    if (now_.phases[p].material.is_membrane())
+    if (now_.phases[p].material.is_membrane() && !now_.phases[p].boxed)
       PetscCall(membranes_->place_markers(now_.phases[p], static_cast<int>(p), 0, &now_.markers));
+  PetscCall(boxed_->place_markers());
   PetscFunctionReturn(0);
 }
 
@@ -151,6 +151,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   for (Phase &phase : now_.phases) {
     PetscCall(find_rows(phase));
     PetscCall(find_solid(*domain_, phase));
+    if (phase.boxed) continue;
     if (phase.material.is_membrane())
       PetscCall(membranes_->extend(&phase));
     else if (phase.material.elastic())
@@ -256,7 +257,9 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
     if (has_boxed()) PetscCall(boxed_->add_forces({{&slope_, -1 / dt}}));
   }
   PetscCall(transport(now_.phases, dt));
-  if (has_boxed()) PetscCall(boxed_->advance({now_.time, dt, now_.step}, now_.velocity));
+  long unresolved = 0;
+  if (has_boxed()) PetscCall(boxed_->advance({now_.time, dt, now_.step}, now_.velocity, &unresolved));
+  now_.forgotten += unresolved;
   PetscFunctionReturn(0);
 }
 

@@ -9,7 +9,7 @@
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"
 #include "physics/fluid.hpp"
-#include "physics/free_solids.hpp"
+#include "physics/free_bodies.hpp"
 #include "physics/interface.hpp"
 #include "physics/limits.hpp"
 #include "physics/membrane_transport.hpp"
@@ -59,14 +59,14 @@ public:
   /// Before prepare(); null or without bodies where nothing is rigid. Collective.
   PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
   /// Adds a body of a species, whose phase is `boxed` and empty, to this rank: `phase` has material, phi and B on `box`
-  /// (physics/free_solids.hpp).
+  /// (physics/free_bodies.hpp).
   PetscErrorCode add_body(int number, int species, const Box &box, Phase &&phase);
   /// Takes the labelled bodies of a species, whose phase is `boxed`, off the grid. Collective, before prepare().
   PetscErrorCode box_bodies(int species);
   /// Whether any species has its bodies in boxes of their own.
   bool has_boxed() const;
-  const FreeSolids &boxed() const { return *boxed_; }
-  /// Adds a body that FreeSolids::packed() has made to this rank.
+  const FreeBodies &boxed() const { return *boxed_; }
+  /// Adds a body that FreeBodies::packed() has made to this rank.
   PetscErrorCode add_packed_body(const std::vector<double> &packed);
   /// Those of this rank, as they are, without velocity.
   std::vector<BodyInBox> boxed_bodies() const { return boxed_->list(); }
@@ -203,6 +203,9 @@ private:
   PetscErrorCode settle_loads(double dt, const Field &divergence, Field &increment);
   PetscErrorCode separate_bodies();
   PetscErrorCode show_bodies();
+  PetscErrorCode show_fractions(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases);
+  /// `rigid`: phases of bodies that do not travel.
+  PetscErrorCode start_boxed_membranes(const std::vector<const Phase *> &rigid);
   /// Hands bodies to ranks that have less to do. Collective.
   PetscErrorCode share_bodies();
   void forget_looks();
@@ -229,7 +232,7 @@ private:
   LocalViscosity viscosity_;            ///< of the step, where bodies have their own; else empty
   SolidTransport solids_;
   InterfaceTransport interface_;
-  std::unique_ptr<FreeSolids> boxed_;                ///< bodies in boxes; null where no phase is `boxed`
+  std::unique_ptr<FreeBodies> boxed_;                ///< bodies in boxes; null where no phase is `boxed`
   std::unique_ptr<SurfaceTension> surface_tension_;  ///< null where no species has any
   std::unique_ptr<MembraneTransport> membranes_;     ///< the same of membranes
   std::unique_ptr<RigidBodies> rigid_;               ///< the same of rigid bodies

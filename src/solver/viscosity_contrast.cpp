@@ -1,4 +1,5 @@
 // Solver: what depends on how far the viscosities of fluid and bodies lie apart.
+#include "base/deliver.hpp"
 #include "solver/solver.hpp"
 
 #include <algorithm>
@@ -42,20 +43,39 @@ bool Solver::drifts() const {
 PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies) {
   PetscFunctionBeginUser;
   *measured = {};
-  if (!surface_tension_ && !membranes_) PetscFunctionReturn(0);
+  std::vector<BodyInBox> boxed;
+  std::vector<std::vector<SurfaceSample>> of_boxed;
+  PetscCall(bodies_now(&boxed));
+  if (bodies) bodies->clear();
+  if (has_boxed()) PetscCall(boxed_->measure_membranes(boxed, measured, &of_boxed));
+  const bool any = std::any_of(now_.phases.begin(), now_.phases.end(),
+                               [](const Phase &phase) { return phase.material.is_membrane(); });
+  if (!surface_tension_ && !any) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
   if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
-  if (!membranes_) PetscFunctionReturn(0);
   std::vector<SurfaceSample> samples;
-  PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
-  if (!bodies || bodies_.bodies() == 0) PetscFunctionReturn(0);
+  if (membranes_) PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
+  if (!any || !bodies || bodies_.bodies() == 0) PetscFunctionReturn(0);
   BodyOwners owners;
   std::vector<Int3> references;
   std::vector<int> labels;
   for (const SurfaceSample &sample : samples) labels.push_back(sample.label);
   PetscCall(bodies_.connect(*domain_, *phases, labels, &owners, &references));
   PetscCall(measure_surfaces(*domain_, *phases, samples, owners, references, bodies));
+  struct Found {
+    int number;
+    SurfaceMeasure measure;
+  };
+  std::vector<Found> found;
+  std::vector<int> ranks;
+  for (std::size_t b = 0; b < boxed.size(); ++b) {
+    if (!boxed[b].phase->material.is_membrane()) continue;
+    found.push_back({boxed[b].number, measure_surface_in_box(boxed[b], of_boxed[b])});
+    ranks.push_back(BodyRange::owner(boxed[b].number - 1, bodies_.bodies(), domain_->ranks()));
+  }
+  PetscCall(deliver(domain_->comm(), ranks, &found));
+  for (const Found &one : found) (*bodies)[one.number - 1 - owners.owned().begin] = one.measure;
   PetscFunctionReturn(0);
 }
 

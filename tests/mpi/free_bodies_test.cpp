@@ -1,5 +1,5 @@
-// FreeSolids: bodies in boxes of their own have the bits of the same bodies on the grid, whoever owns them.
-#include "physics/free_solids.hpp"
+// FreeBodies: bodies in boxes of their own have the bits of the same bodies on the grid, whoever owns them.
+#include "physics/free_bodies.hpp"
 #include "base/rank_zero.hpp"
 #include "physics/elastic_force.hpp"
 #include "support/scene.hpp"
@@ -32,7 +32,7 @@ const std::vector<Place> places{{{40, 32, 1}, {{0.05, 0.5, 0}, 0.2}, 0},
                                 {{32, 28, 30}, {{0.98, 0.45, 0.02}, 0.17}, 0},
                                 {{32, 28, 30}, {{0.5, 0.8, 0.4}, 0.17}, -1}};
 
-class FreeSolidsTest : public ::testing::TestWithParam<std::size_t> {
+class FreeBodiesTest : public ::testing::TestWithParam<std::size_t> {
 protected:
   // A stirred channel with one soft ball, by the fast method.
   void SetUp() override {
@@ -80,7 +80,7 @@ protected:
     return Box(scene->domain.domain_shape(), begin, cells, scene->domain.spec().ghosts);
   }
   // phi and B of the grid's phase in the box of a body, if this rank has one. Collective.
-  void bring_phase(const FreeSolids::Body *body, Field *fraction, Field *tensor) {
+  void bring_phase(const FreeBodies::Body *body, Field *fraction, Field *tensor) {
     const auto bring = [&](const Field &from, Field *to) {
       BoxExchange exchange(scene->domain, from.count());
       std::vector<BoxExchange::NumberedBox> boxes;
@@ -110,15 +110,15 @@ protected:
   std::unique_ptr<Scene> scene;
 };
 
-TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
+TEST_P(FreeBodiesTest, HaveTheBitsOfBodiesOnTheGrid) {
   const int ranks = scene->domain.ranks();
   for (const int owner : std::set<int>{0, ranks - 1}) {
     SetUp();
     const Domain &domain = scene->domain;
     const Solver &solver = scene->solver;
-    FreeSolids solids(domain, solver.spec().fluid, solver.spec().sides);
+    FreeBodies solids(domain, solver.spec().fluid, solver.spec().sides);
     {
-      const FreeSolids::Body placed{1, 0, box_of_ball(), {}, {}};
+      const FreeBodies::Body placed{1, 0, box_of_ball(), {}, {}};
       Phase one;
       one.material = phase().material;
       one.tensor.rule = phase().tensor.rule;
@@ -135,11 +135,12 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
       ASSERT_EQ(scene->solver.measure(&extremes), 0);
       const double dt = scene->solver.limits(extremes).automatic();
       const State &state = scene->solver.state();
-      ASSERT_EQ(solids.advance({state.time, 0.5 * (state.dt + dt), state.step}, state.velocity), 0);
+      long unresolved = 0;
+      ASSERT_EQ(solids.advance({state.time, 0.5 * (state.dt + dt), state.step}, state.velocity, &unresolved), 0);
       ASSERT_EQ(scene->solver.step(dt), 0);
       if (step % 5 != 4) continue;
       Field fraction, tensor, rate(domain, domain.dimension()), expected(domain, domain.dimension());
-      const FreeSolids::Body *body = solids.bodies().empty() ? nullptr : &solids.bodies()[0];
+      const FreeBodies::Body *body = solids.bodies().empty() ? nullptr : &solids.bodies()[0];
       EXPECT_EQ(body != nullptr, domain.rank() == owner);
       bring_phase(body, &fraction, &tensor);
       if (body) {
@@ -170,6 +171,6 @@ TEST_P(FreeSolidsTest, HaveTheBitsOfBodiesOnTheGrid) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Setups, FreeSolidsTest, ::testing::Range(std::size_t{0}, places.size()));
+INSTANTIATE_TEST_SUITE_P(Setups, FreeBodiesTest, ::testing::Range(std::size_t{0}, places.size()));
 
 }  // namespace
