@@ -132,13 +132,17 @@ void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &bef
       for (int y = 0; y < rows_y_; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * (z - low_z_)]);
   if (skips_nothing()) spans_.assign(spans_.size(), whole);
   inside_ = true;
-  for (int k = 0; k < n[2] && !alone; ++k)
+  const bool along_x = alone ? box.is_wall(0) : split_x;
+  // Of a box that is whole on this rank, only the ends at sides of the domain have anything beyond.
+  const auto inner = [&](int d, int begin, int end) {
+    const bool low = !alone || box.touches_low(d), high = !alone || box.touches_high(d);
+    return !(low && begin < ghosts[d]) && !(high && end > n[d] - ghosts[d]);
+  };
+  for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Span s = span(j, k);
       if (empty(s)) continue;
-      const bool inner[3] = {!split_x || (s.begin >= ghosts[0] && s.end <= n[0] - ghosts[0]),
-                             j >= ghosts[1] && j < n[1] - ghosts[1], k >= ghosts[2] && k < n[2] - ghosts[2]};
-      inside_ = inside_ && inner[0] && inner[1] && inner[2];
+      inside_ = inside_ && (!along_x || inner(0, s.begin, s.end)) && inner(1, j, j + 1) && inner(2, k, k + 1);
     }
   count();
 }

@@ -58,8 +58,8 @@ public:
   }
   /// The least of it, but for some cells, that has all that is not zero of `value`, which is zero outside the spans.
   Segment within(const Segment &row, ConstView value) const noexcept;
-  /// Whether on no rank a span comes as near to the others, or to a periodic side, as ghosts see: there is nothing to
-  /// exchange.
+  /// Whether on no rank a span comes as near to the others, or to a side of the domain, as ghosts see: there is nothing
+  /// to exchange, nor behind sides. Of find_in_box(): to a side that is no periodic one.
   bool inside() const noexcept { return inside_; }
 
   /// Whether one of these values is not zero.

@@ -9,7 +9,6 @@ namespace eulastic {
 PetscErrorCode Solver::predict(double dt) {
   PetscFunctionBeginUser;
   Fluid fluid = spec_.fluid;
-  PetscCall(show_fractions(boxed_->list(), &now_.phases));
   if (viscosity_) {
     PetscCall(compute_viscosity(*domain_, fluid, spec_.sides, now_.phases, &viscosity_));
     fluid.viscosity = 0;  // the stress of the varying one is added

@@ -110,6 +110,7 @@ PetscErrorCode Solver::prepare() {
   PetscCall(start_boxed_membranes(rigid));
   PetscCall(place_markers());
   PetscCall(share_bodies());
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
@@ -158,6 +159,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
       PetscCall(place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
   PetscCall(share_bodies());
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
   PetscFunctionReturn(0);
 }
 
@@ -260,6 +262,7 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
   long unresolved = 0;
   if (has_boxed()) PetscCall(boxed_->advance({now_.time, dt, now_.step}, now_.velocity, &unresolved));
   now_.forgotten += unresolved;
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
   PetscFunctionReturn(0);
 }
 

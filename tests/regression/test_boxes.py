@@ -16,24 +16,28 @@ sys.dont_write_bytecode = True
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 from scene_case import SceneCase  # noqa: E402
 
-ALL = ("-fluid_viscosity .2 -time_end 100 -guard_volume_drift 0 -guard_energy_growth 0 -series_interval .05 -species cell "
-       "-cell_shape ellipsoid -cell_shear_modulus .5 -cell_placement list -cell_positions").split()
+ALL = ("-fluid_viscosity .2 -time_end 100 -guard_volume_drift 0 -guard_energy_growth 0 -series_interval 1e-3 -species cell "
+       "-cell_shape ellipsoid -cell_placement list -cell_positions").split()
+# Skalak's law with markers, bending and a viscosity of their own.
+MEMBRANE = ("-cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus .05 -cell_area_modulus 2 -cell_bending_modulus .002 "
+            "-cell_viscosity .6").split()
+ELASTIC = ["-cell_shear_modulus", ".5"]
 STIRRED = "-body_force .5,0,0 -initial_velocity taylor_green -initial_velocity_amplitude .3".split()
 
 
 class Boxes(SceneCase):
-    def same_on_ranks(self, rows, *scene, steps=6, ranks=(1, 2, 3, 4), restart=True):
+    def same_on_ranks(self, rows, *scene, steps=6, ranks=(1, 2, 3, 4), restart=True, prefix="ranks"):
         """Runs a scene of bodies with these centres on these ranks, and from the middle on; returns the one on one rank."""
         file = self.room / "places.csv"
         file.write_text("\n".join(["x,y,z", *(",".join(map(str, row)) for row in rows), ""]))
-        words = [*ALL, file, *map(str, scene)]
-        runs = {f"ranks{n}": ([*words, "-time_steps_max", steps], {"ranks": n}) for n in ranks}
+        words = [*ALL, file, *(ELASTIC if "-cell_law" not in scene else []), *map(str, scene)]
+        runs = {f"{prefix}{n}": ([*words, "-time_steps_max", steps], {"ranks": n}) for n in ranks}
         if restart:
             runs["half"] = ([*words, "-time_steps_max", steps // 2], {"ranks": 2})
         found = self.run_together(runs)
         if restart:
             found |= self.run_together({"restarted": ([*words, "-time_steps_max", steps, "-restart", self.room / "half"], {"ranks": 3})})
-        one = found["ranks1"]
+        one = found[f"{prefix}1"]
         self.assertEqual(one.summary["phases"], 1)
         for name, run in found.items():
             if name != "half":
@@ -54,6 +58,37 @@ class Boxes(SceneCase):
         one = self.same_on_ranks(rows, *"-grid_cells 24,20,24 -grid_length 1.2,1,1.2 -boundary_y wall".split(), *STIRRED,
                                  *"-cell_semi_axes .2,.17,.2".split())
         self.assertEqual([round(body["centroid"][1], 2) for body in one.summary["bodies"]], [.5, .81, .19, .81])
+
+    def test_membranes_at_all_sides(self):
+        # On a corner of two periodic sides, and against walls with a film between.
+        rows = [(0, .5, 0), (.02, .79, 1.19), (.6, .21, .6)]
+        one = self.same_on_ranks(rows, *"-grid_cells 24,20,24 -grid_length 1.2,1,1.2 -boundary_y wall".split(), *STIRRED, *MEMBRANE,
+                                 *"-cell_semi_axes .2,.15,.2".split())
+        self.assertGreater(min(body["bending_energy"] for body in one.summary["bodies"]), 0)
+
+    def test_membranes_where_no_wall_holds_the_fluid(self):
+        one = self.same_on_ranks([(.1, .2, 0), (.1, .62, 0)], *"-grid_cells 32,32,1 -grid_length 1,1,1 -cell_semi_axes .2,.15,.2".split(),
+                                 *"-initial_velocity taylor_green -initial_velocity_amplitude .3".split(), *MEMBRANE)
+        self.assertLess(abs(one.series.bulk_velocity_x[-1]), 1e-6)
+
+    def test_bodies_far_apart_are_those_of_the_grid(self):
+        # Species whose bodies may merge stay on the grid. Of bodies with viscosities and forces of their own, all that a row of the
+        # series says and what is known of every body.
+        scene = ("-grid_cells 40,24,24 -grid_length 2,1.2,1.2 -boundary_y wall -cell_semi_axes .2,.15,.2 -cell_body_force 1,.5,0 "
+                 "-time_step 5e-4").split()
+        for name, kind in ("membranes", MEMBRANE), ("solids", ["-cell_viscosity", ".5"]):
+            boxes, grid = (self.same_on_ranks([(.5, .6, .6), (1.5, .6, .6)], *scene, *STIRRED, *kind, *contact, ranks=(1,), restart=False,
+                                              prefix=f"{name}_{where}_")
+                           for where, contact in (("boxes", []), ("grid", ["-cell_contact", "merge"])))
+            for column in boxes.series.dtype.names:
+                ours, theirs = (getattr(run.series, column) for run in (boxes, grid))
+                scale = abs(theirs).max()
+                numpy.testing.assert_allclose(ours, theirs, rtol=1e-7, atol=1e-7 * scale + 1e-15, err_msg=f"{name} {column}")
+            for one, other in zip(boxes.summary["bodies"], grid.summary["bodies"]):
+                self.assertEqual(set(one), set(other))
+                for key, value in one.items():
+                    if not isinstance(value, str):
+                        numpy.testing.assert_allclose(value, other[key], rtol=1e-6, atol=1e-9, err_msg=f"{name} {key}")
 
     def test_a_thousand_bodies(self):
         places = [(x + .5, y + .5, z + .5) for x in range(10) for y in range(10) for z in range(10)]
@@ -82,7 +117,7 @@ class Boxes(SceneCase):
         self.assertEqual(set(body[phi > .5]), {1, 2})
         for label in 1, 2:
             self.assertAlmostEqual(phi[body == label].sum() * .05**2, numpy.pi * .04, delta=2e-3)
-        words = ALL[:ALL.index("-cell_shape")] + ["-cell_shear_modulus", ".5", *scene[:4], "-time_steps_max", 1, "-initial_state",
+        words = ALL[:ALL.index("-cell_shape")] + [*ELASTIC, *scene[:4], "-time_steps_max", 1, "-initial_state",
                                                   one.directory / "snapshot_000000.h5"]
         again = self.run_together({"again1": (words, {"ranks": 1}), "again3": (words, {"ranks": 3})})
         self.assertEqual(again["again1"].summary["state_hash"], again["again3"].summary["state_hash"])
