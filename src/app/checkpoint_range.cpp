@@ -87,11 +87,12 @@ std::string find_absurd_box(const std::vector<double> &heads, const Box &domain,
       cells *= length;
     }
     if (cells > 1e9) return absurd(name, cells, "at most 1e9 cells in a box");
+    if (!is_within(head[8], 0, cells)) return absurd(name, head[8], "at most one marker in a cell");
   }
   return {};
 }
 
-std::string find_absurd_marker(const std::vector<double> &packed, const Box &box, int bodies, int phases) {
+std::string find_absurd_marker(const std::vector<double> &packed, const Extent &block, int bodies, int phases) {
   const std::string name = "membrane_markers";
   for (std::size_t n = 0; n < packed.size(); ++n) {
     const double value = packed[n];
@@ -100,7 +101,7 @@ std::string find_absurd_marker(const std::vector<double> &packed, const Box &box
     if (part == 0 && !is_within(value, 0, most)) return absurd(name, value, "numbers from 0 on");
     if (part == 1 && !is_within(value, 0, bodies)) return absurd(name, value, "the label of a body");
     if (part == 2 && !is_within(value, 0, phases - 1)) return absurd(name, value, "the number of a phase");
-    if (part >= 3 && part < 6 && !is_within(value, 0, box.domain_cells()[part - 3] - 1))
+    if (part >= 3 && part < 6 && !is_within(value, block.begin[part - 3], block.end[part - 3] - 1))
       return absurd(name, value, "a cell of the box");
     if (part >= 6 && part < 9 && !is_within(value, -1, 1)) return absurd(name, value, "a position within its cell");
   }

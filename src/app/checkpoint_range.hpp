@@ -18,8 +18,8 @@ std::string find_absurd_link(const std::vector<long> &like, int placed);
 /// Of one rank's share of the bodies: their cells, their first volumes, and their feeders (0 = none) of `feeders`.
 std::string find_absurd_body(const std::vector<long> &cells, const std::vector<double> &first_volumes);
 std::string find_absurd_feeder(const std::vector<long> &inside, int feeders);
-/// Markers of membranes, packed as by SurfaceMarker::packed().
-std::string find_absurd_marker(const std::vector<double> &packed, const Box &box, int bodies, int phases);
+/// Markers of membranes in a block of cells, packed as by SurfaceMarker::packed().
+std::string find_absurd_marker(const std::vector<double> &packed, const Extent &block, int bodies, int phases);
 /// Heads of bodies in boxes (FreeBodies::packed) on the domain of a scene with these bodies and phases.
 std::string find_absurd_box(const std::vector<double> &heads, const Box &domain, const BodyTracker &bodies,
                             const std::vector<Phase> &phases);

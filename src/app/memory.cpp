@@ -64,8 +64,9 @@ double fields(const Config &config) {
   const int dimension = dimension_of(config);
   const bool tension = std::any_of(config.species.begin(), config.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
-  const bool membranes = std::any_of(config.species.begin(), config.species.end(),
-                                     [](const SpeciesSpec &spec) { return spec.is_membrane(); });
+  bool membranes = false;  // on the grid
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    membranes = membranes || (config.species[s].is_membrane() && !lies_in_boxes(config, s));
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
   const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
@@ -89,8 +90,12 @@ double fields(const Config &config) {
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const bool carries = config.species[s].material().carries_tensor();
     if (carries) tensor = tensor_fields(config);
-    // Of bodies in boxes what is shown on the grid at the output: fraction, label and B.
-    sum += lies_in_boxes(config, s) ? 2 + tensor_fields(config) : config.colours[s] * phase_fields(config, carries);
+    // Of bodies in boxes what is shown on the grid at the output, fraction, label and B, and of those with a viscosity
+    // or a force of their own the fraction of the step and at its end.
+    const SpeciesSpec &spec = config.species[s];
+    const bool felt = spec.material().viscosity > 0 || spec.material().body_force.acts();
+    sum += lies_in_boxes(config, s) ? 2 + 2 * felt + tensor_fields(config)
+                                    : config.colours[s] * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;

@@ -261,14 +261,25 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   PetscCall(file->read_own_records(&values));
   solver->clear_boxed_bodies();
+  std::vector<std::vector<double>> all;
+  std::string wrong;
   const double *next = values.values.data();
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const double *head = &heads.values[b * FreeBodies::head];
-    std::vector<double> packed(head, head + FreeBodies::head);
+    std::vector<double> &packed = all.emplace_back(head, head + FreeBodies::head);
     packed.insert(packed.end(), next, next + sizes[b]);
-    PetscCall(solver->add_packed_body(packed));
     next += sizes[b];
+    Extent block;
+    for (int d = 0; d < 3; ++d) {
+      block.begin[d] = static_cast<int>(head[2 + d]);
+      block.end[d] = static_cast<int>(head[2 + d] + head[5 + d]);
+    }
+    const std::vector<double> markers(next - static_cast<int>(head[8]) * SurfaceMarker::numbers, next);
+    if (wrong.empty())
+      wrong = find_absurd_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
   }
+  PetscCall(require_range(domain, path, wrong));
+  for (const std::vector<double> &packed : all) PetscCall(solver->add_packed_body(packed));
   PetscFunctionReturn(0);
 }
 
@@ -333,9 +344,10 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   take_numbers(numbers, solver, position);
   CheckpointRecords records = markers_of({});
   PetscCall(file->read_records(&records));
-  PetscCall(require_range(domain, path,
-                          find_absurd_marker(records.values, domain, solver->bodies().bodies(),
-                                             static_cast<int>(solver->state().phases.size()))));
+  PetscCall(
+      require_range(domain, path,
+                    find_absurd_marker(records.values, {{0, 0, 0}, domain.domain_cells()}, solver->bodies().bodies(),
+                                       static_cast<int>(solver->state().phases.size()))));
   std::vector<SurfaceMarker> markers;
   for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(&records.values[n]));

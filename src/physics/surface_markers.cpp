@@ -110,8 +110,8 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, con
     if (!cell.owned || (phase.label && own == 0) || (label != 0 && own != label)) continue;
     SurfaceMarker marker;
     for (int d = 0; d < 3; ++d) marker.cell[d] = begin[d] + cell.place[d];
-    marker.number =
-        marker.cell[0] + std::int64_t(cells[0]) * (marker.cell[1] + std::int64_t(cells[1]) * marker.cell[2]);
+    const auto x = [&](int d) { return std::int64_t(box_->image(d, marker.cell[d])); };
+    marker.number = x(0) + cells[0] * (x(1) + cells[1] * x(2));
     for (int n = 0; n < approaches; ++n) (void)approach(surface, fields, 1, &marker);
     for (int d = 0; d < 3; ++d) marker.rest[d] = (marker.cell[d] + 0.5 + marker.offset[d]) * box_->spacing()[d];
     marker.normal = cell.normal;

@@ -51,6 +51,7 @@ GROW_WITH_BODIES = {
     ("Main Stage", "", "Barrier"): (None, 0),
     ("Output", "EulWrite", "Scan"): (None, 8),  # of boxes in a checkpoint
     ("Setup", "", "Allgather"): (None, 16 * 8),  # what each rank has to do: bodies are shared out
+    ("Setup", "", "Allreduce"): (4, 16),  # whether all boxes still fit, and where strain was lost
 }
 LARGEST = 65536
 

@@ -70,9 +70,20 @@ class Numbers(Restart):
     def test_of_bodies_in_boxes(self):
         self.run_case("run", *BOXES, "-time_steps_max", 4)
         path = self.checkpoints()[0]
-        # Of each body: its number, its species, where its box begins, and how long that is.
-        for index, value in ((0, 0.), (0, 3.), (8, 1.), (1, 1.), (1, -1.), (2, .5), (3, -1.), (3, numpy.nan), (4, 1.), (5, 0.), (6, 1e6), (7, 2.)):
+        # Of each body: its number, its species, where its box begins, how long that is, and how many markers there are.
+        for index, value in ((0, 0.), (0, 3.), (9, 1.), (1, 1.), (1, -1.), (2, .5), (3, -1.), (3, numpy.nan), (4, 1.), (5, 0.), (6, 1e6), (7, 2.),
+                             (8, -1.), (8, 1e6)):
             self.refuse_changed([*BOXES, "-time_steps_max", 6], path, "bodies_in_boxes", index, value)
+
+
+    def test_of_markers_in_boxes(self):
+        case = [*BOXES[:BOXES.index("-cell_shear_modulus")], *BOXES[BOXES.index("-cell_shear_modulus") + 2:],
+                *"-cell_law membrane -cell_surface_shear_modulus .2".split()]
+        self.run_case("run", *case, "-time_steps_max", 4)
+        # The last marker: its number, label, phase, cell and place in it.
+        for part, value in ((0, -1.), (1, 7.), (2, 4.), (3, 1e3), (4, -1e9), (6, 2.), (9, numpy.nan)):
+            self.refuse_changed([*case, "-time_steps_max", 6], self.checkpoints()[0], "values_in_boxes", part - 21, value,
+                                says="membrane_markers")
 
 
 MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmax_windkessel 1,.1,2 "

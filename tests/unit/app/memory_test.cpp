@@ -67,7 +67,7 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   const std::string line =
       "-time_end 1 -grid_length 8,8,8 -species vessel,ball -vessel_shape slab -vessel_axis y -vessel_interval 0,.1 "
       "-vessel_shear_modulus 1 -ball_shape sphere -ball_radius .3 -ball_shear_modulus 1 -ball_placement lattice "
-      "-ball_count 4,4,4 -ball_body_force 1,0,0 -grid_cells ";  // not in boxes of their own
+      "-ball_count 4,4,4 -ball_surface_tension 1e-9 -grid_cells ";  // not in boxes of their own
   EXPECT_EQ(expected_phases(parse_line(line + "64,64,64").config), 2);
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32").config), 3);  // as on a chessboard
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32 -ball_contact merge").config), 2);
@@ -86,13 +86,14 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   // Bodies in boxes: four cells around each, and five ghosts; phi, B, and a copy of both with a velocity at the time of
   // the output; the force.
   std::string boxed = line;
-  boxed.replace(boxed.find("-ball_body_force 1,0,0"), 22, "");
+  boxed.replace(boxed.find("-ball_surface_tension 1e-9"), 26, "");
   const Config boxes = parse_line(boxed + "32,32,32").config;
   EXPECT_EQ(expected_phases(boxes), 2);
   const double reach = 2 * .3 * 4 + 2 * 4;
   EXPECT_NEAR(bytes_in_boxes(boxes), 64 * 8. * (17 * std::pow(reach + 10, 3) + 3 * std::pow(reach, 3)), 1);
+  const Config on_grid = parse_line(boxed + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(boxes, {1, 1, 1}),
-                   bytes_per_rank(merged, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
+                   bytes_per_rank(on_grid, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
   const Config flat = parse_line(
                           "-time_end 1 -grid_cells 32,32,1 -grid_length 8,8,1 -species ball -ball_shape ellipsoid "
                           "-ball_semi_axes .3,.5,1 "
