@@ -1,12 +1,10 @@
-// Surface tension: the force sigma kappa grad(phi) on faces, which a pressure balances exactly where the curvature is
-// uniform; docs/method.md, section 17.
+// Surface tension of all phases of the grid together; docs/method.md, section 17.
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"
-#include "physics/elastic_force.hpp"
+#include "physics/capillary_force.hpp"
 
 namespace eulastic {
 
@@ -19,11 +17,11 @@ struct SurfaceEnergy {
 
 class SurfaceTension {
 public:
-  static constexpr int work_fields = 2;  ///< of the work space, during each call
+  static constexpr int work_fields = CapillaryForce::work_fields;  ///< of the work space, during each call
 
   /// `drifts`: whether no wall holds the fluid, so that any net force would move all of it for ever.
   SurfaceTension(const Domain &domain, GhostExchange &exchange, WorkSpace &work, bool drifts)
-      : domain_(&domain), exchange_(&exchange), work_(&work), drifts_(drifts) {}
+      : domain_(&domain), work_(&work), drifts_(drifts), capillary_(domain, &exchange) {}
   static bool exists(const std::vector<Phase> &phases);
 
   /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
@@ -34,13 +32,10 @@ public:
   PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured);
 
 private:
-  PetscErrorCode find_curvature(const Phase &phase, Field &curvature);
-
   const Domain *domain_;
-  GhostExchange *exchange_;
   WorkSpace *work_;
   bool drifts_;
-  ActiveSegments band_;  ///< of the phase that is worked on, with a layer of ghosts
+  CapillaryForce capillary_;
 };
 
 }  // namespace eulastic
