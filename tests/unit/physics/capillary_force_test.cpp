@@ -24,6 +24,9 @@ struct Case {
   bool bounded;  // walls in y and, in 3-D, in z
   Real3 centre, axes;
   bool crosses_x = false;  // a row of the grid has two pieces of it, which are added up in another order
+  // The last two have no cut cells; a rod along y has no heights at its rims.
+  enum Shape { smooth, stepped, rod };
+  Shape shape = smooth;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
@@ -47,8 +50,13 @@ struct OnGrid : InterfaceScene {
     set_fraction([&](Real3 x) {
       for (int d = 0; d < dim; ++d)
         if (!domain.is_wall(d)) x[d] -= spec.length[d] * std::round((x[d] - c.centre[d]) / spec.length[d]);
-      return drop(x);
+      if (c.shape != Case::rod) return drop(x);
+      const double along = x[1] - c.centre[1];
+      x[1] = c.centre[1];
+      return std::max(drop(x), std::fabs(along) - c.axes[1]);
     });
+    if (c.shape != Case::smooth)
+      each_owned([&](int i, int j, int k) { fraction[0](i, j, k) = std::round(fraction[0](i, j, k)); });
     find_extent(c);
     phases[0].material.surface_tension = sigma;
     phases[0].fraction = std::move(fraction);
@@ -222,14 +230,20 @@ TEST_P(CapillaryForceInBox, HasTheBitsOfTheGrid) {
 
 INSTANTIATE_TEST_SUITE_P(
     Drops, CapillaryForceInBox,
-    testing::Values(Case{"inside", {44, 32, 30}, false, {0.61, 0.47, 0.43}, {0.3, 0.21, 0.17}},
-                    Case{"across_y_and_z", {44, 32, 30}, false, {0.57, 0.03, 0.88}, {0.3, 0.17, 0.21}},
-                    Case{"across_x", {44, 32, 30}, false, {0.02, 0.96, 0.5}, {0.27, 0.21, 0.17}, true},
-                    Case{"at_walls", {44, 32, 30}, true, {0.61, 0.13, 0.8}, {0.3, 0.21, 0.17}},
-                    Case{"thin", {44, 32, 30}, false, {0.6, 0.5, 0.43}, {0.3, 0.05, 0.2}},
-                    Case{"flat", {52, 40, 1}, false, {0.63, 0.02, 0}, {0.3, 0.2, 0}},
-                    Case{"flat_across_x", {52, 40, 1}, false, {1.19, 0.5, 0}, {0.3, 0.2, 0}, true},
-                    Case{"flat_at_wall", {52, 40, 1}, true, {0.63, 0.9, 0}, {0.3, 0.2, 0}}),
+    testing::Values(
+        Case{"inside", {44, 32, 30}, false, {0.61, 0.47, 0.43}, {0.3, 0.21, 0.17}},
+        Case{"across_y_and_z", {44, 32, 30}, false, {0.57, 0.03, 0.88}, {0.3, 0.17, 0.21}},
+        Case{"across_x", {44, 32, 30}, false, {0.02, 0.96, 0.5}, {0.27, 0.21, 0.17}, true},
+        Case{"at_walls", {44, 32, 30}, true, {0.61, 0.13, 0.8}, {0.3, 0.21, 0.17}},
+        Case{"thin", {44, 32, 30}, false, {0.6, 0.5, 0.43}, {0.3, 0.05, 0.2}},
+        Case{"stepped", {44, 32, 30}, false, {0.6, 0.5, 0.43}, {0.3, 0.17, 0.2}, false, Case::stepped},
+        Case{"rod", {44, 32, 30}, false, {0.6, 0.5, 0.43}, {0.3, 0.14, 0.2}, false, Case::rod},
+        Case{"stepped_at_walls", {44, 32, 30}, true, {0.6, 0.1, 0.8}, {0.3, 0.17, 0.2}, false, Case::stepped},
+        Case{"block_of_sums", {280, 30, 28}, false, {1.095, 0.5, 0.43}, {0.09, 0.3, 0.3}},
+        Case{"flat_stepped", {52, 40, 1}, false, {0.63, 0.5, 0}, {0.3, 0.2, 0}, false, Case::stepped},
+        Case{"flat", {52, 40, 1}, false, {0.63, 0.02, 0}, {0.3, 0.2, 0}},
+        Case{"flat_across_x", {52, 40, 1}, false, {1.19, 0.5, 0}, {0.3, 0.2, 0}, true},
+        Case{"flat_at_wall", {52, 40, 1}, true, {0.63, 0.9, 0}, {0.3, 0.2, 0}}),
     [](const auto &test) { return test.param.name; });
 
 // The force that the solver adds for a phase is that of CapillaryForce, less its mean.
