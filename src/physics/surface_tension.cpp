@@ -27,7 +27,6 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
 PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const Field &velocity,
                                        SurfaceEnergy *measured) {
   PetscFunctionBeginUser;
-  *measured = {};
   WorkSpace::Lease lease;
   PetscCall(work_->take("curvature", work_fields, &lease));
   for (const Phase &phase : phases) {

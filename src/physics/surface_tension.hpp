@@ -29,6 +29,7 @@ public:
   /// surfaces exert no net force, their discretisation does.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const ForceSlope &slope = {});
+  /// Adds energy and power.
   PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured);
 
 private:

@@ -222,7 +222,10 @@ TEST_P(CapillaryForceInBox, HasTheBitsOfTheGrid) {
         else
           EXPECT_EQ(found.mean_force[d], expected.mean_force[d]);
       }
-      if (!narrow.force) narrow = std::move(found);
+      if (!narrow.force) {
+        narrow = std::move(found);
+        continue;
+      }
       for (int s = 0; s < CapillaryForce::sums; ++s) EXPECT_EQ(narrow.sum[s], found.sum[s]);
       EXPECT_EQ(narrow.mean_force, found.mean_force);
     }
@@ -257,6 +260,10 @@ TEST(SurfaceTension, AddsTheForcesOfItsPhases) {
   SurfaceEnergy seen;
   ASSERT_EQ(tension.measure(grid.phases, grid.velocity, &seen), 0);
   EXPECT_EQ(seen.energy, sigma * one.sum[CapillaryForce::area]);
+  SurfaceEnergy both = seen;  // with that of others
+  ASSERT_EQ(tension.measure(grid.phases, grid.velocity, &both), 0);
+  EXPECT_EQ(both.energy, 2 * seen.energy);
+  EXPECT_EQ(both.power, 2 * seen.power);
   EXPECT_EQ(seen.power, one.sum[CapillaryForce::power] * domain.cell_volume());
   for (const bool balanced : {false, true}) {
     Field force(domain, 2);
