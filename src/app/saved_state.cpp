@@ -269,10 +269,10 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
     std::vector<double> &packed = all.emplace_back(head, head + FreeBodies::head);
     packed.insert(packed.end(), next, next + sizes[b]);
     next += sizes[b];
-    Extent block;
+    Extent block;  // and cells beside it that the surface may lie in
     for (int d = 0; d < 3; ++d) {
-      block.begin[d] = static_cast<int>(head[2 + d]);
-      block.end[d] = static_cast<int>(head[2 + d] + head[5 + d]);
+      block.begin[d] = static_cast<int>(head[2 + d]) - SurfaceCells::layers;
+      block.end[d] = static_cast<int>(head[2 + d] + head[5 + d]) + SurfaceCells::layers;
     }
     const std::vector<double> markers(next - static_cast<int>(head[8]) * SurfaceMarker::numbers, next);
     if (wrong.empty())

@@ -86,26 +86,35 @@ PetscErrorCode FreeBodies::add(int number, int species, const Box &box, Phase &&
   PetscFunctionReturn(0);
 }
 
-// visit(value) for phi and the components of B of a body in the order of packed().
+// visit(value) for phi and the components of B of a body in the order of packed(), at the points of a block that begins
+// at cell `first` of its box.
 template <class PhaseOrConst, class Visit>
-void FreeBodies::for_values(const Box &box, PhaseOrConst &phase, const Visit &visit) {
+void FreeBodies::for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit) {
   const auto visit_field = [&](auto view, const Staggering &at) {
-    for (int k = 0; k < box.points_end(2, at[2]); ++k)
-      for (int j = 0; j < box.points_end(1, at[1]); ++j)
-        for (int i = 0; i < box.points_end(0, at[0]); ++i) visit(view(i, j, k));
+    for (int k = 0; k < block.points_end(2, at[2]); ++k)
+      for (int j = 0; j < block.points_end(1, at[1]); ++j)
+        for (int i = 0; i < block.points_end(0, at[0]); ++i) visit(view(first[0] + i, first[1] + j, first[2] + k));
   };
   visit_field(phase.fraction[0], at_centre);
   for (int c = 0; c < phase.tensor.field.count(); ++c)
     visit_field(phase.tensor.field[c], phase.tensor.components()[c].at);
 }
 
+// The cells that hold anything of the body, and one more for the edges at their ends: all else follows from these.
 std::vector<double> FreeBodies::packed(std::size_t b) const {
   const Body &body = bodies_[b];
   const Layout &layout = body.box.layout();
+  const Extent extent = body.phase.extent(body.box);
+  Int3 begin = layout.begin, cells = layout.cells;
+  for (int d = 0; d < body.box.dimension(); ++d) {
+    begin[d] += extent.begin[d];
+    cells[d] = std::min(extent.end[d] + 1, layout.cells[d]) - extent.begin[d];
+  }
   std::vector<double> values{double(body.number), double(body.species)};
-  for (const Int3 &cells : {layout.begin, layout.cells}) values.insert(values.end(), cells.begin(), cells.end());
+  for (const Int3 &place : {begin, cells}) values.insert(values.end(), place.begin(), place.end());
   values.push_back(double(body.markers.size()));
-  for_values(body.box, body.phase, [&](const double &value) { values.push_back(value); });
+  for_values(Box(domain_->domain_shape(), begin, cells, 0), extent.begin, body.phase,
+             [&](const double &value) { values.push_back(value); });
   for (const SurfaceMarker &marker : body.markers) {
     const auto numbers = marker.packed();
     values.insert(values.end(), numbers.begin(), numbers.end());
@@ -142,7 +151,7 @@ PetscErrorCode FreeBodies::add_packed(const std::vector<double> &packed, const P
   const Box box = packed_box(domain_->domain_shape(), packed.data(), domain_->spec().ghosts);
   Phase phase = empty_like(like, box);
   const double *next = packed.data() + head;
-  for_values(box, phase, [&](double &value) { value = *next++; });
+  for_values(box, {0, 0, 0}, phase, [&](double &value) { value = *next++; });
   std::vector<SurfaceMarker> markers;
   for (; next < packed.data() + packed.size(); next += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(next));

@@ -36,8 +36,8 @@ public:
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
   /// block that holds the body.
   PetscErrorCode add(int number, int species, const Box &box, Phase &&phase, std::vector<SurfaceMarker> &&markers = {});
-  /// The number, the species, first cell and cells of the box of a body of this rank and how many markers it has, then
-  /// its phi, the components of B and the markers: all that add_packed() needs.
+  /// The number, the species, first cell and cells of a block around a body of this rank and how many markers it has,
+  /// then phi and the components of B of that block and the markers: all that add_packed() needs.
   std::vector<double> packed(std::size_t body) const;
   static constexpr int head = 9;  ///< numbers before phi
   /// How many values a body with this head has after it; `centred`: all components of B live at centres.
@@ -105,7 +105,7 @@ private:
   static int needed(const Material &material) { return 1 + (material.is_membrane() ? MembraneMechanics::reach : 1); }
   int rows_reach(const Phase &phase) const;
   template <class PhaseOrConst, class Visit>
-  static void for_values(const Box &box, PhaseOrConst &phase, const Visit &visit);
+  static void for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit);
   PetscErrorCode extend(Body *body);
   bool is_near_an_end(const Body &body) const;
   PetscErrorCode fit(Body *body, int layers) const;
