@@ -153,8 +153,8 @@ struct Config {
   /// phases of the grid.
   bool boxes(const SpeciesSpec &spec) const {
     const Material material = spec.material();
-    return separates(spec) && method.boxes_bodies() && material.carries_tensor() && !material.attached &&
-           material.surface_tension == 0 && spec.shape != Shape::cylinder && !volume_crosses(sides);
+    return separates(spec) && method.boxes_bodies() && !material.attached && material.stretch_force.force == 0 &&
+           spec.shape != Shape::cylinder && !volume_crosses(sides);
   }
 };
 

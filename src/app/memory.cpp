@@ -35,10 +35,11 @@ bool lies_in_boxes(const Config &config, std::size_t species) {
 
 /// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity.
 double boxed_values(const Config &config) {
-  const int dimension = dimension_of(config), tensor = tensor_fields(config);
+  const int dimension = dimension_of(config);
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!lies_in_boxes(config, s)) continue;
+    const int tensor = config.species[s].material().carries_tensor() ? tensor_fields(config) : 0;
     const Surface surface(config.species[s], dimension);
     double reach = 0, cells = 1, around = 1;
     for (int d = 0; d < dimension; ++d) {
@@ -62,11 +63,12 @@ double boxed_values(const Config &config) {
 double fields(const Config &config) {
   const Method &method = config.method;
   const int dimension = dimension_of(config);
-  const bool tension = std::any_of(config.species.begin(), config.species.end(),
-                                   [](const SpeciesSpec &spec) { return spec.surface_tension > 0; });
-  bool membranes = false;  // on the grid
-  for (std::size_t s = 0; s < config.species.size(); ++s)
-    membranes = membranes || (config.species[s].is_membrane() && !lies_in_boxes(config, s));
+  bool tension = false, membranes = false;  // on the grid
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    if (lies_in_boxes(config, s)) continue;
+    tension = tension || config.species[s].surface_tension > 0;
+    membranes = membranes || config.species[s].is_membrane();
+  }
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
   const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};

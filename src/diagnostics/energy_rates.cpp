@@ -213,6 +213,7 @@ PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity,
     const Piece own(bodies.size(), part.number, row_parts(domain));
     for (std::size_t b = own.begin; b < own.end; ++b) {
       const BodyInBox &body = bodies[b];
+      if (!body.phase->material.elastic()) continue;
       const std::vector<const Phase *> one{body.phase};
       add_elastic(*body.box, body.box->rows(), *body.velocity, *body.phase, &all);
       add_wall_power(*body.box, WallPower(*body.box, *body.velocity, one, nullptr), numbers, &all);

@@ -238,7 +238,7 @@ void CapillaryForce::add_force(double scale, Field &force, const ForceSlope &slo
   scope.flops(band_.points() * dim * (slope.field ? 9 : 7));
 }
 
-void CapillaryForce::measure(const Field &velocity, std::vector<ExactSums> *sum) {
+void CapillaryForce::measure(const Field &velocity, int first_sum, std::vector<ExactSums> *sum) {
   VerbScope scope(Verb::sums);
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
@@ -256,8 +256,8 @@ void CapillaryForce::measure(const Field &velocity, std::vector<ExactSums> *sum)
         const double *q = phase_->fraction[0].row(row.j, row.k);
         for (int i = s.i_begin; i < s.i_end; ++i) cut[i] = (dim == 2 ? area_at<2> : area_at<3>)(curvature, q + i);
       });
-      (*sum)[part.number].add_row(power, given.data(), n, first);
-      (*sum)[part.number].add_row(area, cut.data(), n, first);
+      (*sum)[part.number].add_row(first_sum + power, given.data(), n, first);
+      (*sum)[part.number].add_row(first_sum + area, cut.data(), n, first);
     }
   });
 }

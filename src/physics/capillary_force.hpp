@@ -37,8 +37,8 @@ public:
   /// The power that the flow gives to the surface over the volume of a cell, and the area of the planes that transport
   /// cuts cells with (2-D: the length), of which sigma times is the energy.
   enum Sum { power, area, sums };
-  /// Adds them to sums of every part of the rows.
-  void measure(const Field &velocity, std::vector<ExactSums> *sum);
+  /// Adds them to sum number `first_sum` and the next of every part of the rows.
+  void measure(const Field &velocity, int first_sum, std::vector<ExactSums> *sum);
 
 private:
   static constexpr int work_ghosts = 2;  ///< layers of the scratch fields that are read

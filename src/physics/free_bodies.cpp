@@ -11,6 +11,12 @@
 #include <utility>
 
 namespace eulastic {
+
+// Scratch fields of a step of a body that is no membrane.
+int FreeBodies::stage_fields(const Phase &phase) {
+  return std::max<int>(phase.tensor.field.count(), InterfaceTransport::work_fields);
+}
+
 namespace {
 
 bool has_markers(const Material &material) {
@@ -42,8 +48,10 @@ Phase empty_like(const Phase &phase, const Box &box) {
   fresh.material = phase.material;
   fresh.fraction = Field(box, 1);
   const int dimension = box.dimension();
-  fresh.tensor.field = Field(box, static_cast<int>(tensor_components(dimension).size()));
-  for (int f = 0; f < dimension; ++f) fresh.tensor.field.fill(f, 1);
+  fresh.tensor.field = phase.material.carries_tensor()
+                           ? Field(box, static_cast<int>(tensor_components(dimension).size()))
+                           : tensor_at_rest(box);
+  for (int f = 0; f < dimension && phase.material.carries_tensor(); ++f) fresh.tensor.field.fill(f, 1);
   fresh.tensor.centred = phase.tensor.centred;
   fresh.tensor.rule = phase.tensor.rule;
   return fresh;
@@ -220,6 +228,7 @@ PetscErrorCode FreeBodies::extend(Body *body) {
     PetscCall(membrane.extend(&phase));
     PetscFunctionReturn(0);
   }
+  if (!phase.material.elastic()) PetscFunctionReturn(0);
   PetscCall(solids_.find_layers(body->box, phase));
   PetscCall(solids_.extend(place, phase, phase.tensor.field, &phase.rows));
   PetscCall(place.update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
@@ -343,9 +352,23 @@ PetscErrorCode FreeBodies::find_force(Body *body) {
     PetscCall(gather_force(membrane, body, force));
     PetscFunctionReturn(0);
   }
-  Field force = scratch(body->box, dimension);
-  compute_elastic_force(body->box, 1 / fluid_.density, body->phase, force);
-  body->force.take(force, body->phase.tensor.stressed);
+  Field all = scratch(body->box, dimension + CapillaryForce::work_fields), force = all.part(0, dimension),
+        work = all.part(dimension, CapillaryForce::work_fields);
+  const bool tension = body->phase.material.surface_tension > 0;
+  if (tension) {
+    constexpr double least = 1e-300;
+    const int reach = std::max(CapillaryForce::reach, body->phase.tensor.rule.reach);
+    body->drawn.build(body->box, std::as_const(body->phase).fraction[0], body->phase.rows, least, reach, reach);
+    for (const Segment &s : body->drawn.all())
+      for (int a = 0; a < dimension; ++a) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
+  }
+  if (body->phase.material.elastic()) compute_elastic_force(body->box, 1 / fluid_.density, body->phase, force);
+  if (tension) {
+    CapillaryForce capillary(body->box, nullptr);
+    PetscCall(capillary.find(body->phase, work));
+    capillary.add_force(1 / fluid_.density, force, {}, &net_force_);
+  }
+  body->force.take(force, body->forced());
   PetscFunctionReturn(0);
 }
 
@@ -358,8 +381,10 @@ PetscErrorCode FreeBodies::gather_force(MembraneMechanics &membrane, Body *body,
   for (const Segment &s : body->phase.tensor.stressed.all())
     for (int a = 0; a < box.dimension(); ++a) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
   PetscCall(membrane.for_force_rows(body->phase, [&](int part, bool bending, int a, int j, int k, double *added) {
-    if (bending) net_force_.add_row(box, part, a, added);
     add_force_row(n, added, 0, force[a].row(j, k), nullptr);
+    if (!bending || !drifts_) return;
+    for (int i = 0; i < n; ++i) added[i] *= scale;
+    net_force_.add_row(box, part, a, added);
   }));
   body->film.add_force(body->phase, force);
   for (const Segment &s : body->phase.tensor.stressed.all())
@@ -396,7 +421,7 @@ PetscErrorCode FreeBodies::move(const Box &box, const Step &step, const Field &f
   fill_wall_ghosts_even(box, at_centre, phase->fraction[0], domain_->spec().ghosts, &phase->rows);
   const ActiveSegments before = std::move(phase->tensor.strained);
   PetscCall(find_solid(box, *phase));
-  if (phase->material.is_membrane()) PetscFunctionReturn(0);
+  if (!phase->material.elastic()) PetscFunctionReturn(0);
   const PhasePlace place{&box, sides_, nullptr};
   PetscCall(solids_.find_layers(box, *phase));
   PetscCall(solids_.advance(place, {step.dt, step.number, fluid_, flow, before}, &phase->rows, *phase, stage));
@@ -432,7 +457,7 @@ PetscErrorCode FreeBodies::advance(const Step &step, const Field &velocity, long
     Body &body = bodies_[b];
     const int dimension = body.box.dimension();
     const bool is_membrane = body.phase.material.is_membrane();
-    const int own = is_membrane ? MembraneMechanics::work_fields + dimension : body.phase.tensor.field.count();
+    const int own = is_membrane ? MembraneMechanics::work_fields + dimension : stage_fields(body.phase);
     Field memory = scratch(body.box, dimension + own), flow = memory.part(0, dimension),
           work = memory.part(dimension, own);
     bring_velocity(b, step, velocity, &flow);
@@ -484,7 +509,7 @@ PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, l
   for (const double most : trace) any = any || may_be_unresolved(most, domain_->dimension());
   if (!any) PetscFunctionReturn(0);
   for (Body &body : bodies_) {
-    if (body.phase.material.is_membrane() || !may_be_unresolved(trace[body.species], domain_->dimension())) continue;
+    if (!body.phase.material.elastic() || !may_be_unresolved(trace[body.species], domain_->dimension())) continue;
     const long found = eulastic::forget_unresolved(body.box, body.phase);
     if (found > 0) {
       PetscCall(extend(&body));
@@ -499,7 +524,7 @@ PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, l
 PetscErrorCode FreeBodies::add_forces(const std::vector<BoxExchange::Target> &targets) {
   PetscFunctionBeginUser;
   std::vector<BoxExchange::Contribution> forces;
-  for (const Body &body : bodies_) forces.push_back({&body.force, &body.phase.tensor.stressed});
+  for (const Body &body : bodies_) forces.push_back({&body.force, &body.forced()});
   PetscCall(exchange_.add(forces, targets));
   PetscFunctionReturn(0);
 }

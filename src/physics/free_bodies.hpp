@@ -1,6 +1,6 @@
-// Elastic bodies and membranes that are not attached and never merge with others: each lies in a box of its own, an
-// aligned block of the grid around the body, which is whole on one rank. Between the velocity that comes from the grid
-// and the force that goes back a body needs no message: docs/architecture.md.
+// Elastic bodies, membranes and drops that are not attached and never merge with others: each lies in a box of its own,
+// an aligned block of the grid around the body, which is whole on one rank. Between the velocity that comes from the
+// grid and the force that goes back a body needs no message: docs/architecture.md.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -25,9 +25,11 @@ public:
     int species;                              ///< index
     Box box;                                  ///< its indices do not wrap around periodic sides
     Phase phase;                              ///< of this body alone, on the box; no labels
-    SegmentValues force;                      ///< per mass of the fluid, on the faces phase.tensor.stressed
+    SegmentValues force;                      ///< per mass of the fluid, on the faces forced()
     std::vector<SurfaceMarker> markers = {};  ///< of a membrane, their cells not wrapped around periodic sides
     WallFilm film = {};                       ///< the same: walls in the box
+    ActiveSegments drawn = {};                ///< with surface tension: faces that feel that or stress
+    const ActiveSegments &forced() const { return phase.material.surface_tension > 0 ? drawn : phase.tensor.stressed; }
   };
 
   /// `sides` must outlive this.
@@ -49,8 +51,8 @@ public:
   PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
   void clear();
 
-  /// Where no wall holds the fluid, so that a net force of bending would move all of it, and where rigid bodies are
-  /// that stay, solid fractions on the grid; before follow(), if any species is a membrane.
+  /// Whether no wall holds the fluid, so that a net force of surfaces would move all of it, and where rigid bodies are
+  /// that stay, solid fractions on the grid; before follow(), if any species has a surface that exerts forces.
   void set_surroundings(bool drifts, const std::vector<const Phase *> &rigid);
   /// Makes boxes anew where bodies have come near an end of theirs; once after bodies were added. Collective.
   PetscErrorCode follow();
@@ -68,8 +70,8 @@ public:
   PetscErrorCode advance(const Step &step, const Field &velocity, long *unresolved);
   /// Adds so many times the force per mass to fields of the grid. Collective.
   PetscErrorCode add_forces(const std::vector<BoxExchange::Target> &targets);
-  /// The mean over the domain of the force per mass, of bending where it would drive all of the fluid: that of the
-  /// discretisation alone.
+  /// The mean over the domain of the force per mass, of bending and surface tension where it would drive all of the
+  /// fluid: that of the discretisation alone.
   const Real3 &mean_force() const noexcept { return mean_force_; }
   /// Sets `rows`, one value for each row of this rank's cells, where add_forces() may add anything.
   void mark_rows(std::vector<char> *rows) const { exchange_.mark_rows(rows); }
@@ -78,9 +80,10 @@ public:
   PetscErrorCode forget_unresolved(const std::vector<double> &trace, long *count);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
-  /// Adds energy and power of the membranes that look() has seen; `samples`: of each of them. Collective.
-  PetscErrorCode measure_membranes(const std::vector<BodyInBox> &seen, SurfaceEnergy *measured,
-                                   std::vector<std::vector<SurfaceSample>> *samples);
+  /// Adds energy and power of the surfaces that look() has seen; `samples`: of each membrane. `species`: phases with
+  /// their materials. Collective.
+  PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+                                  SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples);
   /// Makes phi of the phases of some species the sum over the bodies that look() or list() has seen; owned points. The
   /// rows of the phases are known.
   /// Collective.
@@ -104,6 +107,7 @@ private:
   /// faces feel its stress. The rest of the margin is for what moves until the next fit.
   static int needed(const Material &material) { return 1 + (material.is_membrane() ? MembraneMechanics::reach : 1); }
   int rows_reach(const Phase &phase) const;
+  static int stage_fields(const Phase &phase);
   template <class PhaseOrConst, class Visit>
   static void for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit);
   PetscErrorCode extend(Body *body);

@@ -21,7 +21,7 @@ PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::ve
     if (step.dt == 0) continue;
     own.moved.copy_from(body.phase);
     const bool is_membrane = body.phase.material.is_membrane();
-    Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : body.phase.tensor.field.count());
+    Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : stage_fields(body.phase));
     PetscCall(move(body.box, step, own.velocity, work, &own.moved));
     if (is_membrane) {
       MembraneMechanics membrane({&body.box, sides_, nullptr});
@@ -34,23 +34,38 @@ PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::ve
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::measure_membranes(const std::vector<BodyInBox> &seen, SurfaceEnergy *measured,
-                                             std::vector<std::vector<SurfaceSample>> *samples) {
-  std::vector<ExactSums> sum(threads(), ExactSums(MembraneMechanics::sums));
+PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+                                            SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples) {
+  // Of all membranes, then of each species with surface tension.
+  constexpr int of_membranes = MembraneMechanics::sums, of_species = CapillaryForce::sums;
+  const int count = of_membranes + of_species * static_cast<int>(species.size());
+  std::vector<ExactSums> sum(threads(), ExactSums(count));
   PetscFunctionBeginUser;
   samples->assign(seen.size(), {});
   for (std::size_t b = 0; b < seen.size(); ++b) {
     const BodyInBox &body = seen[b];
-    if (!body.phase->material.is_membrane()) continue;
-    MembraneMechanics membrane({body.box, sides_, nullptr});
-    Field work = scratch(*body.box, MembraneMechanics::work_fields);
-    PetscCall(membrane.find(*body.phase, work));
-    PetscCall(membrane.measure(*body.phase, *body.velocity, bodies_[b].film, body.number, &sum, &(*samples)[b]));
+    Field work = scratch(*body.box, std::max(MembraneMechanics::work_fields, CapillaryForce::work_fields));
+    if (body.phase->material.is_membrane()) {
+      MembraneMechanics membrane({body.box, sides_, nullptr});
+      PetscCall(membrane.find(*body.phase, work));
+      PetscCall(membrane.measure(*body.phase, *body.velocity, bodies_[b].film, body.number, &sum, &(*samples)[b]));
+    }
+    if (body.phase->material.surface_tension > 0) {
+      CapillaryForce capillary(*body.box, nullptr);
+      PetscCall(capillary.find(*body.phase, work));
+      capillary.measure(*body.velocity, of_membranes + of_species * body.species, &sum);
+    }
   }
-  double total[MembraneMechanics::sums];
-  PetscCall(reduce_parts(domain_->comm(), sum, total));
-  measured->power += total[MembraneMechanics::power] * domain_->cell_volume();
-  measured->energy += total[MembraneMechanics::stored] * domain_->cell_volume();
+  std::vector<double> total(count);
+  PetscCall(reduce_parts(domain_->comm(), sum, total.data()));
+  const double volume = domain_->cell_volume();
+  measured->power += total[MembraneMechanics::power] * volume;
+  measured->energy += total[MembraneMechanics::stored] * volume;
+  for (std::size_t s = 0; s < species.size(); ++s) {
+    const double *own = &total[of_membranes + of_species * s];
+    measured->power += own[CapillaryForce::power] * volume;
+    measured->energy += species[s].material.surface_tension * own[CapillaryForce::area];
+  }
   PetscFunctionReturn(0);
 }
 
@@ -146,7 +161,9 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
 
 std::size_t FreeBodies::bytes() const {
   std::size_t sum = scratch_.size() * sizeof(double) + exchange_.bytes();
-  const auto add = [&sum](const Phase &phase) { sum += phase.fraction.bytes() + phase.tensor.field.bytes(); };
+  const auto add = [&sum](const Phase &phase) {
+    sum += phase.fraction.bytes() + (phase.material.carries_tensor() ? phase.tensor.field.bytes() : 0);
+  };
   for (const Body &body : bodies_) {
     add(body.phase);
     sum += body.force.bytes();

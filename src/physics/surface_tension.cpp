@@ -3,10 +3,14 @@
 #include <algorithm>
 
 namespace eulastic {
+namespace {
+
+bool is_on_grid(const Phase &phase) { return phase.material.surface_tension > 0 && !phase.boxed; }
+
+}  // namespace
 
 bool SurfaceTension::exists(const std::vector<Phase> &phases) {
-  return std::any_of(phases.begin(), phases.end(),
-                     [](const Phase &phase) { return phase.material.surface_tension > 0; });
+  return std::any_of(phases.begin(), phases.end(), is_on_grid);
 }
 
 PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
@@ -16,7 +20,7 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
   WorkSpace::Lease lease;
   PetscCall(work_->take("curvature", work_fields, &lease));
   for (const Phase &phase : phases) {
-    if (phase.material.surface_tension == 0) continue;
+    if (!is_on_grid(phase)) continue;
     PetscCall(capillary_.find(phase, lease.fields()));
     capillary_.add_force(scale, force, slope, &net);
   }
@@ -31,10 +35,10 @@ PetscErrorCode SurfaceTension::measure(const std::vector<Phase> &phases, const F
   PetscCall(work_->take("curvature", work_fields, &lease));
   for (const Phase &phase : phases) {
     const double sigma = phase.material.surface_tension;
-    if (sigma == 0) continue;
+    if (!is_on_grid(phase)) continue;
     PetscCall(capillary_.find(phase, lease.fields()));
     std::vector<ExactSums> parts(row_parts(*domain_), ExactSums(CapillaryForce::sums));
-    capillary_.measure(velocity, &parts);
+    capillary_.measure(velocity, 0, &parts);
     double sum[CapillaryForce::sums];
     PetscCall(reduce_parts(domain_->comm(), parts, sum));
     measured->power += sum[CapillaryForce::power] * domain_->cell_volume();

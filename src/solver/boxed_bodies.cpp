@@ -178,15 +178,17 @@ PetscErrorCode Solver::show_fractions(const std::vector<BodyInBox> &bodies, std:
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::start_boxed_membranes(const std::vector<const Phase *> &rigid) {
-  bool any = false, bends = false;
+PetscErrorCode Solver::start_boxed_surfaces(const std::vector<const Phase *> &rigid) {
+  bool membranes = false, pulls = false;  // as a whole
   PetscFunctionBeginUser;
   for (const Phase &phase : now_.phases) {
-    any = any || (phase.boxed && phase.material.is_membrane());
-    bends = bends || (phase.boxed && phase.material.membrane.bending_modulus > 0);
+    const Material &material = phase.material;
+    if (!phase.boxed) continue;
+    membranes = membranes || material.is_membrane();
+    pulls = pulls || material.surface_tension > 0 || (material.is_membrane() && material.membrane.bending_modulus > 0);
   }
-  if (!any) PetscFunctionReturn(0);
-  boxed_->set_surroundings(drifts() && bends, rigid);
+  if (!membranes && !pulls) PetscFunctionReturn(0);
+  boxed_->set_surroundings(drifts() && pulls, membranes ? rigid : std::vector<const Phase *>());
   PetscCall(boxed_->start_membranes());
   PetscFunctionReturn(0);
 }

@@ -107,7 +107,7 @@ PetscErrorCode Solver::prepare() {
   for (const Phase &phase : now_.phases)
     if (phase.material.is_rigid() && !(rigid_ && rigid_->travels(phase))) rigid.push_back(&phase);
   if (membranes_) PetscCall(membranes_->find_walls(rigid));
-  PetscCall(start_boxed_membranes(rigid));
+  PetscCall(start_boxed_surfaces(rigid));
   PetscCall(place_markers());
   PetscCall(share_bodies());
   PetscCall(show_fractions(boxed_->list(), &now_.phases));

@@ -205,7 +205,7 @@ private:
   PetscErrorCode show_bodies();
   PetscErrorCode show_fractions(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases);
   /// `rigid`: phases of bodies that do not travel.
-  PetscErrorCode start_boxed_membranes(const std::vector<const Phase *> &rigid);
+  PetscErrorCode start_boxed_surfaces(const std::vector<const Phase *> &rigid);
   /// Hands bodies to ranks that have less to do. Collective.
   PetscErrorCode share_bodies();
   void forget_looks();

@@ -45,20 +45,24 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   *measured = {};
   std::vector<BodyInBox> boxed;
   std::vector<std::vector<SurfaceSample>> of_boxed;
-  bool in_boxes = false;
-  for (const Phase &phase : now_.phases) in_boxes = in_boxes || (phase.boxed && phase.material.is_membrane());
+  bool in_boxes = false, membranes = membranes_ != nullptr;
+  for (const Phase &phase : now_.phases) {
+    if (!phase.boxed) continue;
+    membranes = membranes || phase.material.is_membrane();
+    in_boxes = in_boxes || phase.material.is_membrane() || phase.material.surface_tension > 0;
+  }
   if (bodies) bodies->clear();
   if (!surface_tension_ && !membranes_ && !in_boxes) PetscFunctionReturn(0);
   if (in_boxes) {
     PetscCall(bodies_now(&boxed));
-    PetscCall(boxed_->measure_membranes(boxed, measured, &of_boxed));
+    PetscCall(boxed_->measure_surfaces(boxed, now_.phases, measured, &of_boxed));
   }
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
   if (surface_tension_) PetscCall(surface_tension_->measure(*phases, now_.velocity, measured));
   std::vector<SurfaceSample> samples;
   if (membranes_) PetscCall(membranes_->measure(*phases, now_.velocity, measured, bodies ? &samples : nullptr));
-  if (!(membranes_ || in_boxes) || !bodies || bodies_.bodies() == 0) PetscFunctionReturn(0);
+  if (!membranes || !bodies || bodies_.bodies() == 0) PetscFunctionReturn(0);
   BodyOwners owners;
   std::vector<Int3> references;
   std::vector<int> labels;

@@ -66,6 +66,13 @@ class Boxes(SceneCase):
                                  *"-cell_semi_axes .2,.15,.2".split())
         self.assertGreater(min(body["bending_energy"] for body in one.summary["bodies"]), 0)
 
+    def test_drops_where_no_wall_holds_the_fluid(self):
+        # Across periodic sides; surface tension must not make the fluid drift.
+        drops = "-cell_law neo_hookean -cell_shear_modulus 0 -cell_surface_tension .2".split()
+        one = self.same_on_ranks([(.98, .2, 0), (.5, .62, 0)], *"-grid_cells 32,32,1 -grid_length 1,1,1 -cell_semi_axes .2,.15,.2".split(),
+                                 *drops)
+        self.assertLess(abs(one.series.bulk_velocity_x[-1]), 1e-9)
+
     def test_membranes_where_no_wall_holds_the_fluid(self):
         one = self.same_on_ranks([(.1, .2, 0), (.1, .62, 0)], *"-grid_cells 32,32,1 -grid_length 1,1,1 -cell_semi_axes .2,.15,.2".split(),
                                  *"-initial_velocity taylor_green -initial_velocity_amplitude .3".split(), *MEMBRANE)
@@ -76,7 +83,9 @@ class Boxes(SceneCase):
         # series says and what is known of every body.
         scene = ("-grid_cells 40,24,24 -grid_length 2,1.2,1.2 -boundary_y wall -cell_semi_axes .2,.15,.2 -cell_body_force 1,.5,0 "
                  "-time_step 5e-4").split()
-        for name, kind in ("membranes", MEMBRANE), ("solids", ["-cell_viscosity", ".5"]):
+        for name, kind in (("membranes", MEMBRANE), ("solids", ["-cell_viscosity", ".5"]),
+                           ("drops", "-cell_law neo_hookean -cell_shear_modulus 0 -cell_surface_tension .2 -cell_viscosity .5".split()),
+                           ("drawn", "-cell_law neo_hookean -cell_shear_modulus .5 -cell_surface_tension .2".split())):
             boxes, grid = (self.same_on_ranks([(.5, .6, .6), (1.5, .6, .6)], *scene, *STIRRED, *kind, *contact, ranks=(1,), restart=False,
                                               prefix=f"{name}_{where}_")
                            for where, contact in (("boxes", []), ("grid", ["-cell_contact", "merge"])))

@@ -135,7 +135,7 @@ Result find(const OnGrid &grid, const Box &box, GhostExchange *exchange, const P
   NetForce net(grid.domain, true);
   std::vector<ExactSums> sums(row_parts(box), ExactSums(CapillaryForce::sums));
   capillary.add_force(scale, result.force, {&result.slope, slope_factor}, &net);
-  capillary.measure(velocity, &sums);
+  capillary.measure(velocity, 0, &sums);
   EXPECT_EQ(reduce_parts(PETSC_COMM_SELF, sums, result.sum), 0);
   EXPECT_EQ(net.find_mean(&result.mean_force), 0);
   const auto is_held = [&](int i, int j, int k) {
