@@ -2,6 +2,7 @@
 
 #include "app/cuts.hpp"
 #include "grid/domain.hpp"
+#include "physics/share_out.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,10 +10,6 @@
 namespace eulastic {
 namespace {
 
-// Time that a phase takes in a cell of the rows that it occupies, over that of the fluid: the ratios of crowds in
-// docs/performance.md, "What bodies cost", over the rows that their phases occupy. Rigid bodies are not transported.
-// Whole numbers: sums have no rounding.
-constexpr double phase_cost = 3, membrane_cost = 5;
 constexpr double worth = 0.97;    // of the heaviest rank's cost, before the even split is given up
 constexpr int rounds = 8;         // of cuts that are tried
 constexpr int most_units = 4096;  // along a direction: a sum over all ranks for each
@@ -21,7 +18,7 @@ class Balance {
 public:
   explicit Balance(const Solver &solver)
       : domain_(solver.domain()), split_(domain_.split()), cost_(domain_.rows().size(), 0) {
-    for (double &cost : cost_) cost = domain_.cells()[0];
+    for (double &cost : cost_) cost = flow_work * domain_.cells()[0];
     for (const Phase &phase : solver.state().phases) add(phase);
     for (const double cost : cost_) own_ += cost;
     for (int d = 0; d < 3; ++d) {
@@ -63,9 +60,9 @@ private:
   double &cost(int j, int k) { return cost_[j + std::size_t(domain_.cells()[1]) * k]; }
 
   void add(const Phase &phase) {
-    if (phase.material.is_rigid()) return;
+    const double factor = phase_work(phase.material, false);
+    if (factor == 0) return;
     const Int3 &n = domain_.cells();
-    const double factor = phase.material.is_membrane() ? membrane_cost : phase_cost;
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j) {
         const OccupiedRows::Span span = phase.rows.span(j, k);

@@ -156,6 +156,8 @@ struct Config {
     return separates(spec) && method.boxes_bodies() && !material.attached && material.stretch_force.force == 0 &&
            spec.shape != Shape::cylinder && !volume_crosses(sides);
   }
+  /// Whether the bodies of a species do so: one alone stays on the grid. After `places` are known.
+  bool lies_in_boxes(std::size_t which) const { return boxes(species[which]) && places[which].count > 1; }
 };
 
 }  // namespace eulastic

@@ -29,16 +29,12 @@ double phase_fields(const Config &config, bool carries_tensor = true) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
 }
 
-bool lies_in_boxes(const Config &config, std::size_t species) {
-  return config.boxes(config.species[species]) && config.places[species].count > 1;
-}
-
 /// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity.
 double boxed_values(const Config &config) {
   const int dimension = dimension_of(config);
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
-    if (!lies_in_boxes(config, s)) continue;
+    if (!config.lies_in_boxes(s)) continue;
     const int tensor = config.species[s].material().carries_tensor() ? tensor_fields(config) : 0;
     const Surface surface(config.species[s], dimension);
     double reach = 0, cells = 1, around = 1;
@@ -65,7 +61,7 @@ double fields(const Config &config) {
   const int dimension = dimension_of(config);
   bool tension = false, membranes = false;  // on the grid
   for (std::size_t s = 0; s < config.species.size(); ++s) {
-    if (lies_in_boxes(config, s)) continue;
+    if (config.lies_in_boxes(s)) continue;
     tension = tension || config.species[s].surface_tension > 0;
     membranes = membranes || config.species[s].is_membrane();
   }
@@ -96,7 +92,7 @@ double fields(const Config &config) {
     // or a force of their own the fraction of the step and at its end.
     const SpeciesSpec &spec = config.species[s];
     const bool felt = spec.material().viscosity > 0 || spec.material().body_force.acts();
-    sum += lies_in_boxes(config, s) ? 2 + 2 * felt + tensor_fields(config)
+    sum += config.lies_in_boxes(s) ? 2 + 2 * felt + tensor_fields(config)
                                     : config.colours[s] * phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities

@@ -2,6 +2,7 @@
 
 #include "app/check_only.hpp"
 #include "app/overlap_warning.hpp"
+#include "app/rank_work.hpp"
 #include "app/run.hpp"
 #include "app/scene_warnings.hpp"
 #include "app/wall_distance_warning.hpp"
@@ -25,10 +26,11 @@ void print_error(const std::string &message) {
 // Prints the answer of -help, -check_only or -print_options, or fills `refusal`.
 PetscErrorCode print_answer(const ParseResult &parsed, int ranks, std::string *refusal) {
   PetscFunctionBeginUser;
-  std::string text = parsed.message, overlap, near_wall;
+  std::string text = parsed.message, work, overlap, near_wall;
   if (text.empty() && parsed.config.print_options) text = options_text(parsed);
   if (text.empty()) {
-    text = check_report(parsed.config, ranks);
+    PetscCall(describe_work(run_communicator(), parsed.config, ranks, &work));
+    text = check_report(parsed.config, ranks) + work;
     PetscCall(find_overlap(run_communicator(), parsed.config, &overlap, refusal));
     if (!refusal->empty()) PetscFunctionReturn(0);
     PetscCall(find_membranes_near_walls(run_communicator(), parsed.config, &near_wall));

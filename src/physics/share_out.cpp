@@ -27,6 +27,26 @@ double water_level(std::vector<double> heights, double total) {
   return heights.back() + (total - below) / double(heights.size());
 }
 
+double phase_work(const Material &material, bool in_box) {
+  if (material.is_rigid()) return 0;
+  if (material.is_membrane()) return 5;
+  return in_box ? 4 : 3;
+}
+
+std::vector<int> fill_ranks(const std::vector<double> &loads, double before, double total,
+                            const std::vector<double> &costs) {
+  const double level = water_level(loads, total);
+  std::vector<double> ends;  // of what ranks take, one after the other
+  for (const double height : loads) ends.push_back((ends.empty() ? 0 : ends.back()) + std::max(0.0, level - height));
+  std::vector<int> ranks;
+  for (const double cost : costs) {
+    const auto taker = std::upper_bound(ends.begin(), ends.end(), before + 0.5 * cost);
+    ranks.push_back(static_cast<int>(std::min(taker, ends.end() - 1) - ends.begin()));
+    before += cost;
+  }
+  return ranks;
+}
+
 PetscErrorCode share_out(MPI_Comm comm, double load, const std::vector<BodyShare> &bodies, std::vector<int> *ranks) {
   int rank, size;
   std::vector<Asked> asked;
@@ -50,16 +70,13 @@ PetscErrorCode share_out(MPI_Comm comm, double load, const std::vector<BodyShare
     if (r < rank) before += all[2 * r + 1];
     total += all[2 * r + 1];
   }
-  const double level = water_level(loads, total);
-  std::vector<double> ends;  // of what ranks take, one after the other
-  for (const double height : loads) ends.push_back((ends.empty() ? 0 : ends.back()) + std::max(0.0, level - height));
+  std::vector<double> costs;
+  for (const Asked &body : asked) costs.push_back(body.cost);
+  const std::vector<int> takers = fill_ranks(loads, before, total, costs);
   to.clear();
-  for (Asked &body : asked) {
-    const double middle = before + 0.5 * body.cost;
-    before += body.cost;
-    const auto taker = std::upper_bound(ends.begin(), ends.end(), middle);
-    body.target = static_cast<int>(std::min(taker, ends.end() - 1) - ends.begin());
-    to.push_back(body.owner);
+  for (std::size_t n = 0; n < asked.size(); ++n) {
+    asked[n].target = takers[n];
+    to.push_back(asked[n].owner);
   }
   PetscCall(deliver(comm, to, &asked));
   std::map<int, int> targets;

@@ -27,21 +27,22 @@ PetscErrorCode Solver::add_packed_body(const std::vector<double> &packed) {
   PetscFunctionReturn(0);
 }
 
-// What a phase costs goes with the cells that it occupies, in a box and on the grid.
+// Every rank has its part of the flow and of the phases on the grid, whatever bodies it gets.
 PetscErrorCode Solver::share_bodies() {
   std::vector<BodyShare> bodies;
   std::vector<int> ranks;
-  double load = 0;
+  double load = flow_work * double(domain_->cell_count());
   PetscFunctionBeginUser;
   if (!has_boxed()) PetscFunctionReturn(0);
   forget_looks();
   for (const Phase &phase : now_.phases)
-    if (!phase.boxed && !phase.material.is_rigid()) load += double(phase.rows.cells());
+    if (!phase.boxed) load += phase_work(phase.material, false) * double(phase.rows.cells());
   for (const BodyInBox &body : boxed_->list()) {
     const Layout &layout = body.box->layout();
     Int3 middle{};
     for (int d = 0; d < 3; ++d) middle[d] = domain_->image(d, layout.begin[d] + layout.cells[d] / 2);
-    bodies.push_back({body.number, domain_->owner(middle[0], middle[1], middle[2]), double(body.phase->rows.cells())});
+    const double cost = phase_work(body.phase->material, true) * double(body.phase->rows.cells());
+    bodies.push_back({body.number, domain_->owner(middle[0], middle[1], middle[2]), cost});
   }
   PetscCall(share_out(domain_->comm(), load, bodies, &ranks));
   PetscCall(boxed_->give(ranks, now_.phases));

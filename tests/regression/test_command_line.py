@@ -346,6 +346,38 @@ class CommandLine(unittest.TestCase):
             self.assertIn(line, result.stdout)
         self.assertEqual([p.name for p in self.room.iterdir()], ["case.opts"])
 
+    def test_check_only_tells_the_work_of_ranks(self):
+        # Boxes of two discs, 18^2 cells of 4 each, both at home on the first of four ranks of 512 cells.
+        (self.room / "two.csv").write_text("8,8,0\n24,8,0\n")
+        discs = ("-grid_cells 32,64,1 -grid_length 32,64,1 -time_end 1 -cell_shape sphere -cell_radius 4.9 -cell_shear_modulus 1 "
+                 "-cell_placement list -cell_positions two.csv -check_only").split()
+        flow, disc, name = 512, 4 * 18**2, "work of the fullest rank / mean (estimate): "
+
+        def line(*arguments, **ranks):
+            done = self.run_program(*discs, *arguments, **ranks)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            return "".join(row for row in done.stdout.splitlines() if row.startswith("work of"))
+
+        def expected(fullest, wall):
+            total = 4 * flow + wall + 2 * disc
+            parts = (f"{100 * part / total:.3g} % in {where}" for part, where in
+                     ((4 * flow, "the flow"), (wall, "phases of the grid"), (2 * disc, "boxes")))
+            return f"{name}{fullest / total * 4:.3f}; of all work {', '.join(parts)}"
+
+        alone = ["-species", "cell", "-ranks", "4"]
+        self.assertEqual(line(*alone), expected(flow + disc, 0))
+        self.assertEqual(line(*alone, ranks=3), line(*alone))
+        self.assertEqual(line("-species", "cell", ranks=4), line(*alone))
+        # A slab that fills the third rank, 3 a cell, and seven rows of both beside it: the second disc goes to the second rank.
+        slab = "-species cell,slab -slab_shape slab -slab_axis y -ranks 4 -slab_interval".split()
+        wall = 3 * (16 + 14) * 32
+        self.assertEqual(line(*slab, "32,48", "-slab_shear_modulus", "1"), expected(flow + 3 * 7 * 32 + disc, wall))
+        self.assertEqual(line(*slab, "32,48", "-slab_law", "rigid"), expected(flow + disc, 0))
+        # One that fills the last rank reaches the first across the periodic side: both discs go to the second rank.
+        self.assertEqual(line(*slab, "48,64", "-slab_shear_modulus", "1"), expected(flow + 2 * disc, wall))
+        for without in (["-ranks", "1"], ["-ranks", "4", "-method", "classic"], ["-ranks", "4", "-cell_contact", "merge"]):
+            self.assertEqual(line("-species", "cell", *without), "")
+
     def test_every_case_is_valid(self):
         cases = sorted((ROOT / "options").glob("*.opts"))
         self.assertTrue(cases)
