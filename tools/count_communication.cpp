@@ -1,12 +1,14 @@
 // Preloaded by scripts/count_communication: what every rank sends, and its collectives, whoever calls MPI. At
 // MPI_Finalize each rank writes $EULASTIC_COUNT/RANK.csv with the columns
 //   stage, verb    of -log_view, at the call: the innermost verb that is no exchange (PETSc 3.18 and 3.19; else empty)
-//   kind           send, or the name of a collective
-//   partner        send: the other rank of MPI_COMM_WORLD; else ranks of the communicator
+//   kind           send, exchange, or the name of a collective
+//   partner        send: the other rank of MPI_COMM_WORLD; exchange: 0; else ranks of the communicator
 //   calls, bytes, largest, seconds
 // Bytes are of data: of a send, or the most that a rank gives to or gets from a collective. Persistent sends count when
-// they start, neighbourhood collectives as one send to each neighbour. Seconds are those inside of collectives,
-// waiting for other ranks included, not of sends. One-sided communication is not seen.
+// they start, neighbourhood collectives as one send to each neighbour. An exchange is all that a rank begins to send to
+// others or to receive from them until it has waited for messages, by MPI_Wait and its kin or a row of MPI_Recv: what
+// is under way together counts once, for the verb that began it. Seconds are those inside of collectives, waiting for
+// other ranks included, not of sends. One-sided communication is not seen.
 #define PETSC_HAVE_BROKEN_RECURSIVE_MACRO  // else PETSc counts calls by macros with the names of MPI's functions
 #include <mpi.h>
 #include <petscsys.h>
@@ -17,6 +19,7 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -35,6 +38,8 @@ struct Message {
   long bytes;
 };
 std::map<MPI_Request, Message> persistent;
+std::set<MPI_Request> persistent_receives;
+enum class Exchange { none, begun, receiving } exchange = Exchange::none;
 
 std::vector<std::string> verbs;  // under way
 
@@ -113,18 +118,40 @@ int in_world(int rank, MPI_Comm comm) {
   return there;
 }
 
+void begins_exchange() {
+  if (exchange != Exchange::begun) add("exchange", 0, 0);
+  exchange = Exchange::begun;
+}
+
+void has_waited() { exchange = Exchange::none; }
+
 // A rank's messages to itself do not travel.
+bool travels(int other, MPI_Comm comm) { return other != MPI_PROC_NULL && other != rank_of(comm); }
+
 void sends(int to, long count, MPI_Datatype type, MPI_Comm comm) {
-  if (to != MPI_PROC_NULL && to != rank_of(comm)) add("send", in_world(to, comm), size_of(count, type));
+  if (!travels(to, comm)) return;
+  begins_exchange();
+  add("send", in_world(to, comm), size_of(count, type));
+}
+
+void receives(int from, MPI_Comm comm) {
+  if (travels(from, comm)) begins_exchange();
+}
+
+void waits_to_receive(int from, MPI_Comm comm) {
+  if (!travels(from, comm)) return;
+  if (exchange == Exchange::none) begins_exchange();
+  exchange = Exchange::receiving;
 }
 
 void starts(MPI_Request request) {
   const auto found = persistent.find(request);
+  if (found != persistent.end() || persistent_receives.count(request) > 0) begins_exchange();
   if (found != persistent.end()) add("send", found->second.to, found->second.bytes);
 }
 
 void is_persistent(int to, long count, MPI_Datatype type, MPI_Comm comm, MPI_Request request) {
-  if (to != MPI_PROC_NULL && to != rank_of(comm)) persistent[request] = {in_world(to, comm), size_of(count, type)};
+  if (travels(to, comm)) persistent[request] = {in_world(to, comm), size_of(count, type)};
 }
 
 // From construction to destruction.
@@ -211,18 +238,59 @@ int MPI_Startall(int n, MPI_Request requests[]) {
 
 int MPI_Request_free(MPI_Request *request) {
   persistent.erase(*request);
+  persistent_receives.erase(*request);
   return PMPI_Request_free(request);
+}
+
+int MPI_Irecv(void *in, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Request *request) {
+  receives(from, comm);
+  return PMPI_Irecv(in, n, type, from, tag, comm, request);
+}
+
+int MPI_Recv(void *in, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Status *status) {
+  waits_to_receive(from, comm);
+  return PMPI_Recv(in, n, type, from, tag, comm, status);
+}
+
+int MPI_Recv_init(void *in, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Request *request) {
+  const int status = PMPI_Recv_init(in, n, type, from, tag, comm, request);
+  if (travels(from, comm)) persistent_receives.insert(*request);
+  return status;
+}
+
+int MPI_Wait(MPI_Request *request, MPI_Status *status) {
+  if (*request != MPI_REQUEST_NULL) has_waited();
+  return PMPI_Wait(request, status);
+}
+
+int MPI_Waitall(int n, MPI_Request requests[], MPI_Status statuses[]) {
+  if (n > 0) has_waited();
+  return PMPI_Waitall(n, requests, statuses);
+}
+
+int MPI_Waitany(int n, MPI_Request requests[], int *which, MPI_Status *status) {
+  if (n > 0) has_waited();
+  return PMPI_Waitany(n, requests, which, status);
+}
+
+int MPI_Waitsome(int n, MPI_Request requests[], int *done, int which[], MPI_Status statuses[]) {
+  if (n > 0) has_waited();
+  return PMPI_Waitsome(n, requests, done, which, statuses);
 }
 
 int MPI_Sendrecv(const void *data, int n, MPI_Datatype type, int to, int tag, void *in, int in_n, MPI_Datatype in_type,
                  int from, int in_tag, MPI_Comm comm, MPI_Status *status) {
   sends(to, n, type, comm);
+  receives(from, comm);
+  has_waited();
   return PMPI_Sendrecv(data, n, type, to, tag, in, in_n, in_type, from, in_tag, comm, status);
 }
 
 int MPI_Sendrecv_replace(void *data, int n, MPI_Datatype type, int to, int tag, int from, int in_tag, MPI_Comm comm,
                          MPI_Status *status) {
   sends(to, n, type, comm);
+  receives(from, comm);
+  has_waited();
   return PMPI_Sendrecv_replace(data, n, type, to, tag, from, in_tag, comm, status);
 }
 
@@ -285,6 +353,7 @@ int MPI_Ibarrier(MPI_Comm comm, MPI_Request *request) {
 
 int MPI_Neighbor_alltoallv(OUT_V, IN_V, MPI_Comm comm) {
   to_neighbours(counts, type, comm);
+  has_waited();
   return PMPI_Neighbor_alltoallv(data, counts, places, type, in, in_counts, in_places, in_type, comm);
 }
 

@@ -2,7 +2,8 @@
 
     run = Counting(["options/channel_rbc.opts", "-method", "classic"], ranks=8)
     counts = run.per_step(2, 4)
-    counts[run.inner].messages, counts[run.inner].neighbours, counts[run.inner].collectives()
+    counts[run.inner].messages, counts[run.inner].neighbours, counts[run.inner].exchanges
+    counts[run.inner].collectives()
 """
 import collections
 import csv
@@ -17,6 +18,7 @@ import tempfile
 from performance_runs import ENVIRONMENT, ROOT, on_ranks
 
 STEP = ("Step", "")  # the empty one: a PETSc whose stages the library does not know
+EXCHANGE = "exchange"  # a kind
 KEYS = "stage", "verb", "kind", "partner"
 
 
@@ -35,17 +37,19 @@ def library():
 class Counts:
     """Of one rank; {(stage, verb, kind, partner): (calls, bytes, largest)}, any number of steps.
 
-    `seconds`: inside of collectives in stage Step."""
+    `begun`: {(stage, verb): exchanges that it began}. `seconds`: inside of collectives in stage Step."""
 
-    def __init__(self, rows, seconds=0.0):
-        self.rows, self.seconds = rows, seconds
+    def __init__(self, rows, seconds=0.0, begun=None):
+        self.rows, self.seconds, self.begun = rows, seconds, begun or {}
 
     @classmethod
     def read(cls, path):
         with open(path) as file:
             rows = list(csv.DictReader(file))
         return cls({tuple(row[key] for key in KEYS): tuple(int(row[key]) for key in ("calls", "bytes", "largest"))
-                    for row in rows}, sum(float(row["seconds"]) for row in rows if row["stage"] == STEP[0]))
+                    for row in rows if row["kind"] != EXCHANGE},
+                   sum(float(row["seconds"]) for row in rows if row["stage"] == STEP[0]),
+                   {(row["stage"], row["verb"]): int(row["calls"]) for row in rows if row["kind"] == EXCHANGE})
 
     def per_step(self, before, steps):
         """Means over the steps that this run has and the run `before` does not."""
@@ -54,10 +58,12 @@ class Counts:
             earlier = before.rows.get(key, (0, 0, 0))
             if calls > earlier[0]:
                 rows[key] = ((calls - earlier[0]) / steps, (size - earlier[1]) / steps, largest)
-        return Counts(rows)
+        begun = {key: (calls - before.begun.get(key, 0)) / steps for key, calls in self.begun.items()}
+        return Counts(rows, begun={key: calls for key, calls in begun.items() if calls > 0})
 
     def of(self, *stages):
-        return Counts({key: value for key, value in self.rows.items() if key[0] in stages})
+        return Counts({key: value for key, value in self.rows.items() if key[0] in stages},
+                      begun={key: calls for key, calls in self.begun.items() if key[0] in stages})
 
     def _sends(self):
         return {key: value for key, value in self.rows.items() if key[2] == "send"}
@@ -73,6 +79,11 @@ class Counts:
     @property
     def largest(self):
         return max((largest for _, _, largest in self._sends().values()), default=0)
+
+    @property
+    def exchanges(self):
+        """With neighbours: what is begun until a rank waits for a message is one. Collectives come on top."""
+        return sum(self.begun.values())
 
     @property
     def neighbours(self):

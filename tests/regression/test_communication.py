@@ -39,6 +39,8 @@ KNOWN = {
         ("EulACM", "Allreduce"): (4, 13056, 3264),
     },
 }
+# A message to each of 26 neighbours; in EulViscous two messages to each are under way together in every step.
+EXCHANGES = {"fast": {"": 936 // 26, "EulACM": 1144 // 26, "EulViscous": 364 // 26 - STEPS}, "classic": {"": 572 // 26}}
 # PETSc finds out who sends to whom with a barrier, at the first use of a width and a number of fields on a grid.
 ONCE = {"fast": {("", "Barrier"): (1, 0, 0), ("EulACM", "Barrier"): (4, 0, 0), ("EulViscous", "Barrier"): (1, 0, 0)},
         "classic": {("", "Barrier"): (1, 0, 0)}}
@@ -82,6 +84,7 @@ class Communication(unittest.TestCase):
             with self.subTest(method=method):
                 counts = inner(method, self.along).of("Step")
                 self.assertEqual(counts.neighbours, 26)
+                self.assertEqual({verb: calls for (_, verb), calls in counts.begun.items()}, EXCHANGES[method])
                 found = {(verb, kind): value for (_, verb, kind, _), value in counts.by_verb().items()}
                 self.assertEqual(found, {**known, **ONCE[method]})
 
@@ -110,9 +113,12 @@ class Script(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [line.split() for line in done.stdout.splitlines() if re.match(r" +(least|inner|most) \(", line)]
         self.assertEqual([row[0] for row in rows], ["least", "inner", "most"])
-        self.assertEqual({row[-2] for row in rows}, {"1"})  # neighbours
+        neighbours, exchanges, collectives = zip(*(map(float, row[-3:]) for row in rows))
+        self.assertEqual(set(neighbours), {1})
+        # Three layers of velocity, phi and B, one of v* and D*: each an exchange with one message.
         messages = {float(row[2]) for row in rows}
-        self.assertEqual(messages, {5.0}, done.stdout)
+        self.assertEqual((messages, set(exchanges)), ({5.0}, {5.0}), done.stdout)
+        self.assertRegex(done.stdout, rf"\n  exchanges and collectives of the rank that has most: {5 + collectives[0]:g} \(")
 
     def test_what_it_refuses(self):
         case = ROOT / "options/channel_rbc.opts"
@@ -126,8 +132,12 @@ class Script(unittest.TestCase):
 
     def test_difference_of_two_runs(self):
         key, late = ("Step", "", "send", "1"), ("Step", "EulACM", "Allreduce", "8")
-        before, after = Counts({key: (10, 100, 10)}), Counts({key: (30, 180, 20), late: (2, 16, 8)})
+        begun, verb = ("Step", ""), ("Step", "EulACM")
+        before = Counts({key: (10, 100, 10)}, begun={begun: 4})
+        after = Counts({key: (30, 180, 20), late: (2, 16, 8)}, begun={begun: 10, verb: 2})
         self.assertEqual(after.per_step(before, 2).rows, {key: (10, 40, 20), late: (1, 8, 8)})
+        self.assertEqual(after.per_step(before, 2).begun, {begun: 3, verb: 1})
+        self.assertEqual((after.exchanges, after.of("Output").exchanges), (12, 0))
         self.assertEqual(after.per_step(after, 2).rows, {})
 
 
