@@ -147,5 +147,72 @@ class Pictures(WithFolder):
             self.assertFalse((self.folder / "none").exists())
 
 
+class Node(WithFolder):
+    node = load("studies/scaling/node")
+
+    def row(self, part, method, ranks, seconds, speed_up, wait=.25):
+        return {"part": part, "cells": "4x2x2", "method": method, "ranks": ranks, "seconds_per_step": seconds,
+                "ns_per_cell_step": 1, "speed_up": speed_up, "exchange": .5, "wait": wait}
+
+    def test_table_by_hand(self):
+        rows = self.node.add_ceilings([self.row("copies", "fast", 1, .5, 1), self.row("copies", "fast", 4, .625, 3.2),
+                                       self.row("weak", "fast", 1, .5, 1), self.row("weak", "fast", 4, .8, 2.5),
+                                       self.row("capillary_h20", "classic", 1, 2, 1), self.row("capillary_h20", "classic", 4, 1, 2)])
+        self.assertEqual([row["of_ceiling"] for row in rows], [1, 1, 1, 2.5 / 3.2, "", ""])
+        self.assertEqual(self.node.table(rows).splitlines(), [
+            "| case | cells | method | ms a step on 1 rank | speed-up on 4 | of the copies' on 4 | waiting on 4 |",
+            "|---|---|---|---|---|---|---|",
+            "| copies | 4 x 2 x 2 a rank | fast | 500 | 3.20 | - | - |",
+            "| weak | 4 x 2 x 2 a rank | fast | 500 | 2.50 | 78% | 25% |",
+            "| capillary_h20 | 4 x 2 x 2 | classic | 2000 | 2.00 | - | 25% |"])
+        page = self.folder / "scaling.md"
+        shutil.copy(self.node.PAGE, page)
+        self.node.write_tables({"node": self.node.table(rows)}, page, "Made with this.")
+        self.assertIn("| 78% | 25% |\n| capillary_h20 | 4 x 2 x 2 | classic | 2000 | 2.00 | - | 25% |\n\nMade with this.\n<!-- end -->",
+                      page.read_text())
+
+    def test_speed_ups_are_of_work_done(self):
+        # Medians on one, two and four ranks: 8, 5 and 2 s a step; copies and weak scaling have twice and four times the cells.
+        found = {4: [(2, .5, .25)] * 3, 1: [(8, 0, 0)] * 3, 2: [(9, .5, .25), (5, .6, .4), (4, .7, .1)]}
+        for part, expected in ("channel_rbc", [1, 1.6, 4]), ("weak", [1, 3.2, 16]), ("copies", [1, 3.2, 16]):
+            rows = self.node.rows_of(self.node.Series(part, "fast", (8, 4, 4), 3), found)
+            self.assertEqual([row["speed_up"] for row in rows], expected)
+            self.assertEqual([(row["exchange"], row["wait"]) for row in rows], [(0, 0), (.6, .25), (.5, .25)])
+        later = self.node.rows_of(self.node.Series("weak", "fast", (8, 4, 4), 3), {n: found[n] for n in (2, 4)})
+        self.assertEqual([row["speed_up"] for row in later], [2, 10])
+        self.assertEqual([row["ns_per_cell_step"] for row in later], [1e9 * 5 / 256, 1e9 * 2 / 512])
+
+    def test_what_it_refuses(self):
+        cores = len(self.node.cores())
+        for words, reason in ((["--ranks", f"1,{cores + 1}"], f"this machine has {cores} cores that can be used; accepted: at most {cores}"),
+                              (["--ranks", "0,1"], "numbers from 1 on"), (["--ranks", "1;2"], "numbers from 1 on"),
+                              (["--steps", "0"], "--steps: 0: accepted"), (["--only", "nothing"], "--only"),
+                              (["--write", "--quick"], "--write: accepted without --quick"),
+                              (["--write", "--ranks", cores + 1, "--oversubscribe"], "--write: accepted without --quick")):
+            done = start(SCRIPTS / "studies/scaling/node", *words, "--csv", self.folder / "x.csv")
+            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
+            self.assertIn(reason, done.stderr)
+        self.assertFalse((self.folder / "x.csv").exists())
+
+    def test_real_runs(self):
+        done = start(SCRIPTS / "studies/scaling/node", "--quick", "--ranks", "2,1", "--steps", 1, "--method", "classic", "--only", "copies",
+                     "weak", "channel_rbc", "--csv", self.folder / "new/x.csv", *["--oversubscribe"] * (len(self.node.cores()) < 2))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "new/x.csv") as file:
+            self.assertRegex(next(file), r"^# Made with eulastic .* cores? could be used, of \d+ GB of memory; load ")
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["part"], row["cells"], row["ranks"]) for row in rows],
+                         [(part, "32x32x32", ranks) for part in ("copies", "weak", "channel_rbc") for ranks in "12"])
+        for row in rows:
+            seconds, speed_up, ceiling, exchange, wait = (float(row[key]) for key in (
+                "seconds_per_step", "speed_up", "of_ceiling", "exchange", "wait"))
+            self.assertGreater(seconds, 0)
+            self.assertEqual(speed_up == ceiling == 1, row["ranks"] == "1" or (row["part"] == "copies" and speed_up == 1))
+            self.assertEqual(exchange > 0, row["ranks"] == "2" and row["part"] != "copies")
+            self.assertTrue(0 <= wait <= exchange, row)
+        self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("| ")]), 4)
+        self.assertIn("of the copies' on 2", done.stdout)
+
+
 if __name__ == "__main__":
     unittest.main()
