@@ -160,7 +160,7 @@ class Node(WithFolder):
                                        self.row("capillary_h20", "classic", 1, 2, 1), self.row("capillary_h20", "classic", 4, 1, 2)])
         self.assertEqual([row["of_ceiling"] for row in rows], [1, 1, 1, 2.5 / 3.2, "", ""])
         self.assertEqual(self.node.table(rows).splitlines(), [
-            "| case | cells | method | ms a step on 1 rank | speed-up on 4 | of the copies' on 4 | waiting on 4 |",
+            "| case | cells | method | ms a step on 1 rank | speed-up on 4 | of the copies' speed-up on 4 | waiting on 4 |",
             "|---|---|---|---|---|---|---|",
             "| copies | 4 x 2 x 2 a rank | fast | 500 | 3.20 | - | - |",
             "| weak | 4 x 2 x 2 a rank | fast | 500 | 2.50 | 78% | 25% |",
@@ -211,7 +211,7 @@ class Node(WithFolder):
             self.assertEqual(exchange > 0, row["ranks"] == "2" and row["part"] != "copies")
             self.assertTrue(0 <= wait <= exchange, row)
         self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("| ")]), 4)
-        self.assertIn("of the copies' on 2", done.stdout)
+        self.assertIn("of the copies' speed-up on 2", done.stdout)
 
 
 if __name__ == "__main__":
