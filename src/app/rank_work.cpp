@@ -6,7 +6,7 @@
 #include "bodies/volume_fraction.hpp"
 #include "grid/domain.hpp"
 #include "physics/exterior.hpp"
-#include "physics/free_solids.hpp"
+#include "physics/free_bodies.hpp"
 #include "physics/share_out.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void join(const Span &other, Span *span) {
   span->end = std::max(span->end, other.end);
 }
 
-// Rows of cells that a body and what it needs around it occupy, as FreeSolids and OccupiedRows find them from phi.
+// Rows of cells that a body and what it needs around it occupy, as FreeBodies and OccupiedRows find them from phi.
 class BodyRows {
 public:
   /// A box that ends `margin` cells around the body, or at sides of the domain; rows that hold all within `reach` cells
@@ -158,16 +158,16 @@ public:
   }
 
 private:
-  static constexpr int reach_in_box = ExteriorLayers::layers + 2;  // of a body, as FreeSolids has it
-  static constexpr int reach_on_grid = 2;                          // beyond ghosts, as OccupiedRows::follow has it
+  static constexpr int reach_on_grid = 2;  // beyond ghosts, as OccupiedRows::follow has it
   static constexpr double examined = 1e6;  // cells of boxes; further bodies are as large as the mean
   static constexpr double samples = 1e6;   // points that are looked at for walls
 
   void add_bodies(std::size_t s, const Surface &surface) {
     const SpeciesSpec &spec = config_.species[s];
     const bool in_box = config_.lies_in_boxes(s);
-    const int reach = in_box ? reach_in_box : config_.grid.ghosts + reach_on_grid;
-    const int margin = in_box ? FreeSolids::margin : reach;
+    const int reach =
+        in_box ? FreeBodies::rows_reach(spec.material(), config_.grid.ghosts) : config_.grid.ghosts + reach_on_grid;
+    const int margin = in_box ? FreeBodies::margin(spec.material()) : reach;
     const double per_cell = phase_work(spec.material(), in_box);
     double looked_at = 0, sum = 0, count = 0;
     for (const NumberedPlace &place : config_.places[s].known) {

@@ -75,16 +75,12 @@ void FreeBodies::set_surroundings(bool drifts, const std::vector<const Phase *> 
   fitted_ = false;
 }
 
-// Cells around what is not zero of phi that hold anything: layers, edges, what moves in a step.
-int FreeBodies::rows_reach(const Phase &phase) const {
-  return (phase.material.is_membrane() ? domain_->spec().ghosts : ExteriorLayers::layers) + 2;
-}
-
 PetscErrorCode FreeBodies::add(int number, int species, const Box &box, Phase &&phase,
                                std::vector<SurfaceMarker> &&markers) {
   PetscFunctionBeginUser;
   Body body{number, species, box, std::move(phase), {}, std::move(markers)};
-  body.phase.rows.find_in_box(box, std::as_const(body.phase).fraction[0], rows_reach(body.phase));
+  body.phase.rows.find_in_box(box, std::as_const(body.phase).fraction[0],
+                              rows_reach(body.phase.material, domain_->spec().ghosts));
   PetscCall(fit(&body, 0));
   PetscCall(extend(&body));
   const auto after = std::upper_bound(bodies_.begin(), bodies_.end(), number,
@@ -268,7 +264,8 @@ PetscErrorCode FreeBodies::fit(Body *body, int layers) const {
   fitted.phase = empty_like(body->phase, fitted.box);
   copy_shared(body->box, body->phase.fraction, layers, &fitted.phase.fraction);
   copy_shared(body->box, body->phase.tensor.field, layers, &fitted.phase.tensor.field);
-  fitted.phase.rows.find_in_box(fitted.box, std::as_const(fitted.phase).fraction[0], rows_reach(fitted.phase));
+  fitted.phase.rows.find_in_box(fitted.box, std::as_const(fitted.phase).fraction[0],
+                                rows_reach(fitted.phase.material, domain_->spec().ghosts));
   fill_wall_ghosts_even(fitted.box, at_centre, fitted.phase.fraction[0], domain_->spec().ghosts, &fitted.phase.rows);
   PetscCall(find_solid(fitted.box, fitted.phase));
   *body = std::move(fitted);
@@ -417,7 +414,8 @@ PetscErrorCode FreeBodies::move(const Box &box, const Step &step, const Field &f
   PetscFunctionBeginUser;
   PetscCall(
       interface_.advance(box, step.dt, flow, static_cast<long>(step.number), phase->rows, phase->fraction, stage));
-  phase->rows.follow_in_box(box, std::as_const(*phase).fraction[0], rows_reach(*phase));
+  phase->rows.follow_in_box(box, std::as_const(*phase).fraction[0],
+                            rows_reach(phase->material, domain_->spec().ghosts));
   fill_wall_ghosts_even(box, at_centre, phase->fraction[0], domain_->spec().ghosts, &phase->rows);
   const ActiveSegments before = std::move(phase->tensor.strained);
   PetscCall(find_solid(box, *phase));

@@ -101,12 +101,16 @@ public:
 
   /// Cells around a body that its box has when it is made.
   static int margin(const Material &material) { return needed(material) + 2; }
+  /// How far spans of rows reach beyond phi != 0 of a body, in cells: layers around it and what moves in a step.
+  /// `ghosts`: of the grid.
+  static int rows_reach(const Material &material, int ghosts) {
+    return (material.is_membrane() ? ghosts : ExteriorLayers::layers) + 2;
+  }
 
 private:
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and beyond that
   /// faces feel its stress. The rest of the margin is for what moves until the next fit.
   static int needed(const Material &material) { return 1 + (material.is_membrane() ? MembraneMechanics::reach : 1); }
-  int rows_reach(const Phase &phase) const;
   static int stage_fields(const Phase &phase);
   template <class PhaseOrConst, class Visit>
   static void for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit);

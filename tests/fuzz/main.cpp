@@ -257,7 +257,7 @@ PetscErrorCode Fuzzer::prepare() {
       "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 -species cell "
       "-cell_shape sphere -cell_shear_modulus 1 -cell_radius ";
   PetscCall(make_good(line + ".3", &one_));
-  PetscCall(make_good(line + ".12 -cell_placement lattice -cell_count 3,1,1 -cell_stretch_force 1e-9", &several_));
+  PetscCall(make_good(line + ".12 -cell_placement lattice -cell_count 3,1,1 -solid_exterior identity", &several_));
   PetscCheck(several_.checkpoint.find("solid_fraction_cell.2") != std::string::npos && !volume_.empty(),
              PETSC_COMM_SELF, PETSC_ERR_PLIB, "no file, or not one of three phases");
   PetscFunctionReturn(0);

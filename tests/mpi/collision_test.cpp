@@ -28,12 +28,12 @@ const std::string flat_beads =
     "-time_end 9 -grid_cells 40,36,1 -grid_length 5,4.5,1 -boundary_y wall -wall_ymax_velocity 1,0,0 "
     "-wall_ymin_velocity "
     "-1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead -bead_shape sphere "
-    "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv -bead_stretch_force 1e-9 ";
+    "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv -solid_exterior identity ";
 const std::string solid_beads =
     "-time_end 9 -grid_cells 28,18,16 -grid_length 3.5,2.25,2 -boundary_y wall -wall_ymax_velocity 1,0,0 "
     "-wall_ymin_velocity -1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead "
     "-bead_shape sphere -bead_radius .35 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv "
-    "-bead_stretch_force 1e-9 ";
+    "-solid_exterior identity ";
 
 PetscErrorCode advance(Solver *solver, int steps, double dt) {
   PetscFunctionBeginUser;

@@ -41,7 +41,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
       "-time_end 1 -grid_cells 16,16,16 -grid_length 8,8,8 -species cell -cell_shape sphere "
       "-cell_radius .8 -cell_shear_modulus 1 -cell_placement lattice -cell_count 2,1,1 ";
   std::snprintf(memory, sizeof memory, "2, 1 for the species, %.4g GB per rank", 8e-9 * 16 * std::pow(16 + 2 * 5, 3));
-  EXPECT_NE(check_report(parse_line(two + "-cell_stretch_force 1e-9").config, 1).find(memory), std::string::npos);
+  EXPECT_NE(check_report(parse_line(two + "-solid_exterior identity").config, 1).find(memory), std::string::npos);
   EXPECT_EQ(check_report(parse_line(two).config, 1).find("phases (estimate)"), std::string::npos);
   EXPECT_NE(check_report(parse_line(two).config, 1).find("bodies in boxes (estimate): "), std::string::npos);
   EXPECT_EQ(check_report(parse_line(two + "-cell_contact merge").config, 1).find("phases (estimate)"),

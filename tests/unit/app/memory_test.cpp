@@ -67,7 +67,7 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   const std::string line =
       "-time_end 1 -grid_length 8,8,8 -species vessel,ball -vessel_shape slab -vessel_axis y -vessel_interval 0,.1 "
       "-vessel_shear_modulus 1 -ball_shape sphere -ball_radius .3 -ball_shear_modulus 1 -ball_placement lattice "
-      "-ball_count 4,4,4 -ball_stretch_force 1e-9 -grid_cells ";  // not in boxes of their own
+      "-ball_count 4,4,4 -solid_exterior identity -grid_cells ";  // not in boxes of their own
   EXPECT_EQ(expected_phases(parse_line(line + "64,64,64").config), 2);
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32").config), 3);  // as on a chessboard
   EXPECT_EQ(expected_phases(parse_line(line + "32,32,32 -ball_contact merge").config), 2);
@@ -86,7 +86,7 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   // Bodies in boxes: four cells around each, and five ghosts; phi, B, and a copy of both with a velocity at the time of
   // the output; the force.
   std::string boxed = line;
-  boxed.replace(boxed.find("-ball_stretch_force 1e-9"), 24, "");
+  boxed.replace(boxed.find("-solid_exterior identity"), 24, "");
   const Config boxes = parse_line(boxed + "32,32,32").config;
   EXPECT_EQ(expected_phases(boxes), 2);
   const double reach = 2 * .3 * 4 + 2 * 4;
