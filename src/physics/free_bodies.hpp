@@ -128,6 +128,7 @@ private:
   PetscErrorCode move_membrane(const Step &step, const Field &flow, Body *body, Field &work, long *unresolved);
   Field scratch(const Box &box, int components);
   PetscErrorCode connect_fractions();
+  Box shown_block(const BodyInBox &body) const;
 
   const Domain *domain_;
   Fluid fluid_;

@@ -102,6 +102,19 @@ std::vector<BodyInBox> FreeBodies::list() const {
   return all;
 }
 
+// What is shown of a body: its cells, and those around that its B is extended to.
+Box FreeBodies::shown_block(const BodyInBox &body) const {
+  const Layout &layout = body.box->layout();
+  const Extent extent = body.phase->extent(*body.box);
+  Int3 begin = layout.begin, cells = layout.cells;
+  for (int d = 0; d < body.box->dimension(); ++d) {
+    const int first = std::max(extent.begin[d] - ExteriorLayers::layers, 0);
+    begin[d] += first;
+    cells[d] = std::min(extent.end[d] + ExteriorLayers::layers + 1, layout.cells[d]) - first;
+  }
+  return Box(domain_->domain_shape(), begin, cells, 0);
+}
+
 PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
   const int dimension = domain_->dimension();
@@ -111,26 +124,36 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
   const int part = tensor + tensors, all = part + tensors;
   std::vector<Field> fields;
   std::vector<const Field *> shown;
+  std::vector<Box> blocks;
   std::vector<BoxExchange::NumberedBox> boxes;
-  for (const BodyInBox &body : seen) {
-    const Box &box = *body.box;
-    Field &field = fields.emplace_back(box, all);
+  for (const BodyInBox &body : seen) blocks.push_back(shown_block(body));
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    const BodyInBox &body = seen[b];
+    const Box &block = blocks[b];
+    Field &field = fields.emplace_back(block, all);
     field.fill(species, body.species);
-    const ConstView phi = body.phase->fraction[0];
-    for_points(box.rows(), [&](int i, int j, int k) { field[fraction](i, j, k) = phi(i, j, k); });
+    Int3 first;  // in the body's box
+    for (int d = 0; d < 3; ++d) first[d] = block.layout().begin[d] - body.box->layout().begin[d];
+    const auto of_block = [&first](ConstView view) {
+      view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
+      return view;
+    };
+    const ConstView phi = of_block(body.phase->fraction[0]);
+    for_points(block.rows(), [&](int i, int j, int k) { field[fraction](i, j, k) = phi(i, j, k); });
     for (int c = 0; c < tensors; ++c) {
       const TensorComponent &component = body.phase->tensor.components()[c];
       const Staggering &at = component.at;
       const auto [low_a, low_b] = component.steps(phi);
-      for (int k = 0; k < box.points_end(2, at[2]); ++k)
-        for (int j = 0; j < box.points_end(1, at[1]); ++j)
-          for (int i = 0; i < box.points_end(0, at[0]); ++i) {
+      const ConstView B = of_block(body.phase->tensor.field[c]);
+      for (int k = 0; k < block.points_end(2, at[2]); ++k)
+        for (int j = 0; j < block.points_end(1, at[1]); ++j)
+          for (int i = 0; i < block.points_end(0, at[0]); ++i) {
             const double *here = &phi(i, j, k);
             field[part + c](i, j, k) = 0.25 * ((here[0] + here[-low_a - low_b]) + (here[-low_a] + here[-low_b]));
-            field[tensor + c](i, j, k) = body.phase->tensor.field[c](i, j, k) - component.rest();
+            field[tensor + c](i, j, k) = B(i, j, k) - component.rest();
           }
     }
-    boxes.push_back({&box, body.number});
+    boxes.push_back({&block, body.number});
   }
   for (const Field &field : fields) shown.push_back(&field);
   std::map<int, Field> most;  // phi of the body that B at the point is of
