@@ -64,6 +64,7 @@ protected:
     Phase &added = scene->add_phase(2, fraction);
     if (place.membrane) {
       added.material.law = Law::membrane;
+      added.material.shear_modulus = 0;
       added.material.membrane = {kernels::MembraneLaw::skalak, 0.2, 1.5, 1.1, 0.001, 0.5};
       added.tensor.centred = true;
     }
@@ -157,7 +158,7 @@ TEST_P(FreeBodiesTest, HaveTheBitsOfBodiesOnTheGrid) {
     if (place.membrane) solids.set_surroundings(false, {});
     ASSERT_EQ(solids.place_markers(), 0);
     ASSERT_EQ(solids.follow(), 0);
-    const int steps = place.membrane ? 120 : 60;
+    const int steps = place.membrane && domain.dimension() == 2 ? 120 : 60;
     Int3 first_box{};
     int moved = 0;
     for (int step = 0; step < steps; ++step) {
