@@ -154,10 +154,12 @@ struct Config {
   bool boxes(const SpeciesSpec &spec) const {
     const Material material = spec.material();
     return separates(spec) && method.boxes_bodies() && !material.attached && material.stretch_force.force == 0 &&
-           spec.shape != Shape::cylinder && !volume_crosses(sides);
+           spec.shape != Shape::cylinder;
   }
   /// Whether the bodies of a species do so: one alone stays on the grid. After `places` are known.
-  bool lies_in_boxes(std::size_t which) const { return boxes(species[which]) && places[which].count > 1; }
+  bool lies_in_boxes(std::size_t which) const {
+    return boxes(species[which]) && (places[which].count > 1 || has_feeders(sides));
+  }
 };
 
 }  // namespace eulastic

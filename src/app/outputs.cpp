@@ -28,7 +28,7 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   energy_unknown_.clear();
   if (4 * apart > solver->limits({}).forcing)
     energy_unknown_ = "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period";
-  else if (Feeders::exist(config.sides) && !config.species.empty())
+  else if (has_feeders(config.sides) && !config.species.empty())
     energy_unknown_ = "bodies that come in through a side bring energy that is not counted";
   mach_max_ = position.mach_max;
 }

@@ -136,7 +136,7 @@ std::string check_paths(const Config &config) {
       return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
       return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
-    if (Feeders::exist(config.sides))
+    if (has_feeders(config.sides))
       return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
     if (spec.shape == Shape::voxels) continue;
     const Surface surface(spec, dimension);

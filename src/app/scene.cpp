@@ -92,14 +92,14 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
     PetscCall(bring_near(domain.comm(), domain, species, placed, &near));
     std::vector<Phase> colours(1);
     Phase &phase = colours[0];
-    if (config.boxes(species) && placed.count > 1 && !file.holds(species)) {
+    if (config.boxes(species) && (placed.count > 1 || has_feeders(config.sides)) && !file.holds(species)) {
       PetscCall(box_places(domain, species, near, {static_cast<int>(s), next_label}, solver, &phase));
     } else {
       PetscCall(fill_phase(domain, species, near, next_label, &phase));
       if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
       PetscCall(file.read_phase(species, next_label, &phase, &placed));
-      phase.boxed = config.boxes(species) && placed.count > 1;
-      phase.separate = !phase.boxed && config.separates(species) && (placed.count > 1 || Feeders::exist(config.sides));
+      phase.boxed = config.boxes(species) && (placed.count > 1 || has_feeders(config.sides));
+      phase.separate = !phase.boxed && config.separates(species) && (placed.count > 1 || has_feeders(config.sides));
       PetscCall(separate_places(domain, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
     }
     if (species.law == Law::rigid) {

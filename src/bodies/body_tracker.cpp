@@ -102,6 +102,21 @@ PetscErrorCode BodyTracker::connect(const Domain &domain, const std::vector<Phas
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BodyTracker::set_last_references(const Domain &domain, const std::vector<std::pair<int, Int3>> &last) {
+  std::vector<Known> known;
+  std::vector<int> owners;
+  PetscFunctionBeginUser;
+  PetscCall(settle(domain));
+  for (const auto &[label, cell] : last) {
+    known.push_back({label - 1, cell, 0});
+    owners.push_back(BodyRange::owner(label - 1, bodies(), domain.ranks()));
+  }
+  PetscCall(deliver(domain.comm(), owners, &known));
+  const int first = BodyRange::of(bodies(), domain.rank(), domain.ranks()).begin;
+  for (const Known &one : known) references_[one.body - first] = one.reference;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodyTracker::owned_references(const Domain &domain, std::vector<Int3> *references) {
   PetscFunctionBeginUser;
   PetscCall(settle(domain));

@@ -15,14 +15,39 @@ bool leave_whole(const Material &material) {
   return material.is_membrane() || material.surface_tension > 0 || material.viscosity > 0;
 }
 
-void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
-  const BodyCells cells{phase.label[0], phase.fraction[0]};
-  Int3 begin{}, end = box.cells();
+namespace {
+
+// The cells of a block that are not within so many layers of an open side.
+Extent away_from_open_sides(const Box &box, int layers) {
+  Extent away{{0, 0, 0}, box.cells()};
   for (int d = 0; d < box.dimension(); ++d) {
     const int first = box.layout().begin[d], last = box.domain_cells()[d] - layers - first;
-    if (box.is_open(d, false)) begin[d] = std::max(begin[d], layers - first);
-    if (box.is_open(d, true)) end[d] = std::min(end[d], last);
+    if (box.is_open(d, false)) away.begin[d] = std::max(away.begin[d], layers - first);
+    if (box.is_open(d, true)) away.end[d] = std::min(away.end[d], last);
   }
+  return away;
+}
+
+}  // namespace
+
+bool leaves_box(const BodyInBox &body) {
+  const Box &box = *body.box;
+  const ConstView phi = body.phase->fraction[0];
+  bool at_open_side = false;
+  for (const auto [d, high] : box.sides())
+    at_open_side = at_open_side || (box.is_open(d, high) && has_solid(box, phi, d, high, free_layers, 0));
+  if (!at_open_side || leave_whole(body.phase->material)) return at_open_side;
+  const auto [begin, end] = away_from_open_sides(box, free_layers);
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i)
+        if (phi(i, j, k) > BodyCells::threshold) return false;
+  return true;
+}
+
+void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
+  const BodyCells cells{phase.label[0], phase.fraction[0]};
+  const auto [begin, end] = away_from_open_sides(box, layers);
   for (int k = begin[2]; k < end[2]; ++k)
     for (int j = begin[1]; j < end[1]; ++j)
       for (int i = begin[0]; i < end[0]; ++i)

@@ -23,6 +23,8 @@ void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phas
                   std::map<int, Leaving> *leaves);
 /// Those stay, of bodies that are marked on any rank, of which this one has BodyCells at no open side.
 void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves);
+/// Of a body in a box of its own: whether it leaves through an open side.
+bool leaves_box(const BodyInBox &body);
 /// Takes the bodies that leave out of owned cells. What is around them is the caller's.
 void take_out(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase);
 

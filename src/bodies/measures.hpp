@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace eulastic {
 
@@ -68,6 +69,8 @@ public:
   /// Moves the reference cells to the centroids. Call after carry_labels(), on its schedule and nowhere else: then
   /// the unwrapping never depends on how often bodies are measured. Collective.
   PetscErrorCode follow(const Domain &domain, const std::vector<Phase> &phases);
+  /// The last reference cells of bodies that follow() does not see, by their labels, on any rank. Collective.
+  PetscErrorCode set_last_references(const Domain &domain, const std::vector<std::pair<int, Int3>> &last);
   /// Measures all bodies, changing nothing; every rank gets those that it owns. `velocity`: u, v (, w) on faces with
   /// one valid ghost layer, as phi and B. `boxed`: those of this rank that lie in boxes, with the velocity. Collective.
   PetscErrorCode measure(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,

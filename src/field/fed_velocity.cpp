@@ -7,24 +7,38 @@ namespace eulastic {
 
 PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
                                  FedVelocity *fed) {
-  const Plane plane(domain.layout(), d);
   const int owner = domain.split().position_along(d, index), local = index - domain.layout().begin[d];
   int position;
   PetscFunctionBeginUser;
-  fed->d_ = d;
-  fed->begin_ = plane.begin;
-  fed->end_ = plane.end;
+  fed->lay_out(domain, d);
+  PetscCallMPI(MPI_Comm_rank(line, &position));
+  if (position == owner) fed->take(component, local);
+  PetscCallMPI(MPI_Bcast(fed->values_.data(), static_cast<int>(fed->values_.size()), MPI_DOUBLE, owner, line));
+  PetscFunctionReturn(0);
+}
+
+FedVelocity FedVelocity::of_faces(const Box &box, ConstView component, int d, int local) {
+  FedVelocity fed;
+  fed.lay_out(box, d);
+  fed.take(component, local);
+  return fed;
+}
+
+void FedVelocity::lay_out(const Box &box, int d) {
+  const Plane plane(box.layout(), d);
+  d_ = d;
+  begin_ = plane.begin;
+  end_ = plane.end;
   std::size_t count = 1;
   for (int e = 0; e < 3; ++e) count *= std::size_t(plane.end[e] - plane.begin[e]);
-  fed->values_.resize(count);
-  PetscCallMPI(MPI_Comm_rank(line, &position));
-  if (position == owner)
-    fed->for_each([&](Int3 at, double &value) {
-      at[d] = local;
-      value = component(at[0], at[1], at[2]);
-    });
-  PetscCallMPI(MPI_Bcast(fed->values_.data(), static_cast<int>(count), MPI_DOUBLE, owner, line));
-  PetscFunctionReturn(0);
+  values_.resize(count);
+}
+
+void FedVelocity::take(ConstView component, int local) {
+  for_each([&](Int3 at, double &value) {
+    at[d_] = local;
+    value = component(at[0], at[1], at[2]);
+  });
 }
 
 void FedVelocity::set_row(const Segment &row, View component) const {

@@ -16,6 +16,8 @@ public:
   /// positions along d.
   static PetscErrorCode copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
                              FedVelocity *fed);
+  /// The same from the faces with a local index of a block, which has them and does not share them.
+  static FedVelocity of_faces(const Box &box, ConstView component, int d, int local);
   /// Writes the values of a row of the plane; `row` lies on it or on another one along d.
   void set_row(const Segment &row, View component) const;
   /// Every value of the plane, ghosts too: visit(local face, value).
@@ -27,6 +29,8 @@ public:
   }
 
 private:
+  void lay_out(const Box &box, int d);
+  void take(ConstView component, int local);
   std::size_t place(int i, int j, int k) const {
     const Int3 at{d_ == 0 ? begin_[0] : i, d_ == 1 ? begin_[1] : j, d_ == 2 ? begin_[2] : k};
     return (at[0] - begin_[0]) + std::size_t(end_[0] - begin_[0]) *

@@ -87,6 +87,10 @@ bool volume_crosses(const BoxSides &sides) {
   return false;
 }
 
+bool has_feeders(const BoxSides &sides) {
+  return std::any_of(sides.begin(), sides.end(), [](const auto &pair) { return pair[0].feeder || pair[1].feeder; });
+}
+
 bool opens(const BoxSides &sides) {
   for (const auto &pair : sides)
     for (const Side &side : pair)

@@ -1,6 +1,7 @@
 #include "physics/free_bodies.hpp"
 
 #include "base/deliver.hpp"
+#include "field/fed_velocity.hpp"
 #include "field/sides.hpp"
 #include "physics/elastic_force.hpp"
 #include "physics/transport.hpp"
@@ -163,6 +164,20 @@ PetscErrorCode FreeBodies::add_packed(const std::vector<double> &packed, const P
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FreeBodies::add_copy(int number, int copy, const Int3 &shift, const Phase &like) {
+  PetscFunctionBeginUser;
+  const auto original =
+      std::find_if(bodies_.begin(), bodies_.end(), [&](const Body &body) { return body.number == number; });
+  std::vector<double> values = packed(original - bodies_.begin());
+  values[0] = copy;
+  for (int d = 0; d < 3; ++d) values[2 + d] += shift[d];
+  // A marker's place at rest stays: only differences count.
+  for (std::size_t m = original->markers.size(); m > 0; --m)
+    for (int d = 0; d < 3; ++d) values[values.size() - m * SurfaceMarker::numbers + 3 + d] += shift[d];
+  PetscCall(add_packed(values, like));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector<Phase> &species) {
   struct Part {  // of a packed body
     int number, begin, count;
@@ -204,6 +219,13 @@ PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector
     values.clear();
   }
   PetscFunctionReturn(0);
+}
+
+void FreeBodies::remove(const std::vector<std::size_t> &which) {
+  for (auto b = which.rbegin(); b != which.rend(); ++b)
+    bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(*b));
+  seen_.clear();
+  fitted_ = fitted_ && which.empty();
 }
 
 void FreeBodies::clear() {
@@ -288,8 +310,8 @@ PetscErrorCode FreeBodies::fit_boxes(bool *changed, long *unresolved) {
     boxes.push_back({&body.box, body.number});
   }
   PetscCall(exchange_.connect(boxes));
-  PetscCall(find_walls());
   fractions_are_connected_ = false;
+  PetscCall(find_walls());
   fitted_ = true;
   PetscFunctionReturn(0);
 }
@@ -304,9 +326,21 @@ PetscErrorCode FreeBodies::follow() {
 }
 
 void FreeBodies::bring_velocity(std::size_t body, const Step &step, const Field &velocity, Field *flow) const {
-  exchange_.copy_to_box(body, velocity, *flow);
+  const Box &box = bodies_[body].box;
   const bool membrane = bodies_[body].phase.material.is_membrane();
-  fill_wall_ghosts_velocity(bodies_[body].box, *sides_, step.time, *flow,
+  exchange_.copy_to_box(body, velocity, *flow);
+  const BoxSides *sides = sides_;
+  BoxSides own;  // where a side is fed: what is known of its velocity here are the faces of the box
+  for (const auto [d, high] : box.sides()) {
+    const int away = high ? domain_->domain_cells()[d] - box.layout().begin[d] - box.cells()[d] : box.layout().begin[d];
+    if (!(*sides_)[d][high].fed || away > box.layout().ghosts[d]) continue;
+    if (sides == sides_) own = *sides_;
+    sides = &own;
+    // Of a side among the ghosts, which nothing of the body reads, any values will do.
+    const int local = high && away == 0 ? box.cells()[d] : 0;
+    own[d][high].fed = std::make_shared<FedVelocity>(FedVelocity::of_faces(box, std::as_const(*flow)[d], d, local));
+  }
+  fill_wall_ghosts_velocity(box, *sides, step.time, *flow,
                             membrane ? MembraneMechanics::velocity_ghosts : Box::stencil_width);
 }
 

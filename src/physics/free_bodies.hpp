@@ -46,9 +46,13 @@ public:
   static std::size_t packed_values(const DomainShape &domain, bool centred, const double *head);
   /// Adds such a body; `like`: a phase of the grid with its material and rule.
   PetscErrorCode add_packed(const std::vector<double> &packed, const Phase &like);
+  /// Adds a body like that of this rank with a number, so many cells away; `like`: as of add_packed().
+  PetscErrorCode add_copy(int number, int copy, const Int3 &shift, const Phase &like);
   /// Gives every body of this rank to one of `ranks`, in their order; `species`: phases with materials and rules of
   /// all. Collective.
   PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
+  /// Takes bodies of this rank away, by their places in bodies(), ascending; follow() comes next, on all ranks.
+  void remove(const std::vector<std::size_t> &which);
   void clear();
 
   /// Whether no wall holds the fluid, so that a net force of surfaces would move all of it, and where rigid bodies are

@@ -31,28 +31,60 @@ bool is_held(const Phase &phase) { return !phase.label || phase.material.attache
 
 // Bodies flow out through open sides, or leave whole when they come there. At the start they may not be there.
 PetscErrorCode Solver::check_sides(bool start) {
-  int found[3] = {-1, 0, 0};  // what is held and where, whether any leave whole, whether any flow out
+  // What is held and where, whether any leave whole, whether any flow out; of bodies in boxes, whether any leave.
+  int found[4] = {-1, 0, 0, 0};
+  std::vector<std::size_t> leaving;
+  const auto hold = [&](int phase, int d, bool high) { found[0] = std::max(found[0], phase * 6 + 2 * d + high); };
   PetscFunctionBeginUser;
+  const std::vector<BodyInBox> boxed = boxed_->list();
+  for (std::size_t b = 0; b < boxed.size(); ++b) {
+    const BodyInBox &body = boxed[b];
+    for (const auto [d, high] : domain_->sides())
+      if (const SideKind kind = spec_.sides[d][high].kind; volume_crosses(kind) && (start || !is_open(kind)))
+        if (has_solid(*body.box, body.phase->fraction[0], d, high, free_layers, BodyCells::threshold))
+          hold(body.species, d, high);
+    if (!start && leaves_box(body)) leaving.push_back(b);
+  }
+  found[3] = !leaving.empty();
   for (int p = 0; p < static_cast<int>(now_.phases.size()); ++p)
     for (const auto [d, high] : domain_->sides()) {
       const SideKind kind = spec_.sides[d][high].kind;
-      if (now_.phases[p].material.is_rigid() || !volume_crosses(kind)) continue;
+      if (now_.phases[p].material.is_rigid() || now_.phases[p].boxed || !volume_crosses(kind)) continue;
       const bool stops = start || !is_open(kind) || is_held(now_.phases[p]);
       if (!has_solid(*domain_, now_.phases[p].fraction[0], d, high, free_layers, stops ? BodyCells::threshold : 0))
         continue;
       if (stops)
-        found[0] = std::max(found[0], p * 6 + 2 * d + high);
+        hold(p, d, high);
       else
         found[leave_whole(now_.phases[p].material) ? 1 : 2] = 1;
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 3, MPI_INT, MPI_MAX, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPI_INT, MPI_MAX, domain_->comm()));
   const int held = found[0];
   if (held >= 0)
     crowded_ = "-species " + now_.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
                " cells of side " + "xyz"[held % 6 / 2] + (held % 2 ? "max" : "min") +
                ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
+  if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
   if (held < 0 && found[2] > 0 && now_.travel == 0) PetscCall(take_out_bodies(false));  // labels are new
+  PetscFunctionReturn(0);
+}
+
+// Bodies of this rank in boxes, by their places in the list. They are last known where they are now.
+PetscErrorCode Solver::take_out_boxed(const std::vector<std::size_t> &leaving) {
+  std::vector<std::pair<int, Int3>> last;
+  PetscFunctionBeginUser;
+  const std::vector<BodyInBox> all = boxed_->list();
+  for (const std::size_t b : leaving) {
+    Int3 middle = all[b].phase->extent(*all[b].box).middle();
+    for (int d = 0; d < 3; ++d) middle[d] += all[b].box->layout().begin[d];
+    last.emplace_back(all[b].number, middle);
+  }
+  forget_looks();
+  boxed_->remove(leaving);
+  PetscCall(boxed_->follow());
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
+  PetscCall(bodies_.set_last_references(*domain_, last));
   PetscFunctionReturn(0);
 }
 
@@ -99,15 +131,121 @@ PetscErrorCode Solver::take_out_bodies(bool whole) {
   PetscFunctionReturn(0);
 }
 
+namespace {
+
+// In a cell at the surfaces of two bodies that touch fractions may add up to more than 1.
+constexpr double full = 1.5;
+
+// The cells of a body, moved.
+Box moved_block(const DomainShape &domain, const BodyInBox &body, const Int3 &shift) {
+  const Extent extent = body.phase->extent(*body.box);
+  Int3 begin{}, cells{};
+  for (int d = 0; d < 3; ++d) {
+    begin[d] = body.box->layout().begin[d] + extent.begin[d] + shift[d];
+    cells[d] = extent.end[d] - extent.begin[d];
+  }
+  return Box(domain, begin, cells, 0);
+}
+
+}  // namespace
+
+PetscErrorCode Solver::sum_fractions(Field *sum) {
+  std::vector<Phase> shown(now_.phases.size());
+  std::map<int, Phase *> boxed;
+  PetscFunctionBeginUser;
+  *sum = Field(*domain_, 1);
+  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
+    if (!now_.phases[p].boxed) continue;
+    shown[p].fraction = Field(*domain_, 1);
+    boxed[static_cast<int>(p)] = &shown[p];
+  }
+  PetscCall(boxed_->show_fractions(boxed_->list(), boxed));
+  for (std::size_t p = 0; p < now_.phases.size(); ++p) {
+    const Phase &phase = now_.phases[p].boxed ? shown[p] : now_.phases[p];
+    const ConstView phi = phase.fraction[0];
+    for_points(domain_->rows(), [&, to = (*sum)[0]](int i, int j, int k) { to(i, j, k) += phi(i, j, k); });
+  }
+  PetscFunctionReturn(0);
+}
+
+// As feed_bodies(). All see the same fractions: bodies of one stretch come in as far from each other as they are.
+PetscErrorCode Solver::feed_boxed(const std::vector<int> &labels) {
+  enum State { has_left, waits, comes_in };
+  std::vector<int> states(labels.size(), has_left);
+  std::vector<std::size_t> here(labels.size(), 0);  // places in the list
+  std::vector<Box> blocks;
+  std::vector<BoxExchange::NumberedBox> numbered;
+  Field fractions;
+  PetscFunctionBeginUser;
+  PetscCall(sum_fractions(&fractions));
+  const std::vector<BodyInBox> all = boxed_->list();
+  std::vector<std::size_t> candidates;
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (all[b].number != labels[n]) continue;
+      const Int3 shift = feeders_->shift_of(labels[n]);
+      const Box block = moved_block(domain_->domain_shape(), all[b], shift);
+      bool inside = true;
+      for (int d = 0; d < domain_->dimension(); ++d)
+        inside = inside &&
+                 (!domain_->is_wall(d) || (block.layout().begin[d] >= 0 &&
+                                           block.layout().begin[d] + block.cells()[d] <= domain_->domain_cells()[d]));
+      states[n] = waits;
+      here[n] = b;
+      if (!inside) continue;
+      candidates.push_back(n);
+      blocks.push_back(block);
+    }
+  for (std::size_t c = 0; c < candidates.size(); ++c) numbered.push_back({&blocks[c], labels[candidates[c]]});
+  BoxExchange exchange(*domain_, 1);
+  PetscCall(exchange.connect(numbered));
+  PetscCall(exchange.fetch(fractions));
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Box &block = blocks[c];
+    const BodyInBox &body = all[here[candidates[c]]];
+    const Int3 first = body.phase->extent(*body.box).begin;
+    Field there(block, 1);
+    exchange.copy_to_box(c, fractions, there);
+    double fullest = 0;
+    for_points(block.rows(), [&](int i, int j, int k) {
+      const double phi = body.phase->fraction[0](first[0] + i, first[1] + j, first[2] + k);
+      if (phi > BodyCells::threshold) fullest = std::max(fullest, phi + there[0](i, j, k));
+    });
+    if (fullest <= full) states[candidates[c]] = comes_in;
+  }
+  const std::vector<int> own = states;
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, states.data(), static_cast<int>(states.size()), MPI_INT, MPI_MAX, domain_->comm()));
+  std::vector<std::pair<int, int>> copies;  // label of the body, that of its copy
+  std::map<int, Int3> shifts;
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    if (states[n] == waits) continue;
+    if (states[n] == comes_in) {
+      shifts[labels[n]] = feeders_->shift_of(labels[n]);
+      PetscCall(bodies_.add_like(*domain_, labels[n], shifts[labels[n]]));
+      feeders_->come_in(labels[n], bodies_.bodies());
+      if (own[n] == comes_in) copies.emplace_back(labels[n], bodies_.bodies());
+    }
+    feeders_->forget(labels[n]);
+  }
+  for (const auto &[label, copy] : copies)
+    PetscCall(boxed_->add_copy(label, copy, shifts[label], now_.phases[bodies_.species(label)]));
+  if (shifts.empty()) PetscFunctionReturn(0);
+  forget_looks();
+  PetscCall(boxed_->follow());
+  PetscCall(show_fractions(boxed_->list(), &now_.phases));
+  PetscFunctionReturn(0);
+}
+
 // A body that has left its feeder comes in behind, in a phase where nobody is near; where others fill its place it
 // waits.
 PetscErrorCode Solver::feed_bodies() {
-  constexpr double full =
-      1.5;  // in a cell at the surfaces of two bodies that touch fractions may add up to more than 1
-  std::vector<int> passed;
+  std::vector<int> all, passed, boxed;
   std::vector<BodyCopy> copies;
   PetscFunctionBeginUser;
-  PetscCall(feeders_->find_passed(now_.phases, &passed));
+  PetscCall(feeders_->find_passed(now_.phases, boxed_->list(), &all));
+  for (const int label : all) (now_.phases[bodies_.species(label)].boxed ? boxed : passed).push_back(label);
+  if (!boxed.empty()) PetscCall(feed_boxed(boxed));
   if (passed.empty()) PetscFunctionReturn(0);
   PetscCall(copy_bodies(*domain_, *exchange_, passed, &now_.phases, &copies));
   for (const BodyCopy &copy : copies) {

@@ -11,10 +11,6 @@
 
 namespace eulastic {
 
-bool Feeders::exist(const BoxSides &sides) {
-  return std::any_of(sides.begin(), sides.end(), [](const auto &pair) { return pair[0].feeder || pair[1].feeder; });
-}
-
 Feeders::~Feeders() {
   for (Stretch &stretch : stretches_) (void)MPI_Comm_free(&stretch.line);
 }
@@ -36,11 +32,11 @@ PetscErrorCode Feeders::create(const Domain &domain, const BoxSides &sides) {
 }
 
 template <class Visit>
-void Feeders::for_cells(const Stretch &stretch, const Visit &visit) const {
-  const int d = stretch.d, deep = stretch.cells + beyond, begin = domain_->layout().begin[d];
-  Int3 from{}, to = domain_->cells();
+void Feeders::for_cells(const Box &box, const Stretch &stretch, const Visit &visit) {
+  const int d = stretch.d, deep = stretch.cells + beyond, begin = box.layout().begin[d];
+  Int3 from{}, to = box.cells();
   if (stretch.high)
-    from[d] = std::max(0, domain_->domain_cells()[d] - deep - begin);
+    from[d] = std::max(0, box.domain_cells()[d] - deep - begin);
   else
     to[d] = std::min(to[d], deep - begin);
   for (int k = from[2]; k < to[2]; ++k)
@@ -57,7 +53,7 @@ PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::strin
       if (!phase.material.is_rigid()) continue;
       const ConstView phi = phase.fraction[0];
       const std::ptrdiff_t next = (stretches_[s].high ? -1 : 1) * phi.stride(stretches_[s].d);
-      for_cells(stretches_[s], [&](int i, int j, int k) {
+      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
         const double *here = &phi(i, j, k);
         change[s] = std::max(change[s], std::fabs(here[next] - here[0]));
       });
@@ -113,21 +109,30 @@ PetscErrorCode Feeders::recall_velocity(const Field &velocity, BoxSides *sides) 
 
 // visit(stretch, label) for all cells of bodies in stretches, one after the other.
 template <class Visit>
-void Feeders::for_bodies(const std::vector<Phase> &phases, const Visit &visit) const {
-  for (int s = 0; s < static_cast<int>(stretches_.size()); ++s)
+void Feeders::for_bodies(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
+                         const Visit &visit) const {
+  for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
+    for (const BodyInBox &body : boxed) {
+      const ConstView phi = body.phase->fraction[0];
+      bool any = false;
+      for_cells(*body.box, stretches_[s],
+                [&](int i, int j, int k) { any = any || phi(i, j, k) > BodyCells::threshold; });
+      if (any) visit(s, body.number);
+    }
     for (const Phase &phase : phases) {
       if (!phase.label || phase.material.is_rigid()) continue;
       const BodyCells cells{phase.label[0], phase.fraction[0]};
-      for_cells(stretches_[s], [&](int i, int j, int k) {
+      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
         if (const int label = static_cast<int>(cells(i, j, k)); label > 0) visit(s, label);
       });
     }
+  }
 }
 
-PetscErrorCode Feeders::start(const std::vector<Phase> &phases) {
+PetscErrorCode Feeders::start(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed) {
   std::map<int, int> here;
   PetscFunctionBeginUser;
-  for_bodies(phases, [&](int stretch, int label) { here.try_emplace(label, stretch); });
+  for_bodies(phases, boxed, [&](int stretch, int label) { here.try_emplace(label, stretch); });
   PetscCall(set_inside(here));
   PetscFunctionReturn(0);
 }
@@ -150,13 +155,14 @@ PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const {
+PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
+                                    std::vector<int> *labels) const {
   std::vector<int> inside;
   PetscFunctionBeginUser;
   labels->clear();
   for (const auto &[label, stretch] : inside_) inside.push_back(label);
   std::vector<int> still(inside.size(), 0);
-  for_bodies(phases, [&](int stretch, int label) {
+  for_bodies(phases, boxed, [&](int stretch, int label) {
     const auto at = std::lower_bound(inside.begin(), inside.end(), label);
     if (at != inside.end() && *at == label && inside_.at(label) == stretch) still[at - inside.begin()] = 1;
   });

@@ -17,7 +17,6 @@ class Feeders {
 public:
   /// Cells beyond the end of the stretch that a body must have passed, all of it: it comes in as far from the side.
   static constexpr int beyond = 2;
-  static bool exist(const BoxSides &sides);
 
   Feeders() = default;
   Feeders(const Feeders &) = delete;
@@ -34,10 +33,11 @@ public:
   /// The same from what is on the sides already.
   PetscErrorCode recall_velocity(const Field &velocity, BoxSides *sides) const;
 
-  /// Finds out which bodies are in which stretch.
-  PetscErrorCode start(const std::vector<Phase> &phases);
+  /// Finds out which bodies are in which stretch; `boxed`: those of this rank in boxes of their own.
+  PetscErrorCode start(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed);
   /// Those that have passed the end of theirs, ascending; they keep being named until forget().
-  PetscErrorCode find_passed(const std::vector<Phase> &phases, std::vector<int> *labels) const;
+  PetscErrorCode find_passed(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
+                             std::vector<int> *labels) const;
   /// Where a body comes in, relative to where it is.
   Int3 shift_of(int label) const;
   /// A body is not in its stretch any more; another one has come into that.
@@ -54,10 +54,10 @@ private:
     int d, high, cells;
     MPI_Comm line;  ///< ranks along d
   };
+  template <class Visit>  ///< those of a block, and those just beyond the stretch
+  static void for_cells(const Box &box, const Stretch &stretch, const Visit &visit);
   template <class Visit>
-  void for_cells(const Stretch &stretch, const Visit &visit) const;  ///< owned ones, and those just beyond
-  template <class Visit>
-  void for_bodies(const std::vector<Phase> &phases, const Visit &visit) const;
+  void for_bodies(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed, const Visit &visit) const;
 
   const Domain *domain_ = nullptr;
   std::vector<Stretch> stretches_;

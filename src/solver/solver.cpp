@@ -56,7 +56,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   velocity_star_ = Field(domain, dim);
   PetscCall(work_->reserve(work_fields(spec, dim, {domain.any_open()})));
   if (!OutletLoads::none(spec.sides)) loads_ = std::make_unique<OutletLoads>(spec.sides);
-  if (Feeders::exist(spec.sides)) {
+  if (has_feeders(spec.sides)) {
     feeders_ = std::make_unique<Feeders>();
     PetscCall(feeders_->create(domain, spec.sides));
   }
@@ -114,7 +114,7 @@ PetscErrorCode Solver::prepare() {
   if (volume_crosses(spec_.sides)) PetscCall(check_sides(true));
   if (feeders_) {
     PetscCall(feeders_->check_lumen(now_.phases, &crowded_));
-    PetscCall(feeders_->start(now_.phases));
+    PetscCall(feeders_->start(now_.phases, boxed_->list()));
   }
   next_rows_ = now_.phases[0].rows;  // more than those of the blocks, which are at rest
   stale_.build(*domain_, now_.phases[0].fraction[0], now_.phases[0].rows, HUGE_VAL, 0, 0);

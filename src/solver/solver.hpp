@@ -194,7 +194,12 @@ private:
   PetscErrorCode follow_bodies(double dt);
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies(bool whole);
+  PetscErrorCode take_out_boxed(const std::vector<std::size_t> &leaving);
   PetscErrorCode feed_bodies();
+  /// Of the bodies with these labels those in boxes.
+  PetscErrorCode feed_boxed(const std::vector<int> &labels);
+  /// Solid fraction of all bodies together, on the grid.
+  PetscErrorCode sum_fractions(Field *sum);
   PetscErrorCode find_responses();
   /// Volume that leaves through loaded sides per time.
   PetscErrorCode measure_loads(const Field &velocity, std::vector<double> *flow);

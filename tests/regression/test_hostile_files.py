@@ -63,6 +63,11 @@ class Numbers(Restart):
         case = [*FEEDER, "-time_steps_max", 6]
         for value in (-1, 2, 1 << 40):
             self.refuse_changed(case, path, "bodies_in_feeders", 0, value)
+
+    def test_of_markers_on_the_grid(self):
+        case = [*MEMBRANE, "-time_steps_max", 6]
+        self.run_case("run", *MEMBRANE, "-time_steps_max", 4)
+        path = self.checkpoints()[0]
         for name in ("nan", "cell", "label", "phase"):
             index, value = {"nan": 7, "cell": 3, "label": 1, "phase": 2}[name], {"nan": numpy.nan, "cell": 1e9, "label": 77., "phase": -1.}[name]
             self.refuse_changed(case, path, "membrane_markers", index, value)
