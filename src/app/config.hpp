@@ -153,8 +153,10 @@ struct Config {
   /// phases of the grid.
   bool boxes(const SpeciesSpec &spec) const {
     const Material material = spec.material();
-    return separates(spec) && method.boxes_bodies() && !material.attached && material.stretch_force.force == 0 &&
-           spec.shape != Shape::cylinder;
+    const bool has_box = spec.shape == Shape::sphere || spec.shape == Shape::biconcave ||
+                         spec.shape == Shape::ellipsoid || spec.shape == Shape::state;
+    return separates(spec) && method.boxes_bodies() && has_box && !material.attached &&
+           material.stretch_force.force == 0;
   }
   /// Whether the bodies of a species do so: one alone stays on the grid. After `places` are known.
   bool lies_in_boxes(std::size_t which) const {
