@@ -158,15 +158,14 @@ public:
   }
 
 private:
-  static constexpr int reach_on_grid = 2;  // beyond ghosts, as OccupiedRows::follow has it
   static constexpr double examined = 1e6;  // cells of boxes; further bodies are as large as the mean
   static constexpr double samples = 1e6;   // points that are looked at for walls
 
   void add_bodies(std::size_t s, const Surface &surface) {
     const SpeciesSpec &spec = config_.species[s];
     const bool in_box = config_.lies_in_boxes(s);
-    const int reach =
-        in_box ? FreeBodies::rows_reach(spec.material(), config_.grid.ghosts) : config_.grid.ghosts + reach_on_grid;
+    const int reach = in_box ? FreeBodies::rows_reach(spec.material(), config_.grid.ghosts)
+                             : config_.grid.ghosts + OccupiedRows::beyond_ghosts;
     const int margin = in_box ? FreeBodies::margin(spec.material()) : reach;
     const double per_cell = phase_work(spec.material(), in_box);
     double looked_at = 0, sum = 0, count = 0;
@@ -235,7 +234,7 @@ private:
 
   // As OccupiedRows says on the grid: a rank sees what is solid as far as its ghosts.
   bool is_occupied(const Box &box, const std::vector<PlacedBody> &bodies, const Real3 &place) const {
-    const int ghosts = config_.grid.ghosts, reach = ghosts + reach_on_grid;
+    const int ghosts = config_.grid.ghosts, reach = ghosts + OccupiedRows::beyond_ghosts;
     std::array<Real3, 3> along{};  // [direction]: here, and as far as is seen below and above
     for (int d = 0; d < 3; ++d) {
       along[d].fill(place[d]);

@@ -33,6 +33,23 @@ Extent Phase::extent(const Box &box) const {
   return extent;
 }
 
+Box Phase::block(const Box &box, int before, int behind) const {
+  const Extent held = extent(box);
+  Int3 begin = box.layout().begin, cells = box.cells();
+  for (int d = 0; d < box.dimension(); ++d) {
+    const int first = std::max(held.begin[d] - before, 0);
+    cells[d] = std::min(held.end[d] + behind, cells[d]) - first;
+    begin[d] += first;
+  }
+  return Box(box.domain_shape(), begin, cells, 0);
+}
+
+Int3 first_in(const Box &box, const Box &block) {
+  Int3 first;
+  for (int d = 0; d < 3; ++d) first[d] = block.layout().begin[d] - box.layout().begin[d];
+  return first;
+}
+
 void Phase::copy_from(const Phase &other) {
   species = other.species;
   material = other.material;

@@ -36,11 +36,16 @@ struct Phase {
   void empty(const Box &box, bool labels);
   /// The least block of cells that has all in which phi is not 0; `box`: whole on this rank.
   Extent extent(const Box &box) const;
+  /// The cells of extent() with so many before and behind them, as far as `box` has them; without ghosts.
+  Box block(const Box &box, int before, int behind) const;
   /// Of a row of cells, the least that has all in which phi is not 0.
   Segment filled(const Segment &row) const;
   /// What transport() needs to go on from there.
   void copy_from(const Phase &other);
 };
+
+/// Local indices in `box` of the first cell of a block that lies in it.
+Int3 first_in(const Box &box, const Box &block);
 
 /// A body in a box of its own, which is whole on this rank, as those see it who measure.
 struct BodyInBox {

@@ -66,7 +66,7 @@ PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Move
   std::vector<int> all_inside;  // of each, on all ranks
   for (const Moved &one : moved) {
     const OccupiedRows before = std::move(*one.rows);
-    one.rows->read(domain, one.value, before, {domain.layout().ghosts[0] + 2, false});
+    one.rows->read(domain, one.value, before, {domain.layout().ghosts[0] + beyond_ghosts, false});
     all_inside.push_back(one.rows->inside_);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all_inside.data(), static_cast<int>(all_inside.size()), MPI_INT, MPI_LAND,

@@ -16,6 +16,9 @@ public:
     int begin, end;
   };
 
+  /// Cells that spans reach further than ghosts do, one for edges and one for what moves within a step.
+  static constexpr int beyond_ghosts = 2;
+
   /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
   PetscErrorCode find(const Domain &domain, ConstView value);
   /// The same of a field in a box that is whole on this rank, with nothing in its ghosts: spans are known there, too,

@@ -108,18 +108,12 @@ void FreeBodies::for_values(const Box &block, const Int3 &first, PhaseOrConst &p
 // The cells that hold anything of the body, and one more for the edges at their ends: all else follows from these.
 std::vector<double> FreeBodies::packed(std::size_t b) const {
   const Body &body = bodies_[b];
-  const Layout &layout = body.box.layout();
-  const Extent extent = body.phase.extent(body.box);
-  Int3 begin = layout.begin, cells = layout.cells;
-  for (int d = 0; d < body.box.dimension(); ++d) {
-    begin[d] += extent.begin[d];
-    cells[d] = std::min(extent.end[d] + 1, layout.cells[d]) - extent.begin[d];
-  }
+  const Box block = body.phase.block(body.box, 0, 1);
+  const Layout &layout = block.layout();
   std::vector<double> values{double(body.number), double(body.species)};
-  for (const Int3 &place : {begin, cells}) values.insert(values.end(), place.begin(), place.end());
+  for (const Int3 &place : {layout.begin, layout.cells}) values.insert(values.end(), place.begin(), place.end());
   values.push_back(double(body.markers.size()));
-  for_values(Box(domain_->domain_shape(), begin, cells, 0), extent.begin, body.phase,
-             [&](const double &value) { values.push_back(value); });
+  for_values(block, first_in(body.box, block), body.phase, [&](const double &value) { values.push_back(value); });
   for (const SurfaceMarker &marker : body.markers) {
     const auto numbers = marker.packed();
     values.insert(values.end(), numbers.begin(), numbers.end());
@@ -389,8 +383,8 @@ PetscErrorCode FreeBodies::find_force(Body *body) {
   if (tension) {
     constexpr double least = 1e-300;
     const int reach = std::max(CapillaryForce::reach, body->phase.tensor.rule.reach);
-    body->drawn.build(body->box, std::as_const(body->phase).fraction[0], body->phase.rows, least, reach, reach);
-    for (const Segment &s : body->drawn.all())
+    body->tension_faces.build(body->box, std::as_const(body->phase).fraction[0], body->phase.rows, least, reach, reach);
+    for (const Segment &s : body->tension_faces.all())
       for (int a = 0; a < dimension; ++a) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
   }
   if (body->phase.material.elastic()) compute_elastic_force(body->box, 1 / fluid_.density, body->phase, force);

@@ -28,8 +28,10 @@ public:
     SegmentValues force;                      ///< per mass of the fluid, on the faces forced()
     std::vector<SurfaceMarker> markers = {};  ///< of a membrane, their cells not wrapped around periodic sides
     WallFilm film = {};                       ///< the same: walls in the box
-    ActiveSegments drawn = {};                ///< with surface tension: faces that feel that or stress
-    const ActiveSegments &forced() const { return phase.material.surface_tension > 0 ? drawn : phase.tensor.stressed; }
+    ActiveSegments tension_faces = {};        ///< with surface tension: those that feel that or stress
+    const ActiveSegments &forced() const {
+      return phase.material.surface_tension > 0 ? tension_faces : phase.tensor.stressed;
+    }
   };
 
   /// `sides` must outlive this.
@@ -89,8 +91,7 @@ public:
   PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
                                   SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples);
   /// Makes phi of the phases of some species the sum over the bodies that look() or list() has seen; owned points. The
-  /// rows of the phases are known.
-  /// Collective.
+  /// rows of the phases are known. Collective.
   PetscErrorCode show_fractions(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases);
   /// The bodies of this rank as they are, without velocity.
   std::vector<BodyInBox> list() const;
@@ -108,7 +109,7 @@ public:
   /// How far spans of rows reach beyond phi != 0 of a body, in cells: layers around it and what moves in a step.
   /// `ghosts`: of the grid.
   static int rows_reach(const Material &material, int ghosts) {
-    return (material.is_membrane() ? ghosts : ExteriorLayers::layers) + 2;
+    return (material.is_membrane() ? ghosts : ExteriorLayers::layers) + OccupiedRows::beyond_ghosts;
   }
 
 private:
@@ -132,7 +133,6 @@ private:
   PetscErrorCode move_membrane(const Step &step, const Field &flow, Body *body, Field &work, long *unresolved);
   Field scratch(const Box &box, int components);
   PetscErrorCode connect_fractions();
-  Box shown_block(const BodyInBox &body) const;
 
   const Domain *domain_;
   Fluid fluid_;

@@ -102,19 +102,6 @@ std::vector<BodyInBox> FreeBodies::list() const {
   return all;
 }
 
-// What is shown of a body: its cells, and those around that its B is extended to.
-Box FreeBodies::shown_block(const BodyInBox &body) const {
-  const Layout &layout = body.box->layout();
-  const Extent extent = body.phase->extent(*body.box);
-  Int3 begin = layout.begin, cells = layout.cells;
-  for (int d = 0; d < body.box->dimension(); ++d) {
-    const int first = std::max(extent.begin[d] - ExteriorLayers::layers, 0);
-    begin[d] += first;
-    cells[d] = std::min(extent.end[d] + ExteriorLayers::layers + 1, layout.cells[d]) - first;
-  }
-  return Box(domain_->domain_shape(), begin, cells, 0);
-}
-
 PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
   const int dimension = domain_->dimension();
@@ -126,14 +113,15 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
   std::vector<const Field *> shown;
   std::vector<Box> blocks;
   std::vector<BoxExchange::NumberedBox> boxes;
-  for (const BodyInBox &body : seen) blocks.push_back(shown_block(body));
+  // Cells of bodies, and those around that B is extended to.
+  for (const BodyInBox &body : seen)
+    blocks.push_back(body.phase->block(*body.box, ExteriorLayers::layers, ExteriorLayers::layers + 1));
   for (std::size_t b = 0; b < seen.size(); ++b) {
     const BodyInBox &body = seen[b];
     const Box &block = blocks[b];
     Field &field = fields.emplace_back(block, all);
     field.fill(species, body.species);
-    Int3 first;  // in the body's box
-    for (int d = 0; d < 3; ++d) first[d] = block.layout().begin[d] - body.box->layout().begin[d];
+    const Int3 first = first_in(*body.box, block);
     const auto of_block = [&first](ConstView view) {
       view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
       return view;

@@ -136,15 +136,13 @@ namespace {
 // In a cell at the surfaces of two bodies that touch fractions may add up to more than 1.
 constexpr double full = 1.5;
 
-// The cells of a body, moved.
-Box moved_block(const DomainShape &domain, const BodyInBox &body, const Int3 &shift) {
-  const Extent extent = body.phase->extent(*body.box);
-  Int3 begin{}, cells{};
-  for (int d = 0; d < 3; ++d) {
-    begin[d] = body.box->layout().begin[d] + extent.begin[d] + shift[d];
-    cells[d] = extent.end[d] - extent.begin[d];
+bool lies_in_domain(const Box &block) {
+  bool inside = true;
+  for (int d = 0; d < block.dimension(); ++d) {
+    const int begin = block.layout().begin[d], end = begin + block.cells()[d];
+    inside = inside && (!block.is_wall(d) || (begin >= 0 && end <= block.domain_cells()[d]));
   }
-  return Box(domain, begin, cells, 0);
+  return inside;
 }
 
 }  // namespace
@@ -168,63 +166,66 @@ PetscErrorCode Solver::sum_fractions(Field *sum) {
   PetscFunctionReturn(0);
 }
 
-// As feed_bodies(). All see the same fractions: bodies of one stretch come in as far from each other as they are.
-PetscErrorCode Solver::feed_boxed(const std::vector<int> &labels) {
-  enum State { has_left, waits, comes_in };
-  std::vector<int> states(labels.size(), has_left);
-  std::vector<std::size_t> here(labels.size(), 0);  // places in the list
-  std::vector<Box> blocks;
-  std::vector<BoxExchange::NumberedBox> numbered;
+// All see the same fractions: bodies of one stretch come in as far from each other as they are.
+PetscErrorCode Solver::find_coming(const std::vector<int> &labels, std::vector<Coming> *states) {
   Field fractions;
   PetscFunctionBeginUser;
   PetscCall(sum_fractions(&fractions));
-  const std::vector<BodyInBox> all = boxed_->list();
-  std::vector<std::size_t> candidates;
-  for (std::size_t n = 0; n < labels.size(); ++n)
-    for (std::size_t b = 0; b < all.size(); ++b) {
-      if (all[b].number != labels[n]) continue;
-      const Int3 shift = feeders_->shift_of(labels[n]);
-      const Box block = moved_block(domain_->domain_shape(), all[b], shift);
-      bool inside = true;
-      for (int d = 0; d < domain_->dimension(); ++d)
-        inside = inside &&
-                 (!domain_->is_wall(d) || (block.layout().begin[d] >= 0 &&
-                                           block.layout().begin[d] + block.cells()[d] <= domain_->domain_cells()[d]));
-      states[n] = waits;
-      here[n] = b;
-      if (!inside) continue;
-      candidates.push_back(n);
-      blocks.push_back(block);
-    }
-  for (std::size_t c = 0; c < candidates.size(); ++c) numbered.push_back({&blocks[c], labels[candidates[c]]});
+  struct Candidate {
+    std::size_t which;  // of the labels
+    BodyInBox body;
+    Box block;  // where it would be
+  };
+  std::vector<Candidate> candidates;
+  states->assign(labels.size(), Coming::has_left);
+  for (const BodyInBox &body : boxed_->list()) {
+    const auto found = std::find(labels.begin(), labels.end(), body.number);
+    if (found == labels.end()) continue;
+    const std::size_t n = found - labels.begin();
+    const Box here = body.phase->block(*body.box, 0, 0);
+    Int3 begin = here.layout().begin;
+    for (int d = 0; d < 3; ++d) begin[d] += feeders_->shift_of(body.number)[d];
+    const Box block(domain_->domain_shape(), begin, here.cells(), 0);
+    (*states)[n] = Coming::waits;
+    if (lies_in_domain(block)) candidates.push_back({n, body, block});
+  }
+  std::vector<BoxExchange::NumberedBox> numbered;
+  for (const Candidate &one : candidates) numbered.push_back({&one.block, one.body.number});
   BoxExchange exchange(*domain_, 1);
   PetscCall(exchange.connect(numbered));
   PetscCall(exchange.fetch(fractions));
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Box &block = blocks[c];
-    const BodyInBox &body = all[here[candidates[c]]];
+    const auto &[n, body, block] = candidates[c];
     const Int3 first = body.phase->extent(*body.box).begin;
+    const ConstView own = body.phase->fraction[0];
     Field there(block, 1);
     exchange.copy_to_box(c, fractions, there);
     double fullest = 0;
     for_points(block.rows(), [&](int i, int j, int k) {
-      const double phi = body.phase->fraction[0](first[0] + i, first[1] + j, first[2] + k);
+      const double phi = own(first[0] + i, first[1] + j, first[2] + k);
       if (phi > BodyCells::threshold) fullest = std::max(fullest, phi + there[0](i, j, k));
     });
-    if (fullest <= full) states[candidates[c]] = comes_in;
+    if (fullest <= full) (*states)[n] = Coming::comes_in;
   }
-  const std::vector<int> own = states;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Solver::feed_boxed(const std::vector<int> &labels) {
+  std::vector<Coming> own, states;
+  PetscFunctionBeginUser;
+  PetscCall(find_coming(labels, &own));
+  states = own;
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, states.data(), static_cast<int>(states.size()), MPI_INT, MPI_MAX, domain_->comm()));
-  std::vector<std::pair<int, int>> copies;  // label of the body, that of its copy
+  std::vector<std::pair<int, int>> copies;  // of this rank: label of the body, that of its copy
   std::map<int, Int3> shifts;
   for (std::size_t n = 0; n < labels.size(); ++n) {
-    if (states[n] == waits) continue;
-    if (states[n] == comes_in) {
+    if (states[n] == Coming::waits) continue;
+    if (states[n] == Coming::comes_in) {
       shifts[labels[n]] = feeders_->shift_of(labels[n]);
       PetscCall(bodies_.add_like(*domain_, labels[n], shifts[labels[n]]));
       feeders_->come_in(labels[n], bodies_.bodies());
-      if (own[n] == comes_in) copies.emplace_back(labels[n], bodies_.bodies());
+      if (own[n] == Coming::comes_in) copies.emplace_back(labels[n], bodies_.bodies());
     }
     feeders_->forget(labels[n]);
   }

@@ -196,8 +196,11 @@ private:
   PetscErrorCode take_out_bodies(bool whole);
   PetscErrorCode take_out_boxed(const std::vector<std::size_t> &leaving);
   PetscErrorCode feed_bodies();
-  /// Of the bodies with these labels those in boxes.
+  /// The same of bodies in boxes that have left their feeders.
   PetscErrorCode feed_boxed(const std::vector<int> &labels);
+  /// What becomes of a body that has left its feeder, as far as a rank knows: all others say has_left.
+  enum class Coming : int { has_left, waits, comes_in };
+  PetscErrorCode find_coming(const std::vector<int> &labels, std::vector<Coming> *states);
   /// Solid fraction of all bodies together, on the grid.
   PetscErrorCode sum_fractions(Field *sum);
   PetscErrorCode find_responses();
