@@ -64,14 +64,6 @@ public:
                 1e-9 * bytes, 1e-9 * memory_limit());
     if (const double boxed = bytes_in_boxes(config_); boxed > 0)
       report.line("bodies in boxes (estimate)", "%.4g GB per rank, part of the memory", 1e-9 * boxed / ranks);
-    bool crowded = false;
-    for (std::size_t s = 0; s < config_.species.size(); ++s)
-      crowded = crowded || (config_.separates(config_.species[s]) && !config_.boxes(config_.species[s]) &&
-                            config_.places[s].count > 1);
-    if (crowded)
-      report.line("phases (estimate)",
-                  "%d, %zu for the species, %.4g GB per rank for each more that keeps bodies apart",
-                  expected_phases(config_), config_.species.size(), 1e-9 * bytes_per_phase(config_, parts));
   }
 
   void boxes(Report &report, const Int3 &parts) const {

@@ -124,7 +124,6 @@ struct Config {
   std::vector<SpeciesSpec> species;
   bool body_series = true;            ///< bodies are named, followed and measured
   std::vector<Places> places;         ///< of the bodies of every species, walls and posts everywhere; by validate()
-  std::vector<int> colours;           ///< phases that the bodies of every species are expected to need; by validate()
   std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate()
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
@@ -144,20 +143,11 @@ struct Config {
       if (spec.name == phase.species) return &spec;
     return nullptr;
   }
-  /// Whether bodies of a species that come near get phases of their own: needs labels and a sharp interface.
-  bool separates(const SpeciesSpec &spec) const {
-    return spec.law != Law::rigid && spec.contact.value_or(Contact::separate) == Contact::separate && body_series &&
-           method.interface == InterfaceScheme::plic;
-  }
-  /// Whether several free bodies of a species lie in boxes of their own (physics/free_bodies.hpp), rather than in
-  /// phases of the grid.
-  bool boxes(const SpeciesSpec &spec) const {
-    const Material material = spec.material();
-    const bool has_box = spec.shape == Shape::sphere || spec.shape == Shape::biconcave ||
-                         spec.shape == Shape::ellipsoid || spec.shape == Shape::state;
-    return separates(spec) && method.boxes_bodies() && has_box && !material.attached &&
-           material.stretch_force.force == 0;
-  }
+  /// Whether several bodies of a species lie in boxes of their own (physics/free_bodies.hpp), where they stay separate;
+  /// else they share a phase of the grid, where they merge.
+  bool boxes(const SpeciesSpec &spec) const { return spec.contact != Contact::merge && why_no_boxes(spec).empty(); }
+  /// What the bodies of a species would need to lie in boxes; empty if nothing.
+  std::string why_no_boxes(const SpeciesSpec &spec) const;
   /// Whether the bodies of a species do so: one alone stays on the grid. After `places` are known.
   bool lies_in_boxes(std::size_t which) const {
     return boxes(species[which]) && (places[which].count > 1 || has_feeders(sides));

@@ -13,7 +13,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -25,7 +24,7 @@ int tensor_fields(const Config &config) { return static_cast<int>(tensor_compone
 
 /// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
 /// the output.
-double phase_fields(const Config &config, bool carries_tensor = true) {
+double phase_fields(const Config &config, bool carries_tensor) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
 }
 
@@ -92,8 +91,7 @@ double fields(const Config &config) {
     // or a force of their own the fraction of the step and at its end.
     const SpeciesSpec &spec = config.species[s];
     const bool felt = spec.material().viscosity > 0 || spec.material().body_force.acts();
-    sum += config.lies_in_boxes(s) ? 2 + 2 * felt + tensor_fields(config)
-                                    : config.colours[s] * phase_fields(config, carries);
+    sum += config.lies_in_boxes(s) ? 2 + 2 * felt + tensor_fields(config) : phase_fields(config, carries);
   }
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
@@ -134,18 +132,12 @@ std::string too_little(int ranks, double needed, double limit, double share) {
 
 }  // namespace
 
-int expected_phases(const Config &config) { return std::accumulate(config.colours.begin(), config.colours.end(), 0); }
-
 double bytes_per_rank(const Config &config, const Int3 &parts) {
   const double ranks = double(parts[0]) * parts[1] * parts[2];
   return sizeof(double) * (fields(config) * ghosted_cells(config, parts) + boxed_values(config) / ranks);
 }
 
 double bytes_in_boxes(const Config &config) { return sizeof(double) * boxed_values(config); }
-
-double bytes_per_phase(const Config &config, const Int3 &parts) {
-  return sizeof(double) * phase_fields(config) * ghosted_cells(config, parts);
-}
 
 double memory_limit(const std::string &root) {
   double limit = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));

@@ -6,12 +6,8 @@
 
 namespace eulastic {
 
-/// Phases that a run will have: one per species, and more where bodies of a species are kept apart, by their places.
-int expected_phases(const Config &config);
-/// Estimate of the bytes in fields of the largest of `parts` ranks, with expected_phases().
+/// Estimate of the bytes in fields of the largest of `parts` ranks.
 double bytes_per_rank(const Config &config, const Int3 &parts);
-/// Of one more phase.
-double bytes_per_phase(const Config &config, const Int3 &parts);
 /// Of all bodies that lie in boxes of their own, of all ranks; bytes_per_rank() counts a share of them.
 double bytes_in_boxes(const Config &config);
 

@@ -172,7 +172,6 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
     (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
         sweeps;
   }
-  summary.phases = static_cast<long>(state.phases.size());
   summary.strain_forgotten = static_cast<long>(state.forgotten);
   const Measured &measured = now_.measured;
   summary.divergence_rms = measured.flow.divergence_rms;

@@ -2,7 +2,6 @@
 
 #include "app/checkpoint_range.hpp"
 #include "base/deliver.hpp"
-#include "bodies/colours.hpp"
 #include "diagnostics/state_hash.hpp"
 #include "grid/domain.hpp"
 #include "io/checksum.hpp"
@@ -28,8 +27,7 @@ std::vector<CheckpointField> fields_of(Solver &solver) {
     fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
   for (Phase &phase : state.phases) {
     if (phase.boxed) continue;
-    // No species has a dot in its name.
-    const std::string species = "_" + phase.species + (phase.colour > 0 ? "." + std::to_string(phase.colour) : "");
+    const std::string species = "_" + phase.species;
     fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
     for (int c = 0; c < phase.tensor.field.count(); ++c) {
       const TensorComponent &component = phase.tensor.components()[c];
@@ -79,7 +77,6 @@ CheckpointNumbers numbers_of(Solver &solver) {
   if (OutletLoads *loads = solver.loads()) reals["outlet_loads"] = loads->numbers();
   if (s.pressure_before) reals["pressure_interval"] = {s.pressure_interval};
   if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
-  if (const std::vector<long> colours = species_of_colours(s.phases); !colours.empty()) integers["colours"] = colours;
   return numbers;
 }
 
@@ -316,9 +313,8 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Domain &domain = solver->domain();
-  std::vector<long> colours, forgotten, like;
+  std::vector<long> forgotten, like;
   PetscFunctionBeginUser;
-  PetscCall(file->read_if_there("colours", &colours));
   PetscCall(file->read_if_there("forgotten", &forgotten));
   if (solver->feeders()) {
     PetscCall(file->read_if_there("bodies_like", &like));
@@ -327,8 +323,6 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
     solver->bodies().set_like(like);
   }
   PetscCall(require_range(domain, path, find_absurd_count("forgotten", forgotten)));
-  const bool fits = set_colours(domain, colours, &solver->state().phases);
-  PetscCall(fail_together(domain.comm(), fits ? "" : path + ": colours is of another scene"));
   CheckpointNumbers expected = numbers_of(*solver, *position);
   if (solver->keeps_rigid_loads()) expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
   CheckpointNumbers numbers = expected;

@@ -5,7 +5,6 @@
 #include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "base/events.hpp"
-#include "bodies/contact.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/rigid.hpp"
@@ -23,29 +22,6 @@ PetscErrorCode settle_bodies(const Domain &domain, const State &state, BodyTrack
   PetscFunctionBeginUser;
   for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(domain, state.phases));
   bodies->wrap(domain);
-  PetscFunctionReturn(0);
-}
-
-// Bodies that are near at the start get phases of their own; bodies of simple shapes are then whole, also where the
-// larger fraction had a cell for itself. `places`: those that come near this rank; `colours`: the first phase of the
-// species, others are added.
-PetscErrorCode separate_places(const Domain &domain, GhostExchange &exchange, const SpeciesSpec &species,
-                               const Places &places, int first_label, bool refill, std::vector<Phase> *colours) {
-  PetscFunctionBeginUser;
-  std::map<int, int> colour;
-  std::vector<int> also;  // of a body that is nowhere the fullest one no cell here has the label
-  if (refill)
-    for (const NumberedPlace &place : places.known) also.push_back(first_label + place.index);
-  Separation result;
-  for (int round = 0; round < most_colours; ++round) {
-    if (refill)  // B of a file may differ from I anywhere
-      for (Phase &phase : *colours) PetscCall(phase.rows.find(domain, phase.fraction[0]));
-    PetscCall(separate_bodies(domain, exchange, also, colours, &result));
-    PetscCall(fail_together(domain.comm(), result.crowded));
-    if (result.changed.empty() || !refill) PetscFunctionReturn(0);
-    for (const BodyMove &move : result.moves) colour[move.label - first_label] = move.to;
-    refill_phases(domain, species, places, first_label, colour, colours);  // whole bodies may be near others
-  }
   PetscFunctionReturn(0);
 }
 
@@ -85,22 +61,18 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
   PetscCall(file.read_flow(&state));
   int next_label = 1;
   auto rigid = std::make_unique<RigidBodies>(domain, solver->exchange());
-  std::vector<Phase> more;  // colours come after the first phases of all species
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
     Places placed = config.places[s], near;
     PetscCall(bring_near(domain.comm(), domain, species, placed, &near));
-    std::vector<Phase> colours(1);
-    Phase &phase = colours[0];
-    if (config.boxes(species) && (placed.count > 1 || has_feeders(config.sides)) && !file.holds(species)) {
+    Phase phase;
+    if (config.lies_in_boxes(s) && !file.holds(species)) {
       PetscCall(box_places(domain, species, near, {static_cast<int>(s), next_label}, solver, &phase));
     } else {
       PetscCall(fill_phase(domain, species, near, next_label, &phase));
       if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
       PetscCall(file.read_phase(species, next_label, &phase, &placed));
-      phase.boxed = config.boxes(species) && (placed.count > 1 || has_feeders(config.sides));
-      phase.separate = !phase.boxed && config.separates(species) && (placed.count > 1 || has_feeders(config.sides));
-      PetscCall(separate_places(domain, solver->exchange(), species, near, next_label, !file.holds(species), &colours));
+      phase.boxed = config.boxes(species) && (placed.count > 1 || has_feeders(config.sides));  // those of the file, too
     }
     if (species.law == Law::rigid) {
       std::string wrong;
@@ -110,13 +82,11 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
       PetscCall(fail_together(domain.comm(), wrong));
     }
     next_label += placed.count;
-    state.phases.push_back(std::move(colours[0]));
-    for (std::size_t c = 1; c < colours.size(); ++c) more.push_back(std::move(colours[c]));
+    state.phases.push_back(std::move(phase));
     solver->bodies().add_phase(domain, config.body_series ? placed : Places());
     if (!config.body_series) state.phases.back().label = Field();
   }
   PetscCall(solver->set_rigid(std::move(rigid)));
-  for (Phase &phase : more) state.phases.push_back(std::move(phase));
   if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(domain, state, &solver->bodies()));
   for (std::size_t s = 0; s < config.species.size(); ++s)
     if (state.phases[s].boxed && file.holds(config.species[s])) PetscCall(solver->box_bodies(static_cast<int>(s)));

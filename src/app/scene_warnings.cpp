@@ -49,12 +49,25 @@ void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) 
   }
 }
 
+// Where the interface stays sharp one expects that bodies stay separate.
+void add_merging_warnings(const Config &config, std::vector<std::string> *warnings) {
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
+    const std::string needed = config.why_no_boxes(spec);
+    if (needed.empty() || spec.contact || config.method.interface != InterfaceScheme::plic) continue;
+    if (spec.law == Law::rigid || spec.material().attached || config.places[s].count < 2) continue;
+    warnings->push_back("bodies of " + spec.name + " merge where they meet: boxes of their own, in which they stay " +
+                        "separate, need " + needed + "; -" + spec.name + "_contact merge says that they may");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> scene_warnings(const Config &config) {
   std::vector<std::string> warnings = coarse_surface_warnings(config);
   add_attachment_warnings(config, &warnings);
   add_lag_warnings(config, &warnings);
+  add_merging_warnings(config, &warnings);
   for (std::string &warning : lumen_warnings(config)) warnings.push_back(std::move(warning));
   return warnings;
 }

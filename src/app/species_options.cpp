@@ -134,10 +134,12 @@ void add_body_force(Rows &rows, SpeciesSpec &spec) {
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {
   Option &row = rows.add("contact", "",
-                         "bodies of this species that touch stay separate, each in memory of its own "
-                         "where there are neighbours, or merge as drops do");
+                         "bodies of this species that touch stay separate, each in a box of cells of its own, or "
+                         "merge as drops do");
   row.accepted = "one of separate, merge";
-  row.default_note = "separate; merge with -interface_scheme weno5 or -body_series false";
+  row.default_note =
+      "separate; merge where bodies have no boxes: with -method classic, -body_series false, of cylinders, of bodies "
+      "attached to walls";
   row.read = [&spec](const std::string &value) {
     int index = 0;
     std::string wrong = read_choice(value, contact_names, &index);

@@ -5,7 +5,6 @@
 #include "app/rigid_paths.hpp"
 #include "app/voxels.hpp"
 #include "base/rank_zero.hpp"
-#include "bodies/expected_colours.hpp"
 #include "bodies/leaving.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_sides.hpp"
@@ -217,9 +216,9 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
 }
 
 std::string check_contact(const Config &config, const SpeciesSpec &spec) {
-  if (spec.contact != Contact::separate || config.separates(spec)) return {};
-  return "-" + spec.name + "_contact: separate needs " +
-         (config.body_series ? "-interface_scheme plic" : "-body_series true") + "; accepted here: merge";
+  if (spec.contact != Contact::separate || spec.placement == Placement::one) return {};
+  const std::string needed = config.why_no_boxes(spec);
+  return needed.empty() ? needed : "-" + spec.name + "_contact: separate needs " + needed + "; accepted here: merge";
 }
 
 bool is_random(const SpeciesSpec &spec) { return spec.placement == Placement::random; }
@@ -242,8 +241,6 @@ std::string place_species(std::size_t which, const SolidBodies &solids, const Ke
     return (spec.placement == Placement::list ? "-" + spec.name + "_positions: " : "-species " + spec.name + ": ") +
            wrong;
   }
-  config->colours.push_back(
-      config->separates(spec) && !config->boxes(spec) ? expected_colours(spec, config->grid, places) : 1);
   config->places.push_back(std::move(places));
   return {};
 }
@@ -256,10 +253,9 @@ std::string place_all(const SolidBodies &solids, Config *config) {
   (void)MPI_Comm_rank(run_communicator(), &rank);
   (void)MPI_Comm_size(run_communicator(), &ranks);
   config->places.clear();
-  config->colours.clear();
   for (std::size_t s = 0; s < species.size(); ++s) {
     const bool all = is_known_everywhere(species[s]) || std::any_of(species.begin() + s, species.end(), is_random);
-    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks, expected_colours_of};
+    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks};
     if (std::string wrong = place_species(s, solids, kept, config); !wrong.empty()) return wrong;
   }
   for (std::size_t s = 0; s < species.size(); ++s)

@@ -22,7 +22,6 @@ enum class Verb {
   left_cauchy_green,
   exterior,
   bodies,
-  contact,
   sums,
   write,
   count

@@ -1,6 +1,6 @@
 #include "bodies/body_copy.hpp"
 
-#include "bodies/near_bodies.hpp"
+#include "bodies/labels.hpp"
 #include "field/sides.hpp"
 #include "grid/domain.hpp"
 
@@ -43,21 +43,17 @@ int whose(const Phase &phase, int dimension, const Int3 &c, const std::vector<in
 }
 
 template <class Visit>
-void for_owned_cells(const Box &box, const BodyCopy &body, const Int3 &shift, const Int3 &reach, const Visit &visit) {
+void for_owned_cells(const Box &box, const BodyCopy &body, const Int3 &shift, const Visit &visit) {
   const Int3 &begin = box.layout().begin, &n = box.cells();
-  for (const BodyCopy::Cell &cell : body.cells)
-    for (int k = -reach[2]; k <= reach[2]; ++k)
-      for (int j = -reach[1]; j <= reach[1]; ++j)
-        for (int i = -reach[0]; i <= reach[0]; ++i) {
-          const Int3 away{i, j, k};
-          Int3 local;
-          bool own = true;
-          for (int d = 0; d < 3; ++d) {
-            local[d] = box.image(d, cell.at[d] + shift[d] + away[d]) - begin[d];
-            own = own && local[d] >= 0 && local[d] < n[d];
-          }
-          if (own) visit(cell, local);
-        }
+  for (const BodyCopy::Cell &cell : body.cells) {
+    Int3 local;
+    bool own = true;
+    for (int d = 0; d < 3; ++d) {
+      local[d] = box.image(d, cell.at[d] + shift[d]) - begin[d];
+      own = own && local[d] >= 0 && local[d] < n[d];
+    }
+    if (own) visit(cell, local);
+  }
 }
 
 }  // namespace
@@ -110,30 +106,20 @@ PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode find_room(const Domain &domain, const BodyCopy &body, const Int3 &shift, int reach,
-                         const std::vector<Phase> &phases, BodyRoom *room) {
-  std::vector<double> found(phases.size() + 1, 0);  // whether near; the fullest cell
-  Int3 around{reach, reach, domain.dimension() == 3 ? reach : 0};
+PetscErrorCode find_fullest(const Domain &domain, const BodyCopy &body, const Int3 &shift, ConstView filled,
+                            double *fullest) {
   PetscFunctionBeginUser;
-  for_owned_cells(domain, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
-    double sum = cell.phi;
-    for (const Phase &phase : phases) sum += phase.fraction[0](at[0], at[1], at[2]);
-    if (cell.phi > 0) found.back() = std::max(found.back(), sum);
+  *fullest = 0;
+  for_owned_cells(domain, body, shift, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+    if (cell.phi > 0) *fullest = std::max(*fullest, cell.phi + filled(at[0], at[1], at[2]));
   });
-  for (std::size_t p = 0; p < phases.size(); ++p)
-    for_owned_cells(domain, body, shift, around, [&](const BodyCopy::Cell &, const Int3 &at) {
-      if (phases[p].fraction[0](at[0], at[1], at[2]) > BodyCells::threshold) found[p] = 1;
-    });
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_MAX, domain.comm()));
-  room->fullest = found.back();
-  room->near.assign(found.begin(), found.end() - 1);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fullest, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
   PetscFunctionReturn(0);
 }
 
 void put_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
   const Int3 &begin = box.layout().begin;
-  for_owned_cells(box, body, shift, {}, [&](const BodyCopy::Cell &cell, const Int3 &at) {
+  for_owned_cells(box, body, shift, [&](const BodyCopy::Cell &cell, const Int3 &at) {
     if (!(cell.phi > 0)) return;
     phase->fraction[0](at[0], at[1], at[2]) = cell.phi;
     phase->label[0](at[0], at[1], at[2]) = label;

@@ -27,14 +27,9 @@ struct BodyCopy {
 PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const std::vector<int> &labels,
                            std::vector<Phase> *phases, std::vector<BodyCopy> *bodies);
 
-/// What lies where a body is to be put.
-struct BodyRoom {
-  std::vector<int> near;  ///< whether each phase has a body within `reach` cells of it
-  double fullest = 0;     ///< largest sum of its phi and that of all phases in a cell
-};
-/// Collective: `body` moved by `shift` cells.
-PetscErrorCode find_room(const Domain &domain, const BodyCopy &body, const Int3 &shift, int reach,
-                         const std::vector<Phase> &phases, BodyRoom *room);
+/// Collective: the largest sum, in a cell of `body` moved by `shift` cells, of its phi and what fills the cell already.
+PetscErrorCode find_fullest(const Domain &domain, const BodyCopy &body, const Int3 &shift, ConstView filled,
+                            double *fullest);
 
 /// Writes owned phi, labels and B of `body`, moved by `shift` cells and called `label`. Ghosts, B around it and rows
 /// are the caller's.

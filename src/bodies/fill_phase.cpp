@@ -32,17 +32,6 @@ void add_body(const Box &box, const PlacedBody &body, double name, View fraction
         in_parallel(row_parts(box), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
 }
 
-// Body b of the species goes to *phase_of(b).
-template <class PhaseOf>
-void add_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, PhaseOf phase_of) {
-  for (const NumberedPlace &place : places.known) {
-    if (!is_near(domain, domain.rank(), surface, place)) continue;
-    Phase *phase = phase_of(place.index);
-    add_body(domain, PlacedBody(surface, domain.domain_shape(), place), first_label + place.index, phase->fraction[0],
-             phase->label[0]);
-  }
-}
-
 // The points of a staggering that have a cell of the body beside them: f(local point, the same global and unwrapped).
 template <class F>
 void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at, const F &f) {
@@ -72,9 +61,7 @@ double turned_stretch(const SpeciesSpec &spec, const Rotation &R, const TensorCo
 
 // B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
 // that has a part of them.
-template <class PhaseOf>
-void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
-                  PhaseOf phase_of) {
+void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase) {
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
   const Surface surface(spec, domain.dimension());
@@ -82,12 +69,11 @@ void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &p
     if (place.orientation == Real3{} || !is_near(domain, domain.rank(), surface, place)) continue;
     const Rotation R = rotation(place.orientation);
     const PlacedBody body(surface, domain.domain_shape(), place);
-    Phase &phase = *phase_of(place.index);
-    for (int c = 0; c < phase.tensor.field.count(); ++c) {
-      const TensorComponent &component = phase.tensor.components()[c];
+    for (int c = 0; c < phase->tensor.field.count(); ++c) {
+      const TensorComponent &component = phase->tensor.components()[c];
       const auto [x, y, at] = component;
       const double turned = turned_stretch(spec, R, component);
-      const View B = phase.tensor.field[c], label = phase.label[0];
+      const View B = phase->tensor.field[c], label = phase->label[0];
       for_points_of(domain, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
         double &value = B(p[0], p[1], p[2]);
         if (!component.on_edge()) {
@@ -112,7 +98,10 @@ void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &p
 void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase) {
   VerbScope scope(Verb::bodies);
   phase->empty(domain, true);
-  add_bodies(domain, surface, places, first_label, [phase](int) { return phase; });
+  for (const NumberedPlace &place : places.known)
+    if (is_near(domain, domain.rank(), surface, place))
+      add_body(domain, PlacedBody(surface, domain.domain_shape(), place), first_label + place.index, phase->fraction[0],
+               phase->label[0]);
 }
 
 void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase) {
@@ -136,7 +125,7 @@ PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const P
   phase->material = spec.material();
   fill_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase);
   stretch_phase(domain, spec, phase);
-  turn_stretch(domain, spec, places, first_label, [phase](int) { return phase; });
+  turn_stretch(domain, spec, places, first_label, phase);
   PetscFunctionReturn(0);
 }
 
@@ -185,18 +174,6 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
         }
   }
   return phase;
-}
-
-void refill_phases(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
-                   const std::map<int, int> &colour, std::vector<Phase> *phases) {
-  for (Phase &phase : *phases) phase.empty(domain, true);
-  const auto phase_of = [&](int b) {
-    const auto found = colour.find(b);
-    return &(*phases)[found == colour.end() ? 0 : found->second];
-  };
-  add_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase_of);
-  for (Phase &phase : *phases) stretch_phase(domain, spec, &phase);
-  turn_stretch(domain, spec, places, first_label, phase_of);
 }
 
 }  // namespace eulastic

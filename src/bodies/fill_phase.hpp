@@ -7,8 +7,6 @@
 #include "field/phase.hpp"
 #include "grid/domain.hpp"
 
-#include <map>
-
 namespace eulastic {
 
 /// Allocates `phase` and fills its owned cells with the bodies of `places` that come near them, which must be known;
@@ -26,11 +24,6 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
 
 /// Of bodies that carry no B: the fraction and the label.
 void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase);
-
-/// Fills phi, B and label of phases that fill_phase() has made anew: body b goes to phases[colour[b]], or to the
-/// first.
-void refill_phases(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
-                   const std::map<int, int> &colour, std::vector<Phase> *phases);
 
 /// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere and in bodies without modulus.
 void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase);

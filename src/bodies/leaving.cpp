@@ -1,6 +1,6 @@
 #include "bodies/leaving.hpp"
 
-#include "bodies/near_bodies.hpp"
+#include "bodies/labels.hpp"
 
 #include <algorithm>
 

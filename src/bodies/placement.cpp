@@ -87,7 +87,7 @@ public:
     if (grid_.cells[2] == 1) place.centre[2] = grid_.length[2] / 2;
     const std::string reason = why_not(spec_, surface_, grid_, place);
     if (!reason.empty()) return places_.count > 1 ? "body " + std::to_string(index + 1) + ": " + reason : reason;
-    if (own_.has(index) || index < kept_.first) places_.known.push_back({place, index});
+    if (own_.has(index)) places_.known.push_back({place, index});
     return {};
   }
   std::string add_only(const BodyPlace &place) {

@@ -34,9 +34,9 @@ struct Places {
   void share_among(int rank, int ranks);
 };
 
-/// Which bodies are kept: those that a rank has of all, and the first few; if nothing is said, all.
+/// Which bodies are kept: those that a rank has of all; if nothing is said, all.
 struct KeptBodies {
-  int rank = 0, ranks = 1, first = 0;
+  int rank = 0, ranks = 1;
 };
 
 /// Finds all bodies of a species, one after the other, and keeps some in `places`. Returns an empty string, or

@@ -20,7 +20,7 @@ constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Sh
 /// Unless it is said.
 constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
 enum class Placement { one, list, lattice, random };
-/// Of bodies of one species; see bodies/contact.hpp.
+/// Of bodies of one species: each in a box of its own, or all in one phase of the grid.
 enum class Contact { separate, merge };
 
 /// One body from a file: a volume of voxels, or a closed surface.
@@ -52,7 +52,7 @@ struct SpeciesSpec {
   StretchForce stretch_force{};     ///< Law::membrane
   RigidMotion motion;               ///< Law::rigid
   std::optional<bool> attached;     ///< default by shape: is_attached()
-  std::optional<Contact> contact;   ///< default by method: Config::separates()
+  std::optional<Contact> contact;   ///< default: Config::boxes()
   Real3 initial_stretch{1, 1, 1};   ///< B = diag(l^2), turned with the body; the shape is given in the stretched state
   Placement placement = Placement::one;
   Real3 centre{};

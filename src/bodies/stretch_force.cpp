@@ -7,33 +7,9 @@
 #include <algorithm>
 
 namespace eulastic {
-namespace {
-
-// From the volumes of a body in columns: 1 at the high end until `part` of it is reached, -1 at the low end, less in
-// the columns where that is; over that volume.
-std::vector<double> pull_of(const std::vector<double> &volumes, double part) {
-  double all = 0;
-  for (const double volume : volumes) all += volume;
-  std::vector<double> pull(volumes.size(), 0.0);
-  const double target = part * all;
-  const int n = static_cast<int>(volumes.size());
-  for (const int sign : {1, -1}) {
-    double left = target;
-    for (int c = 0; c < n && left > 0; ++c) {
-      const int column = sign > 0 ? n - 1 - c : c;
-      const double here = volumes[column], taken = std::min(here, left);
-      pull[column] += here > 0 ? sign * (taken / here) / target : 0;
-      left -= taken;
-    }
-  }
-  return pull;
-}
-
-}  // namespace
-
 bool StretchForces::exist(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(),
-                     [](const Phase &phase) { return phase.material.stretch_force.force > 0; });
+                     [](const Phase &phase) { return !phase.boxed && phase.material.stretch_force.force > 0; });
 }
 
 // visit(phase, slot of the body, column, i, j, k) for owned cells of bodies that are pulled.
@@ -62,39 +38,40 @@ PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase
   near_ = references;
   const int columns = domain.domain_cells()[0];
   BodySums sums(near_.size(), columns);
-  std::vector<double> part(near_.size(), 0), owned, volumes(near_.size() * columns);
+  std::vector<StretchForce> forces(near_.size());
+  std::vector<double> owned, volumes(near_.size() * columns);
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
     sums.add(body, column, phase.fraction[0](i, j, k));
-    part[body] = phase.material.stretch_force.volume;
+    forces[body] = phase.material.stretch_force;
   });
   PetscCall(sums.reduce(owners));
   for (int b = 0; b < owners.owned().size(); ++b)
-    for (int c = 0; c < columns; ++c) owned.push_back(sums.value(b, c));
+    for (int c = 0; c < columns; ++c) owned.push_back(sums.value(b, c) * domain.cell_volume());
   PetscCall(owners.bring(columns, owned, &volumes));
   pull_.assign(near_.size(), {});
   for (std::size_t b = 0; b < near_.size(); ++b) {
-    if (part[b] == 0) continue;
+    if (forces[b].force == 0) continue;
     const auto first = volumes.begin() + static_cast<std::ptrdiff_t>(b * columns);
-    pull_[b] = pull_of({first, first + columns}, part[b]);
-    for (double &pull : pull_[b]) pull /= domain.cell_volume();
+    pull_[b] = forces[b].per_volume({first, first + columns});
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale,
-                                  Field &scratch, Field &rate) const {
+PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
+                                  const std::vector<BoxExchange::Target> &targets) const {
   PetscFunctionBeginUser;
   scratch.fill(0, 0);
   const View force = scratch[0];
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
-    force(i, j, k) += phase.material.stretch_force.force * pull_[body][column] * phase.fraction[0](i, j, k);
+    force(i, j, k) += pull_[body][column] * phase.fraction[0](i, j, k);
   });
   PetscCall(exchange.update_ghosts(scratch, 1));
-  for (const Segment &row : domain_->rows()) {
-    const double *f = force.row(row.j, row.k);
-    double *out = rate[0].row(row.j, row.k);
-    for (int i = row.i_begin; i < row.i_end; ++i) out[i] += 0.5 * scale * (f[i - 1] + f[i]);
-  }
+  for (const auto &[field, factor] : targets)
+    for (const Segment &row : domain_->rows()) {
+      const double *f = force.row(row.j, row.k);
+      double *out = (*field)[0].row(row.j, row.k);
+      for (int i = row.i_begin; i < row.i_end; ++i) out[i] += 0.5 * factor * (f[i - 1] + f[i]);
+    }
   PetscFunctionReturn(0);
 }
 
@@ -103,7 +80,7 @@ PetscErrorCode StretchForces::power(const std::vector<Phase> &phases, const Fiel
   ExactSums sum(1);
   const ConstView v = velocity[0];
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
-    const double force = phase.material.stretch_force.force * pull_[body][column] * phase.fraction[0](i, j, k);
+    const double force = pull_[body][column] * phase.fraction[0](i, j, k);
     sum.add(0, 0.5 * force * (v(i, j, k) + v(i + 1, j, k)));
   });
   PetscCall(sum.reduce(domain_->comm(), power));

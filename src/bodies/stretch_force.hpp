@@ -1,8 +1,10 @@
-// -NAME_stretch_force: both ends of a body are pulled apart along x, as optical tweezers do; docs/method.md, (27a).
+// -NAME_stretch_force on the labelled bodies of a grid: both ends of a body are pulled apart along x, as optical
+// tweezers do; docs/method.md, (27a).
 #pragma once
 
 #include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
+#include "field/box_exchange.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "grid/domain.hpp"
@@ -11,16 +13,16 @@ namespace eulastic {
 
 class StretchForces {
 public:
-  /// Whether any phase is pulled.
+  /// Whether bodies of any phase on the grid are pulled.
   static bool exist(const std::vector<Phase> &phases);
 
   /// Finds the ends of the bodies that are here; `owners` stays, `references`: BodyTracker::connect. Exact sums, one
   /// per cell along x and body. Collective.
   PetscErrorCode find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
                       const std::vector<Int3> &references);
-  /// rate += scale times the force per volume at owned faces. `scratch`: a field.
-  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, double scale, Field &scratch,
-                     Field &rate) const;
+  /// Adds the force per volume at owned faces, to each target as many times as it says. `scratch`: a field.
+  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
+                     const std::vector<BoxExchange::Target> &targets) const;
   /// What they do on the flow; one ghost of the velocity. Collective.
   PetscErrorCode power(const std::vector<Phase> &phases, const Field &velocity, double *power) const;
 
@@ -31,7 +33,7 @@ private:
   const Domain *domain_ = nullptr;
   const BodyOwners *owners_ = nullptr;
   std::vector<Int3> near_;                 ///< references of bodies that are here
-  std::vector<std::vector<double>> pull_;  ///< of these, by column of cells across x: w_+ - w_- over a V
+  std::vector<std::vector<double>> pull_;  ///< of these, by column of cells across x: force per volume
 };
 
 }  // namespace eulastic

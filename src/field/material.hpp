@@ -4,16 +4,22 @@
 #include "field/body_force.hpp"
 #include "kernels/membrane_law.hpp"
 
+#include <vector>
+
 namespace eulastic {
 
 /// red_cell: of options alone, a membrane with the numbers of a red blood cell.
 enum class Law { neo_hookean, mooney_rivlin, membrane, red_cell, rigid };
 using kernels::Membrane;
 
-/// Pulls both ends of a body apart along x, as optical tweezers do (bodies/stretch_force.hpp).
+/// Pulls both ends of a body apart along x, as optical tweezers do; docs/method.md, (27a).
 struct StretchForce {
   double force = 0;      ///< on each end, outwards; 2-D: per depth
   double volume = 0.02;  ///< of the body, the part at each end
+
+  /// From the volumes of a body in columns of cells across x: the force along x in each column, per volume of it. It
+  /// acts on the columns at the high end, and against x on those at the low end, until `volume` of the body is reached.
+  std::vector<double> per_volume(const std::vector<double> &volumes) const;
 };
 
 /// Incompressible hyperelastic solid with the strain energy W = c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2 per volume, I

@@ -53,7 +53,6 @@ Int3 first_in(const Box &box, const Box &block) {
 void Phase::copy_from(const Phase &other) {
   species = other.species;
   material = other.material;
-  colour = other.colour;
   boxed = other.boxed;
   fraction.copy_from(other.fraction);
   tensor.field.copy_from(other.tensor.field);

@@ -1,6 +1,6 @@
-// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one,
-// and one more for every "colour" that its bodies need to be kept apart (bodies/contact.hpp). Where its bodies lie in
-// boxes of their own (physics/free_bodies.hpp), each of them is a phase, and that of the species is empty.
+// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one on
+// the grid. Where its bodies lie in boxes of their own (physics/free_bodies.hpp), each of them is a phase, and that of
+// the species is empty.
 #pragma once
 
 #include "field/carried_tensor.hpp"
@@ -24,13 +24,11 @@ struct Extent {
 struct Phase {
   std::string species;  ///< name of the species it belongs to
   Material material;
-  int colour = 0;         ///< 0: the first phase of the species; the others come after the first ones of all species
-  bool separate = false;  ///< bodies that come near get phases of their own; needs labels
-  bool boxed = false;     ///< its bodies lie in boxes of their own
-  Field fraction;         ///< phi, one centred field, 0 ... 1
-  OccupiedRows rows;      ///< of phi; once they are known the tensor is I in all others
-  CarriedTensor tensor;   ///< B
-  Field label;            ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+  bool boxed = false;    ///< its bodies lie in boxes of their own
+  Field fraction;        ///< phi, one centred field, 0 ... 1
+  OccupiedRows rows;     ///< of phi; once they are known the tensor is I in all others
+  CarriedTensor tensor;  ///< B
+  Field label;           ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
 
   /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (Field::at_rest).
   void empty(const Box &box, bool labels);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char *kind = "eulastic checkpoint";
-constexpr long format = 4;  // raised whenever a file means something else
+constexpr long format = 5;  // raised whenever a file means something else
 
 // Those of rank 0, which alone knows all bodies.
 template <class T>

@@ -30,85 +30,37 @@ void SnapshotFields::centre_velocity(const Field &velocity) {
   }
 }
 
-// One phase per species.
-SnapshotFields::Phases SnapshotFields::by_species(const SnapshotSelection &selection,
-                                                  const std::vector<Phase> &phases) {
-  Phases species;
-  for (const Phase &first : phases) {
-    if (first.colour > 0) continue;
-    Phases colours{&first};
-    for (const Phase &phase : phases)
-      if (phase.colour > 0 && phase.species == first.species) colours.push_back(&phase);
-    species.push_back(&first);
-    if (colours.size() == 1) continue;
-    Phase &merged = merged_[first.species];
-    merge(selection, colours, &merged);
-    species.back() = &merged;
-  }
-  return species;
-}
-
-// phi is the sum; B and the label are those of the colour that fills most of the point, the first of equals.
-void SnapshotFields::merge(const SnapshotSelection &selection, const Phases &colours, Phase *merged) {
-  merged->species = colours[0]->species;
-  merged->material = colours[0]->material;
-  merged->fraction.copy_from(colours[0]->fraction);
-  for (std::size_t c = 1; c < colours.size(); ++c) {
-    const double *more = colours[c]->fraction.data();
-    double *sum = merged->fraction.data();
-    for (std::ptrdiff_t n = 0; n < box_->layout().size; ++n) sum[n] += more[n];
-  }
-  const auto fullest = [&](const TensorComponent &at, int i, int j, int k) {
-    return *std::max_element(colours.begin(), colours.end(), [&](const Phase *p, const Phase *q) {
-      return at_component(p->fraction[0], at, i, j, k) < at_component(q->fraction[0], at, i, j, k);
-    });
-  };
-  if (selection.body) {
-    merged->label.copy_from(colours[0]->label);
-    for_points(box_->rows(), [&](int i, int j, int k) {
-      merged->label[0](i, j, k) = fullest({0, 0}, i, j, k)->label[0](i, j, k);
-    });
-  }
-  if (!selection.left_cauchy_green) return;
-  merged->tensor.centred = colours[0]->tensor.centred;
-  merged->tensor.field.copy_from(colours[0]->tensor.field);
-  for (int c = 0; c < merged->tensor.field.count(); ++c)
-    for_points(box_->rows(), [&](int i, int j, int k) {
-      merged->tensor.field[c](i, j, k) = fullest(merged->tensor.components()[c], i, j, k)->tensor.field[c](i, j, k);
-    });
-}
-
-void SnapshotFields::mix_fractions(const Phases &phases) {
+void SnapshotFields::mix_fractions(const std::vector<Phase> &phases) {
   if (!fraction_) fraction_ = Field(*box_, 1);
   for_points(box_->rows(), [&](int i, int j, int k) {
     double sum = 0;
-    for (const Phase *phase : phases) sum += phase->fraction[0](i, j, k);
+    for (const Phase &phase : phases) sum += phase.fraction[0](i, j, k);
     fraction_[0](i, j, k) = sum;
   });
 }
 
 // The label of the phase that fills most of the cell.
-void SnapshotFields::mix_labels(const Phases &phases) {
+void SnapshotFields::mix_labels(const std::vector<Phase> &phases) {
   if (!label_) label_ = Field(*box_, 1);
   for_points(box_->rows(), [&](int i, int j, int k) {
-    const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase *p, const Phase *q) {
-      return p->fraction[0](i, j, k) < q->fraction[0](i, j, k);
+    const auto most = std::max_element(phases.begin(), phases.end(), [&](const Phase &p, const Phase &q) {
+      return p.fraction[0](i, j, k) < q.fraction[0](i, j, k);
     });
-    label_[0](i, j, k) = (*most)->label[0](i, j, k);
+    label_[0](i, j, k) = most->label[0](i, j, k);
   });
 }
 
 // I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
-void SnapshotFields::mix_tensors(const Phases &phases) {
-  if (!tensor_.field) tensor_.field = Field(*box_, phases[0]->tensor.field.count());
+void SnapshotFields::mix_tensors(const std::vector<Phase> &phases) {
+  if (!tensor_.field) tensor_.field = Field(*box_, phases[0].tensor.field.count());
   for (int c = 0; c < tensor_.field.count(); ++c) {
     const TensorComponent &component = tensor_.components()[c];
     for_points(box_->rows(), [&](int i, int j, int k) {
       double sum = component.rest();
-      for (const Phase *phase : phases)
-        if (!phase->material.is_membrane())
-          sum += at_component(phase->fraction[0], component, i, j, k) *
-                 (phase->tensor.field[c](i, j, k) - component.rest());
+      for (const Phase &phase : phases)
+        if (!phase.material.is_membrane())
+          sum +=
+              at_component(phase.fraction[0], component, i, j, k) * (phase.tensor.field[c](i, j, k) - component.rest());
       tensor_.field[c](i, j, k) = sum;
     });
   }
@@ -137,12 +89,11 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
   }
   if (selection.pressure) add("pressure", pressure[0], at_centre, selection.precision);
   if (phases.empty()) return fields;
-  const Phases species = by_species(selection, phases);
-  const bool several = species.size() > 1;
+  const bool several = phases.size() > 1;
   if (several) {
-    if (selection.solid_fraction) mix_fractions(species);
-    if (selection.left_cauchy_green) mix_tensors(species);
-    if (selection.body) mix_labels(species);
+    if (selection.solid_fraction) mix_fractions(phases);
+    if (selection.left_cauchy_green) mix_tensors(phases);
+    if (selection.body) mix_labels(phases);
   }
   const auto add_phase = [&](const Field &fraction, const CarriedTensor &tensor, const Field &label,
                              const std::string &suffix) {
@@ -151,8 +102,8 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
     if (selection.body) add("body" + suffix, label[0], at_centre, Stored::int32);
   };
   if (several) add_phase(fraction_, tensor_, label_, "");
-  for (const Phase *phase : species)
-    add_phase(phase->fraction, phase->tensor, phase->label, several ? "_" + phase->species : "");
+  for (const Phase &phase : phases)
+    add_phase(phase.fraction, phase.tensor, phase.label, several ? "_" + phase.species : "");
   return fields;
 }
 

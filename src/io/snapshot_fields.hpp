@@ -4,8 +4,6 @@
 #include "field/phase.hpp"
 #include "io/snapshot.hpp"
 
-#include <map>
-
 namespace eulastic {
 
 /// Groups of datasets (docs/outputs.md).
@@ -14,30 +12,26 @@ struct SnapshotSelection {
   Stored precision = Stored::float32;
 };
 
-/// Views of the state, and the fields that are made for the file: the velocity at centres, a species of several phases
-/// as one and, with several species, what they have in common.
+/// Views of the state, and the fields that are made for the file: the velocity at centres and, with several species,
+/// what they have in common.
 class SnapshotFields {
 public:
   explicit SnapshotFields(const Box &box) : box_(&box) {}
 
-  /// One ghost layer must be valid in `velocity` and, with several phases, in their fractions. The result holds
+  /// One ghost layer must be valid in `velocity` and, with several species, in their fractions. The result holds
   /// views: it is good until the state or this object changes.
   std::vector<SnapshotField> collect(const SnapshotSelection &selection, const Field &velocity, const Field &pressure,
                                      const std::vector<Phase> &phases);
 
 private:
   void centre_velocity(const Field &velocity);
-  using Phases = std::vector<const Phase *>;
-  Phases by_species(const SnapshotSelection &selection, const std::vector<Phase> &phases);
-  void merge(const SnapshotSelection &selection, const Phases &colours, Phase *merged);
-  void mix_fractions(const Phases &phases);
-  void mix_labels(const Phases &phases);
-  void mix_tensors(const Phases &phases);
+  void mix_fractions(const std::vector<Phase> &phases);
+  void mix_labels(const std::vector<Phase> &phases);
+  void mix_tensors(const std::vector<Phase> &phases);
 
   const Box *box_;
   Field velocity_, fraction_, label_;
   CarriedTensor tensor_;
-  std::map<std::string, Phase> merged_;
 };
 
 }  // namespace eulastic

@@ -65,7 +65,6 @@ std::string summary_text(const Summary &s) {
       .add("acm_sweeps_per_step", s.acm_sweeps_per_step)
       .add("ksp_iterations_per_step", s.ksp_iterations_per_step)
       .add("rkl_stages_per_step", s.rkl_stages_per_step)
-      .add("phases", s.phases)
       .add("strain_forgotten", s.strain_forgotten)
       .add("divergence_rms", s.divergence_rms)
       .add("divergence_max", s.divergence_max)

@@ -4,6 +4,7 @@
 #include "field/fed_velocity.hpp"
 #include "field/sides.hpp"
 #include "physics/elastic_force.hpp"
+#include "physics/stretched_body.hpp"
 #include "physics/transport.hpp"
 #include "physics/unresolved.hpp"
 
@@ -412,6 +413,7 @@ PetscErrorCode FreeBodies::gather_force(MembraneMechanics &membrane, Body *body,
     net_force_.add_row(box, part, a, added);
   }));
   body->film.add_force(body->phase, force);
+  if (is_stretched(body->phase.material)) StretchedBody(box, body->phase).add_force(force[0]);
   for (const Segment &s : body->phase.tensor.stressed.all())
     for (int a = 0; a < box.dimension(); ++a)
       for (int i = s.i_begin; i < s.i_end; ++i) force[a](i, s.j, s.k) *= scale;

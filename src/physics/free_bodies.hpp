@@ -90,6 +90,8 @@ public:
   /// their materials. Collective.
   PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
                                   SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples);
+  /// What stretch forces do on the flow; as measure_surfaces(). Collective if any species has one.
+  PetscErrorCode stretch_power(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species, double *power);
   /// Makes phi of the phases of some species the sum over the bodies that look() or list() has seen; owned points. The
   /// rows of the phases are known. Collective.
   PetscErrorCode show_fractions(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases);

@@ -1,5 +1,6 @@
 // FreeBodies: what others see of the bodies.
 #include "physics/free_bodies.hpp"
+#include "physics/stretched_body.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -66,6 +67,21 @@ PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, 
     measured->power += own[CapillaryForce::power] * volume;
     measured->energy += species[s].material.surface_tension * own[CapillaryForce::area];
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::stretch_power(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+                                         double *power) {
+  PetscFunctionBeginUser;
+  *power = 0;
+  if (std::none_of(species.begin(), species.end(), [](const Phase &p) { return p.boxed && is_stretched(p.material); }))
+    PetscFunctionReturn(0);
+  ExactSums sum(1);
+  for (const BodyInBox &body : seen)
+    if (is_stretched(body.phase->material))
+      StretchedBody(*body.box, *body.phase).add_power((*body.velocity)[0], 0, &sum);
+  PetscCall(sum.reduce(domain_->comm(), power));
+  *power *= domain_->cell_volume();
   PetscFunctionReturn(0);
 }
 

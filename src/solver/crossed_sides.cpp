@@ -1,9 +1,7 @@
 // Solver: the flow at the start, and bodies, where volume crosses sides of the box.
 #include "bodies/body_copy.hpp"
-#include "bodies/colours.hpp"
 #include "bodies/labels.hpp"
 #include "bodies/leaving.hpp"
-#include "bodies/near_bodies.hpp"
 #include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "physics/divergence.hpp"
@@ -238,8 +236,7 @@ PetscErrorCode Solver::feed_boxed(const std::vector<int> &labels) {
   PetscFunctionReturn(0);
 }
 
-// A body that has left its feeder comes in behind, in a phase where nobody is near; where others fill its place it
-// waits.
+// A body that has left its feeder comes in behind; where others fill its place it waits.
 PetscErrorCode Solver::feed_bodies() {
   std::vector<int> all, passed, boxed;
   std::vector<BodyCopy> copies;
@@ -255,23 +252,19 @@ PetscErrorCode Solver::feed_bodies() {
       continue;
     }
     const Int3 shift = feeders_->shift_of(copy.label);
-    BodyRoom room;
-    PetscCall(find_room(*domain_, copy, shift, contact_reach, now_.phases, &room));
-    if (room.fullest > full) continue;
-    int p = copy.phase;
-    if (now_.phases[p].separate && room.near[p]) {
-      const int phases = static_cast<int>(now_.phases.size());
-      for (p = 0; p < phases; ++p)
-        if (now_.phases[p].species == now_.phases[copy.phase].species && !room.near[p]) break;
-      if (p == phases) add_colour(*domain_, copy.phase, &now_.phases);
-    }
+    Field fractions;
+    double fullest = 0;
+    PetscCall(sum_fractions(&fractions));
+    PetscCall(find_fullest(*domain_, copy, shift, fractions[0], &fullest));
+    if (fullest > full) continue;
     PetscCall(bodies_.add_like(*domain_, copy.label, shift));
     feeders_->come_in(copy.label, bodies_.bodies());
     feeders_->forget(copy.label);
-    put_body(*domain_, copy, shift, bodies_.bodies(), &now_.phases[p]);
-    PetscCall(settle(now_.phases[p]));
-    if (now_.phases[p].material.is_membrane())
-      PetscCall(membranes_->place_markers(now_.phases[p], p, bodies_.bodies(), &now_.markers));
+    Phase &phase = now_.phases[copy.phase];
+    put_body(*domain_, copy, shift, bodies_.bodies(), &phase);
+    PetscCall(settle(phase));
+    if (phase.material.is_membrane())
+      PetscCall(membranes_->place_markers(phase, copy.phase, bodies_.bodies(), &now_.markers));
   }
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 #include "solver/feeders.hpp"
 
-#include "bodies/near_bodies.hpp"
+#include "bodies/labels.hpp"
 #include "field/exact_sum.hpp"
 #include "field/fed_velocity.hpp"
 #include "field/open_sides.hpp"

@@ -1,6 +1,5 @@
 // Solver: what is done for bodies before and between the steps: phases whose cells are set, phases at the time of the
-// velocity, labels, contact.
-#include "bodies/contact.hpp"
+// velocity, labels.
 #include "bodies/labels.hpp"
 #include "physics/transport.hpp"
 #include "physics/unresolved.hpp"
@@ -171,18 +170,8 @@ PetscErrorCode Solver::follow_bodies(double dt) {
     if (phase.label) PetscCall(carry_labels(*domain_, *exchange_, &phase));
   PetscCall(bodies_.follow(*domain_, now_.phases));
   if (feeders_) PetscCall(feed_bodies());
-  PetscCall(separate_bodies());
   if (membranes_) PetscCall(membranes_->follow(&now_.phases, &now_.markers));
   now_.travel = 0;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Solver::separate_bodies() {
-  PetscFunctionBeginUser;
-  Separation result;
-  PetscCall(eulastic::separate_bodies(*domain_, *exchange_, {}, &now_.phases, &result));
-  crowded_ = result.crowded;
-  for (const int p : result.changed) PetscCall(settle(now_.phases[p]));
   PetscFunctionReturn(0);
 }
 

@@ -81,7 +81,9 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   add_species_forces(*domain_, now_.phases, step.force_time, 1, rate.fields());
-  PetscCall(add_stretch_forces(before.part(0, 1), rate.fields()));
+  std::vector<BoxExchange::Target> pulled{{&rate.fields(), 1 / fluid.density}};
+  if (slope.field) pulled.push_back({slope.field, slope.factor / fluid.density});
+  PetscCall(add_stretch_forces(before.part(0, 1), pulled));
   if (rigid_)
     see_rigid_surfaces(*domain_, rigid_->faces(), nu, fluid.kinematic_viscosity(), now_.time, dt, now_.velocity,
                        rate.fields(), slope_ ? &slope_ : nullptr);

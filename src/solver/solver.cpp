@@ -256,6 +256,9 @@ PetscErrorCode Solver::transport_to_middle(double dt) {
     PetscCall(compute_elastic_force(*domain_, scale, now_.phases, slope_));
     if (surface_tension_) PetscCall(surface_tension_->add_force(now_.phases, scale, false, slope_));
     if (membranes_) PetscCall(membranes_->add_force(now_.phases, scale, false, slope_));
+    WorkSpace::Lease scratch;
+    PetscCall(work_->take("stretch force", 1, &scratch));
+    PetscCall(add_stretch_forces(scratch.part(0, 1), {{&slope_, scale}}));
     if (has_boxed()) PetscCall(boxed_->add_forces({{&slope_, -1 / dt}}));
   }
   PetscCall(transport(now_.phases, dt));

@@ -134,8 +134,7 @@ public:
   /// pressure is that of the step. The state is then what it was. Only with the staggered integrator, after step() and
   /// before phases_now().
   PetscErrorCode look_back(const std::vector<double> &times, const Look &look);
-  /// One line if rigid bodies touch that should not, if there are not colours enough for bodies that have come near
-  /// each other (bodies/contact.hpp), or if a body is at a side that volume crosses and cannot leave.
+  /// One line if rigid bodies touch that should not, or if a body is at a side that volume crosses and cannot leave.
   const std::string &crowded() const { return crowded_; }
   /// Viscous stages and pressure sweeps since the start.
   long stages() const { return stages_; }
@@ -178,7 +177,8 @@ private:
   PetscErrorCode predict_explicitly(const Fluid &fluid, const MomentumStep &step);
   PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step);
   PetscErrorCode add_local_viscous_force(double scale, Field &to);
-  PetscErrorCode add_stretch_forces(Field &&scratch, Field &rate);
+  /// Forces per volume on bodies of the grid, to each target as many times as it says.
+  PetscErrorCode add_stretch_forces(Field &&scratch, const std::vector<BoxExchange::Target> &targets);
   PetscErrorCode project(double dt);
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
   /// middle.
@@ -209,7 +209,6 @@ private:
   /// Pressures on loaded sides for a step, and after it with what the flow has become.
   PetscErrorCode begin_loads(double dt);
   PetscErrorCode settle_loads(double dt, const Field &divergence, Field &increment);
-  PetscErrorCode separate_bodies();
   PetscErrorCode show_bodies();
   PetscErrorCode show_fractions(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases);
   /// `rigid`: phases of bodies that do not travel.

@@ -5,7 +5,7 @@
 namespace eulastic {
 
 // On the phases as they are, with labels and references of the last step.
-PetscErrorCode Solver::add_stretch_forces(Field &&scratch, Field &rate) {
+PetscErrorCode Solver::add_stretch_forces(Field &&scratch, const std::vector<BoxExchange::Target> &targets) {
   PetscFunctionBeginUser;
   if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
   BodyOwners owners;
@@ -13,13 +13,18 @@ PetscErrorCode Solver::add_stretch_forces(Field &&scratch, Field &rate) {
   StretchForces forces;
   PetscCall(bodies_.connect(*domain_, now_.phases, {}, &owners, &references));
   PetscCall(forces.find(*domain_, now_.phases, owners, references));
-  PetscCall(forces.add(*exchange_, now_.phases, 1 / spec_.fluid.density, scratch, rate));
+  PetscCall(forces.add(*exchange_, now_.phases, scratch, targets));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::stretch_power(double *power) {
   PetscFunctionBeginUser;
   *power = 0;
+  if (has_boxed()) {
+    std::vector<BodyInBox> bodies;
+    PetscCall(bodies_now(&bodies));
+    PetscCall(boxed_->stretch_power(bodies, now_.phases, power));
+  }
   if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
   const std::vector<Phase> *phases = nullptr;
   PetscCall(phases_now(&phases));
@@ -28,7 +33,9 @@ PetscErrorCode Solver::stretch_power(double *power) {
   StretchForces forces;
   PetscCall(bodies_.connect(*domain_, *phases, {}, &owners, &references));
   PetscCall(forces.find(*domain_, *phases, owners, references));
-  PetscCall(forces.power(*phases, now_.velocity, power));
+  double on_grid = 0;
+  PetscCall(forces.power(*phases, now_.velocity, &on_grid));
+  *power += on_grid;
   PetscFunctionReturn(0);
 }
 

@@ -148,28 +148,4 @@ void change_objects(Dice &dice, const std::string &path) {
   }
 }
 
-void change_colours(Dice &dice, const std::string &path) {
-  static const std::vector<std::int64_t> odd{0, 0, 0, 1, 2, 7, -1, INT64_MIN, INT64_MAX, 1LL << 32};
-  const Hdf5FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
-  std::vector<std::int64_t> values(dice.one_in(20) ? 100000 : dice.below(6));
-  for (std::int64_t &value : values) value = values.size() > 6 ? 0 : dice.of(odd);
-  std::vector<hsize_t> shape{values.size()};
-  if (dice.one_in(10)) shape.insert(shape.begin(), 1);
-  const bool huge = dice.one_in(10);
-  if (huge) shape.assign(1 + dice.below(3), hsize_t(1) << (20 + dice.below(40)));
-  const Hdf5Space space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)),
-      scalar(H5Screate(H5S_SCALAR));
-  const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
-  const std::vector<hsize_t> chunk(shape.size(), 1);
-  if (huge) (void)H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
-  (void)H5Ldelete(file.get(), "colours", H5P_DEFAULT);
-  const Hdf5Dataset dataset(
-      H5Dcreate2(file.get(), "colours", H5T_NATIVE_INT64, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
-  if (!dataset) return;
-  if (!huge) (void)H5Dwrite(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-  const Hdf5Type word(hdf5_string(16));
-  const Hdf5Attribute sum(H5Acreate2(dataset.get(), "checksum", word.get(), scalar.get(), H5P_DEFAULT, H5P_DEFAULT));
-  (void)H5Awrite(sum.get(), word.get(), checksum_text(checksum(values.data(), values.size(), 0)).c_str());
-}
-
 }  // namespace eulastic::fuzz

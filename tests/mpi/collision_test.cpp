@@ -2,7 +2,6 @@
 #include "app/saved_state.hpp"
 #include "app/scene.hpp"
 #include "base/rank_zero.hpp"
-#include "bodies/colours.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
@@ -19,21 +18,18 @@ namespace {
 // What some steps have made.
 struct Outcome {
   std::uint64_t hash = 0;
-  std::size_t phases_before = 0, phases = 0;
   std::vector<double> change;  // of the volume, per body
 };
 
-// With a force of their own they do not lie in boxes.
 const std::string flat_beads =
     "-time_end 9 -grid_cells 40,36,1 -grid_length 5,4.5,1 -boundary_y wall -wall_ymax_velocity 1,0,0 "
     "-wall_ymin_velocity "
     "-1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead -bead_shape sphere "
-    "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv -solid_exterior identity ";
+    "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
 const std::string solid_beads =
     "-time_end 9 -grid_cells 28,18,16 -grid_length 3.5,2.25,2 -boundary_y wall -wall_ymax_velocity 1,0,0 "
     "-wall_ymin_velocity -1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead "
-    "-bead_shape sphere -bead_radius .35 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv "
-    "-solid_exterior identity ";
+    "-bead_shape sphere -bead_radius .35 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
 
 PetscErrorCode advance(Solver *solver, int steps, double dt) {
   PetscFunctionBeginUser;
@@ -49,8 +45,11 @@ std::vector<double> volumes(Solver &solver) {
   std::vector<BodyMeasure> owned, bodies;
   std::vector<double> all;
   const std::vector<Phase> *phases = nullptr;
+  std::vector<BodyInBox> boxed;
   EXPECT_EQ(solver.phases_now(&phases), 0);
-  EXPECT_EQ(solver.bodies().measure(solver.domain(), *phases, solver.state().velocity, strain_energy, &owned), 0);
+  EXPECT_EQ(solver.bodies_now(&boxed), 0);
+  EXPECT_EQ(solver.bodies().measure(solver.domain(), *phases, solver.state().velocity, strain_energy, &owned, boxed),
+            0);
   const int count = solver.bodies().bodies();
   EXPECT_EQ(all_bodies(solver.domain().comm(), count, count, owned, &bodies), 0);
   for (const BodyMeasure &body : bodies) all.push_back(body.volume);
@@ -70,7 +69,6 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
                         &reason),
             0);
   EXPECT_EQ(reason, "");
-  outcome.phases_before = solver.state().phases.size();
   const std::vector<double> before = volumes(solver);
   RunPosition position;
   if (!checkpoint.empty() && stop == 0) {
@@ -84,7 +82,6 @@ Outcome collide(MPI_Comm comm, const std::string &options, int steps, double dt,
     EXPECT_EQ(save_state(&solver, position, "-x\n", checkpoint), 0);
   }
   EXPECT_EQ(state_hash(&solver, &outcome.hash), 0);
-  outcome.phases = solver.state().phases.size();
   const std::vector<double> after = volumes(solver);
   for (std::size_t b = 0; b < after.size(); ++b) outcome.change.push_back(after[b] / before[b] - 1);
   return outcome;
@@ -109,74 +106,13 @@ TEST(Collision, CollisionsHaveTheSameBitsOnAnyRanksAndAfterARestart) {
     const int steps = flat ? 90 : 50;
     const double dt = flat ? .012 : .016;
     const Outcome one = collide(PETSC_COMM_SELF, options, steps, dt);
-    EXPECT_EQ(one.phases_before, 1u);
-    EXPECT_EQ(one.phases, 2u) << "nothing has met";
     EXPECT_EQ(collide(run_communicator(), options, steps, dt).hash, one.hash);
-    for (const int stop : {3, steps - 2}) {  // before and after they get two phases
+    for (const int stop : {3, steps - 2}) {
       const std::string path = directory / checkpoint_name(stop);
-      EXPECT_EQ(collide(run_communicator(), options, steps, dt, path, stop).phases, stop == 3 ? 1u : 2u);
+      collide(run_communicator(), options, steps, dt, path, stop);
       EXPECT_EQ(collide(run_communicator(), options, steps, dt, path).hash, one.hash) << stop;
     }
   }
-}
-
-TEST(Collision, AColourIsGivenBackWhenBodiesHaveParted) {
-  const SharedDirectory directory;
-  std::string box = flat_beads;
-  box.replace(box.find("40,36,1 -grid_length 5,"), 23, "60,36,1 -grid_length 7.5,");
-  const std::string options = with_beads(directory, box, "4.2,2.95,.5\n3.3,1.55,.5\n");
-  constexpr int steps = 130;
-  constexpr double dt = .03;
-  const Outcome one = collide(PETSC_COMM_SELF, options, steps, dt);
-  EXPECT_EQ(one.phases_before, 2u);
-  EXPECT_EQ(one.phases, 1u);
-  for (const double change : one.change) EXPECT_LT(std::fabs(change), 1e-7);
-  EXPECT_EQ(collide(run_communicator(), options, steps, dt).hash, one.hash);
-  for (const int stop : {5, steps - 2}) {
-    const std::string path = directory / checkpoint_name(stop);
-    EXPECT_EQ(collide(run_communicator(), options, steps, dt, path, stop).phases, stop == 5 ? 2u : 1u);
-    EXPECT_EQ(collide(run_communicator(), options, steps, dt, path).hash, one.hash) << stop;
-  }
-}
-
-TEST(Collision, BodiesThatNeverMeetHaveTheirBits) {
-  const SharedDirectory directory;
-  const std::string options = with_beads(directory, flat_beads, "1.2,2.3,.5\n3.7,2.2,.5\n");
-  const Outcome separate = collide(run_communicator(), options, 20, .012);
-  EXPECT_EQ(separate.phases, 1u);
-  EXPECT_EQ(collide(run_communicator(), options + "-bead_contact merge", 20, .012).hash, separate.hash);
-}
-
-TEST(Collision, MovingChangesTheFlowByRoundOffOnly) {
-  // Far enough apart that one phase does for both: the move by hand is all that differs.
-  const SharedDirectory directory;
-  const std::string options = with_beads(directory, flat_beads, "1.4,2.3,.5\n3.7,2.2,.5\n");
-  double energy[2];
-  for (const bool merge : {false, true}) {
-    const ParseResult parsed = parse_line(options + (merge ? "-bead_contact merge" : ""));
-    Domain domain;
-    Solver solver;
-    std::string reason;
-    ASSERT_EQ(domain.create(run_communicator(), parsed.config.grid), 0);
-    ASSERT_EQ(build_scene(parsed.config, domain, &solver, &reason), 0);
-    ASSERT_EQ(advance(&solver, 8, .012), 0);
-    if (!merge) {
-      // Moves bead 2 by hand, in the middle of the run.
-      std::vector<Phase> &phases = solver.state().phases;
-      GhostExchange exchange(domain);
-      ASSERT_EQ(exchange.update_ghosts(phases[0].label, contact_reach), 0);
-      add_colour(domain, 0, &phases);
-      move_bodies(domain, {{2, 0, 1}}, &phases);
-      ASSERT_EQ(solver.prepare(), 0);
-    }
-    ASSERT_EQ(advance(&solver, 8, .012), 0);
-    energy[merge] = 0;
-    for (const Segment &row : domain.rows())
-      for (int i = row.i_begin; i < row.i_end; ++i)
-        energy[merge] += std::pow(solver.state().velocity[0](i, row.j, row.k), 2);
-    EXPECT_EQ(solver.state().phases.size(), 1u) << "it moves back, nobody is near";
-  }
-  EXPECT_NEAR(energy[0], energy[1], 1e-13 * energy[1]);
 }
 
 TEST(Collision, PressedBodiesKeepTheirVolumes) {

@@ -189,35 +189,6 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   EXPECT_EQ(series.find("000002"), std::string::npos) << series;
 }
 
-TEST(Snapshot, AColourIsPartOfItsSpecies) {
-  const SharedDirectory directory;
-  const NumberedFields scene({7, 13, 1});
-  const Field velocity(scene.domain, 2), pressure(scene.domain, 1);
-  std::vector<Phase> phases;
-  phases.push_back(make_phase(scene, "cell", 0.5, 3));
-  phases.push_back(make_phase(scene, "cell", 0.75, 4));
-  phases[1].colour = 1;
-  phases[1].tensor.field.fill(0, 8);
-  SnapshotSelection selection;
-  selection.left_cauchy_green = true;
-  SnapshotFields fields(scene.domain);
-  int known = 0;
-  for (const SnapshotField &field : fields.collect(selection, velocity, pressure, phases)) {
-    const std::string &name = field.format.name;
-    EXPECT_EQ(name.find("_cell"), std::string::npos) << name;
-    const double value = field.components[0](0, 0, 0);
-    known += name == "solid_fraction" || name == "body" || name == "left_cauchy_green_xx";
-    if (name == "solid_fraction") {
-      EXPECT_EQ(value, 1.25);
-    } else if (name == "body") {
-      EXPECT_EQ(value, 4);
-    } else if (name == "left_cauchy_green_xx") {
-      EXPECT_EQ(value, 8);
-    }
-  }
-  EXPECT_EQ(known, 3);
-}
-
 TEST(Snapshot, OnePhase) { check_snapshot({5, 13, 7}, 1); }
 TEST(Snapshot, TwoPhases) { check_snapshot({5, 13, 7}, 2); }
 TEST(Snapshot, Flat) { check_snapshot({7, 13, 1}, 2); }

@@ -39,7 +39,6 @@ class Boxes(SceneCase):
             again = [*words, "-time_steps_max", steps, "-restart", self.room / f"{prefix}half"]
             found |= self.run_together({f"{prefix}restarted": (again, {"ranks": 3})})
         one = found[f"{prefix}1"]
-        self.assertEqual(one.summary["phases"], 1)
         for name, run in found.items():
             if not name.endswith("half"):
                 self.assertEqual(run.summary["state_hash"], one.summary["state_hash"], name)
@@ -86,14 +85,17 @@ class Boxes(SceneCase):
                  "-time_step 5e-4").split()
         for name, kind in (("membranes", MEMBRANE), ("solids", ["-cell_viscosity", ".5"]),
                            ("drops", "-cell_law neo_hookean -cell_shear_modulus 0 -cell_surface_tension .2 -cell_viscosity .5".split()),
-                           ("drawn", "-cell_law neo_hookean -cell_shear_modulus .5 -cell_surface_tension .2".split())):
+                           ("drawn", "-cell_law neo_hookean -cell_shear_modulus .5 -cell_surface_tension .2".split()),
+                           ("stretched", [*MEMBRANE, "-cell_stretch_force", ".05"])):
             boxes, grid = (self.same_on_ranks([(.5, .6, .6), (1.5, .6, .6)], *scene, *STIRRED, *kind, *contact, ranks=(1,), restart=False,
                                               prefix=f"{name}_{where}_")
                            for where, contact in (("boxes", []), ("grid", ["-cell_contact", "merge"])))
             for column in boxes.series.dtype.names:
                 ours, theirs = (getattr(run.series, column) for run in (boxes, grid))
                 scale = abs(theirs).max()
-                numpy.testing.assert_allclose(ours, theirs, rtol=1e-7, atol=1e-7 * scale + 1e-15, err_msg=f"{name} {column}")
+                # On the grid cells that a body has reached since labels were carried are not pulled.
+                bound, floor = (1e-4, 1e-12) if name == "stretched" else (1e-7, 1e-15)
+                numpy.testing.assert_allclose(ours, theirs, rtol=bound, atol=bound * scale + floor, err_msg=f"{name} {column}")
             for one, other in zip(boxes.summary["bodies"], grid.summary["bodies"]):
                 self.assertEqual(set(one), set(other))
                 for key, value in one.items():

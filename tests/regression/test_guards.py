@@ -86,25 +86,6 @@ class Guards(Restart):
                 with h5py.File(path) as file:
                     self.assertTrue(numpy.isfinite(file["velocity_x"][()]).all())
 
-    def test_no_colour_is_left(self):
-        """Two layers of 36 beads, five cells apart: 36 colours do, until those ahead reach cells less far from the others."""
-        places = [f"{x}.5,{y}.5,{z}.5" for x in (0, 5) for y in range(6) for z in range(6)]
-        pathlib.Path(self.room, "beads.csv").write_text("\n".join(["x,y,z", *places, ""]))
-        case = ("-grid_cells 12,6,6 -grid_length 12,6,6 -initial_velocity uniform -initial_velocity_mean 1,0,0 "
-                "-species bead -bead_shape sphere -bead_radius .495 -bead_shear_modulus 1 -bead_placement list "
-                "-bead_positions beads.csv -solid_exterior identity -time_end 2 -time_step .1 -checkpoint_interval .1").split()
-        for ranks in (0, 2):
-            result = self.call(*case, "-output_dir", "run", "-output_overwrite", ranks=ranks)
-            self.assertEqual(result.returncode, 3, result.stderr)
-            self.assertIn("eulastic: error: step 3, t = 0.3: -bead_contact: more than 64 bodies within 4 cells of each "
-                          "other; accepted: ", result.stderr)
-            summary = self.summary("run")
-            self.assertEqual((summary["exit_reason"], summary["steps"], summary["phases"]), ("guard", 3, 36))
-            self.assertEqual([path.stem for path in self.checkpoints()], ["checkpoint_00000001", "checkpoint_00000002"])
-        merged = self.call(*case, "-bead_contact", "merge", "-output_dir", "merged")
-        self.assertEqual(merged.returncode, 0, merged.stderr)
-        self.assertEqual(self.summary("merged")["phases"], 1)
-
     def test_the_last_state_is_looked_at(self):
         self.stopped(*FREE, *NONE, "-method", "classic", "-time_step", ".03", "-time_steps_max", "10",
                      reason="nonfinite", says=["step 10,", "not finite"])

@@ -212,7 +212,7 @@ class Refusals(Restart):
         newest.write_bytes(good)
         with h5py.File(newest, "r+") as file:
             file.attrs["format"] = 0
-        refuse(newest.read_bytes(), ["format 0", "this program reads format 4"])
+        refuse(newest.read_bytes(), ["format 0", "this program reads format 5"])
         newest.write_bytes(good)
         with h5py.File(newest, "r+") as file:
             file["velocity_x"][0, 3, 4] += 1e-15

@@ -62,38 +62,27 @@ TEST(Memory, RefusedWithBothNumbers) {
   EXPECT_NE(refusal(scene + " -guard_memory 1e-9").find("1e-09 now"), std::string::npos);
 }
 
-TEST(Memory, PhasesThatKeepBodiesApartCount) {
-  // Spheres two apart, of radius 0.3: seven cells between surfaces are 0.875 here, 1.75 with half as many cells.
+TEST(Memory, PhasesAndBoxesCount) {
   const std::string line =
       "-time_end 1 -grid_length 8,8,8 -species vessel,ball -vessel_shape slab -vessel_axis y -vessel_interval 0,.1 "
       "-vessel_shear_modulus 1 -ball_shape sphere -ball_radius .3 -ball_shear_modulus 1 -ball_placement lattice "
-      "-ball_count 4,4,4 -solid_exterior identity -grid_cells ";  // not in boxes of their own
-  EXPECT_EQ(expected_phases(parse_line(line + "64,64,64").config), 2);
-  EXPECT_EQ(expected_phases(parse_line(line + "32,32,32").config), 3);  // as on a chessboard
-  EXPECT_EQ(expected_phases(parse_line(line + "32,32,32 -ball_contact merge").config), 2);
-  const Config apart = parse_line(line + "32,32,32").config,
-               merged = parse_line(line + "32,32,32 -ball_contact merge").config;
-  EXPECT_DOUBLE_EQ(bytes_per_rank(apart, {1, 1, 1}),
-                   bytes_per_rank(merged, {1, 1, 1}) + bytes_per_phase(apart, {1, 1, 1}));
+      "-ball_count 4,4,4 -grid_cells 32,32,32 ";
+  const Config merged = parse_line(line + "-ball_contact merge").config;
   // Phi, label and six of B, and the same at the time of the output; without modulus no B, the first B lies elsewhere.
   const double fluid =
       bytes_per_rank(parse_line("-time_end 1 -grid_cells 32,32,32 -grid_length 8,8,8").config, {1, 1, 1});
   std::string without = line;
   without.replace(without.find("-vessel_shear_modulus 1"), 23, "-vessel_shear_modulus 0");
-  const Config soft = parse_line(without + "32,32,32 -ball_contact merge").config;
+  const Config soft = parse_line(without + "-ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(merged, {1, 1, 1}), bytes_per_rank(soft, {1, 1, 1}) + 8 * 12 * std::pow(42, 3));
   EXPECT_GT(bytes_per_rank(soft, {1, 1, 1}), fluid);
   // Bodies in boxes: four cells around each, and five ghosts; phi, B, and a copy of both with a velocity at the time of
   // the output; the force.
-  std::string boxed = line;
-  boxed.replace(boxed.find("-solid_exterior identity"), 24, "");
-  const Config boxes = parse_line(boxed + "32,32,32").config;
-  EXPECT_EQ(expected_phases(boxes), 2);
+  const Config boxes = parse_line(line).config;
   const double reach = 2 * .3 * 4 + 2 * 4;
   EXPECT_NEAR(bytes_in_boxes(boxes), 64 * 8. * (17 * std::pow(reach + 10, 3) + 3 * std::pow(reach, 3)), 1);
-  const Config on_grid = parse_line(boxed + "32,32,32 -ball_contact merge").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(boxes, {1, 1, 1}),
-                   bytes_per_rank(on_grid, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
+                   bytes_per_rank(merged, {1, 1, 1}) - 8 * 8 * std::pow(42, 3) + bytes_in_boxes(boxes));
   const Config flat = parse_line(
                           "-time_end 1 -grid_cells 32,32,1 -grid_length 8,8,1 -species ball -ball_shape ellipsoid "
                           "-ball_semi_axes .3,.5,1 "
@@ -103,6 +92,6 @@ TEST(Memory, PhasesThatKeepBodiesApartCount) {
   EXPECT_NEAR(bytes_in_boxes(flat), 16 * 8. * (10 * std::pow(flat_reach + 10, 2) + 2 * std::pow(flat_reach, 2)), 1);
   // Viscosities of the place, at centres, on edges and along surfaces, three of the normal, six of the stress there,
   // and the pressure of the step before.
-  const Config viscous = parse_line(line + "32,32,32 -ball_viscosity 2 -fluid_viscosity 1").config;
-  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(apart, {1, 1, 1}) + 8 * 15 * std::pow(42, 3));
+  const Config viscous = parse_line(line + "-ball_contact merge -ball_viscosity 2 -fluid_viscosity 1").config;
+  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(merged, {1, 1, 1}) + 8 * 15 * std::pow(42, 3));
 }

@@ -76,10 +76,16 @@ TEST(OptionRefusals, MissingValues) {
 }
 
 TEST(OptionRefusals, Contact) {
+  const std::string two = "-cell_contact separate -cell_placement lattice -cell_count 2,1,1 ";
   expect_refusals({{"-cell_contact maybe", {"-cell_contact", "separate, merge"}},
-                   {"-cell_contact separate -body_series false", {"-cell_contact", "-body_series true", "merge"}},
-                   {"-cell_contact separate -method classic", {"-cell_contact", "-interface_scheme plic", "merge"}}});
-  for (const char *fine : {"-cell_contact separate", "-cell_contact merge -body_series false", "-cell_contact merge"})
+                   {two + "-body_series false", {"-cell_contact", "-body_series true", "merge"}},
+                   {two + "-method classic", {"-cell_contact", "-interface_scheme plic", "-method fast", "merge"}}});
+  const std::string bare = "-time_end 1 -species cell " + two;
+  EXPECT_NE(parse_line(bare + "-cell_shape cylinder -cell_radius .1 -cell_shear_modulus 1")
+                .error.find("-cell_contact: separate needs -cell_shape sphere, biconcave or ellipsoid"),
+            std::string::npos);
+  for (const char *fine : {"-cell_contact separate", "-cell_contact merge -body_series false", "-cell_contact merge",
+                           "-cell_contact separate -method classic"})
     EXPECT_EQ(parse_line(scene + " " + fine).error, "") << fine;
 }
 

@@ -66,7 +66,7 @@ TEST(StretchForce, PullsThatPartOfTheVolumeAtEitherEnd) {
       Pulled body(dim, x);
       Field rate(body.domain, dim), scratch(body.domain, 1);
       constexpr double scale = 0.5;
-      ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scale, scratch, rate), 0);
+      ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&rate, scale}}), 0);
       const double volume = body.domain.cell_volume();
       double all = 0, sum[2] = {}, place[2] = {}, largest = 0;
       body.each_owned([&](int i, int j, int k) {
@@ -93,7 +93,7 @@ TEST(StretchForce, FollowsTheBodyContinuously) {
   for (int n = 0; n <= 20; ++n) {
     Pulled body(2, 0.51 + 5 * n * step);
     Field rate(body.domain, 2), scratch(body.domain, 1);
-    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, rate), 0);
+    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&rate, 1}}), 0);
     double moment = 0;
     body.each_owned([&](int i, int j, int k) {
       if (const double at = body.x_of(i, false); at > 0)
@@ -117,7 +117,7 @@ TEST(StretchForce, PowerIsThatOfTheEnds) {
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i <= cells; ++i) body.velocity[0](i, j, k) = 3 + rate * i / cells;
     Field force_rate(body.domain, dim), scratch(body.domain, 1);
-    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, 1, scratch, force_rate), 0);
+    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&force_rate, 1}}), 0);
     double expected = 0, power = 0;
     body.each_owned([&](int i, int j, int k) {
       expected += force_rate[0](i, j, k) * body.velocity[0](i, j, k) * body.domain.cell_volume();

@@ -1,6 +1,5 @@
 // What tests/fuzz has found, one by one.
 #include "bodies/body_sums.hpp"
-#include "bodies/colours.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/nrrd_header.hpp"
 #include "support/files.hpp"
@@ -59,14 +58,14 @@ TEST(FoundByFuzzing, ArraysLargerThanTheirFile) {
     for (const int bits : {16, 32}) {
       const hsize_t shape[2] = {hsize_t(1) << bits, hsize_t(1) << bits};
       const Hdf5Space space(H5Screate_simple(2, shape, nullptr));
-      const Hdf5Dataset dataset(H5Dcreate2(file.get(), ("colours" + std::to_string(bits)).c_str(), H5T_NATIVE_LONG,
+      const Hdf5Dataset dataset(H5Dcreate2(file.get(), ("numbers" + std::to_string(bits)).c_str(), H5T_NATIVE_LONG,
                                            space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
       ASSERT_TRUE(bool(dataset) || bits == 32);
     }
   }
   Hdf5File file;
   ASSERT_EQ(file.open(PETSC_COMM_SELF, room / "a.h5"), 0);
-  for (const char *name : {"colours16", "colours32"}) {
+  for (const char *name : {"numbers16", "numbers32"}) {
     if (!file.has(name)) continue;
     std::vector<hsize_t> shape;
     std::vector<long> values;
@@ -74,19 +73,4 @@ TEST(FoundByFuzzing, ArraysLargerThanTheirFile) {
               std::string::npos)
         << name;
   }
-}
-
-TEST(FoundByFuzzing, MoreColoursThanASpeciesMayHave) {
-  Domain domain;
-  GridSpec spec;
-  spec.cells = {4, 4, 1};
-  ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
-  std::vector<Phase> phases(1);
-  phases[0].separate = true;
-  EXPECT_TRUE(set_colours(domain, std::vector<long>(most_colours - 1, 0), &phases));
-  EXPECT_EQ(phases.size(), std::size_t(most_colours));
-  EXPECT_FALSE(set_colours(domain, std::vector<long>(most_colours, 0), &phases));
-  EXPECT_EQ(phases.size(), 1u);
-  EXPECT_FALSE(set_colours(domain, {1}, &phases));
-  EXPECT_FALSE(set_colours(domain, {-1}, &phases));
 }

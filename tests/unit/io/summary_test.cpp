@@ -137,7 +137,6 @@ TEST(Summary, HasEveryKey) {
                                           "acm_sweeps_per_step",
                                           "ksp_iterations_per_step",
                                           "rkl_stages_per_step",
-                                          "phases",
                                           "strain_forgotten",
                                           "divergence_rms",
                                           "divergence_max",
