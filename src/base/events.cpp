@@ -1,5 +1,7 @@
 #include "base/events.hpp"
 
+#include "base/team.hpp"
+
 #include <array>
 
 namespace eulastic {
@@ -8,9 +10,9 @@ namespace {
 constexpr int verb_count = static_cast<int>(Verb::count);
 constexpr int stage_count = static_cast<int>(Stage::count);
 constexpr std::array<const char *, verb_count> verb_names = {
-    "EulExchange", "EulWait",       "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension",
-    "EulMembrane", "EulRigid",      "EulDivergence", "EulACM",      "EulSMAC",    "EulCorrect",
-    "EulFraction", "EulLeftCauchy", "EulExterior",   "EulBodies",   "EulSums",    "EulWrite"};
+    "EulExchange", "EulWait",       "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension",  "EulMembrane",
+    "EulRigid",    "EulDivergence", "EulACM",        "EulSMAC",     "EulCorrect", "EulFraction", "EulLeftCauchy",
+    "EulExterior", "EulBodies",     "EulBoxes",      "EulSums",     "EulWrite"};
 constexpr std::array<const char *, stage_count> stage_names = {"Setup", "Step", "Output"};
 constexpr std::array<const char *, stage_count> stage_events = {"EulSetup", "EulStep", "EulOutput"};
 
@@ -34,11 +36,16 @@ PetscErrorCode register_events() {
   PetscFunctionReturn(0);
 }
 
+// What a member of a team does is part of the verb that the team works for.
 VerbScope::VerbScope(Verb verb) : verb_(verb) {
-  if (registered) (void)PetscLogEventBegin(verb_ids[static_cast<int>(verb)], 0, 0, 0, 0);
+  if (registered && !TeamMember::is_here()) (void)PetscLogEventBegin(verb_ids[static_cast<int>(verb)], 0, 0, 0, 0);
 }
 
 VerbScope::~VerbScope() {
+  if (TeamMember::is_here()) {
+    TeamMember::add_flops(flops_);
+    return;
+  }
   if (!registered) return;
   (void)PetscLogFlops(flops_);
   (void)PetscLogEventEnd(verb_ids[static_cast<int>(verb_)], 0, 0, 0, 0);

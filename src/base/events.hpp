@@ -22,6 +22,7 @@ enum class Verb {
   left_cauchy_green,
   exterior,
   bodies,
+  boxes,
   sums,
   write,
   count

@@ -12,6 +12,7 @@ int threads() noexcept { return count_of_threads; }
 
 int row_parts(const Box &box) {
   constexpr double least = 512;  // cells: in parallel, fewer gain nothing
+  if (TeamMember::is_here()) return 1;
   const int slices = box.cells()[box.dimension() - 1];
   return std::max(1, static_cast<int>(std::min({double(threads()), double(slices), box.cell_count() / least})));
 }

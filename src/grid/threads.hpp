@@ -1,9 +1,12 @@
 // Threads of a rank, which share the rows of a verb. The first alone calls MPI and PETSc.
 #pragma once
 
+#include "base/team.hpp"
 #include "grid/box.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #ifdef __SANITIZE_THREAD__
 #include <thread>
 #endif
@@ -15,9 +18,10 @@ void set_threads(int count) noexcept;
 int threads() noexcept;
 
 /// work(n) for every 0 <= n < count: thread t of `team` does t, t + team ..., so that it comes back to the same planes.
+/// A member of a team does all of them.
 template <class Work>
 void in_parallel(int team, int count, const Work &work) {
-  if (team <= 1) {
+  if (team <= 1 || TeamMember::is_here()) {
     for (int n = 0; n < count; ++n) work(n);
     return;
   }
@@ -32,6 +36,19 @@ void in_parallel(int team, int count, const Work &work) {
 #pragma omp parallel for schedule(static, 1) num_threads(team)
   for (int n = 0; n < count; ++n) work(n);
 #endif
+}
+
+/// work(n) for every 0 <= n < count, each of them all on one thread, as members of a team that take one after the
+/// other. Returns the flops of the verbs in them.
+template <class Work>
+double in_team(int count, const Work &work) {
+  std::vector<double> flops(threads(), 0.0);
+  std::atomic<int> next{0};
+  in_parallel(threads(), threads(), [&](int thread) {
+    const TeamMember member(thread, &flops[thread]);
+    for (int n = next++; n < count; n = next++) work(n);
+  });
+  return std::accumulate(flops.begin(), flops.end(), 0.0);
 }
 
 /// Piece `part` of `parts` of 0 ... count.
@@ -49,7 +66,7 @@ struct RowPart {
   RowPart with_ghosts(const Box &box) const;
 };
 
-/// Into how many: as many as there are threads, but none of less than some hundred cells.
+/// Into how many: as many as there are threads, but none of less than some hundred cells; one for a member of a team.
 int row_parts(const Box &box);
 RowPart row_part(const Box &box, int part, int parts);
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace eulastic {
@@ -67,7 +68,8 @@ FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides 
       sides_(&sides),
       exchange_(domain, domain.dimension()),
       fractions_(domain, 1),
-      net_force_(domain, false) {}
+      net_force_(domain, false),
+      tools_(threads()) {}
 
 void FreeBodies::set_surroundings(bool drifts, const std::vector<const Phase *> &rigid) {
   drifts_ = drifts;
@@ -242,8 +244,8 @@ PetscErrorCode FreeBodies::extend(Body *body) {
     PetscFunctionReturn(0);
   }
   if (!phase.material.elastic()) PetscFunctionReturn(0);
-  PetscCall(solids_.find_layers(body->box, phase));
-  PetscCall(solids_.extend(place, phase, phase.tensor.field, &phase.rows));
+  PetscCall(tools().solids.find_layers(body->box, phase));
+  PetscCall(tools().solids.extend(place, phase, phase.tensor.field, &phase.rows));
   PetscCall(place.update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   PetscFunctionReturn(0);
 }
@@ -424,17 +426,18 @@ PetscErrorCode FreeBodies::gather_force(MembraneMechanics &membrane, Body *body,
 PetscErrorCode FreeBodies::find_forces() {
   PetscFunctionBeginUser;
   net_force_ = NetForce(*domain_, drifts_);
-  for (Body &body : bodies_) PetscCall(find_force(&body));
+  PetscCall(for_bodies([this](std::size_t b) { return find_force(&bodies_[b]); }));
   PetscCall(net_force_.find_mean(&mean_force_));
   PetscFunctionReturn(0);
 }
 
-// Memory for that many components on a box, of any values, until the next call.
+// Memory for that many components on a box, of any values, until the next call of this thread.
 Field FreeBodies::scratch(const Box &box, int components) {
   constexpr std::size_t line = 64;  // bytes
   const std::size_t values = components * static_cast<std::size_t>(box.layout().size) + line / sizeof(double);
-  if (scratch_.size() < values) scratch_.resize(values);
-  const auto aligned = (reinterpret_cast<std::uintptr_t>(scratch_.data()) + line - 1) / line * line;
+  std::vector<double> &memory = tools().memory;
+  if (memory.size() < values) memory.resize(values);
+  const auto aligned = (reinterpret_cast<std::uintptr_t>(memory.data()) + line - 1) / line * line;
   return Field::in_memory(box, components, reinterpret_cast<double *>(aligned));
 }
 
@@ -442,8 +445,8 @@ Field FreeBodies::scratch(const Box &box, int components) {
 // any values.
 PetscErrorCode FreeBodies::move(const Box &box, const Step &step, const Field &flow, Field &stage, Phase *phase) {
   PetscFunctionBeginUser;
-  PetscCall(
-      interface_.advance(box, step.dt, flow, static_cast<long>(step.number), phase->rows, phase->fraction, stage));
+  PetscCall(tools().interface.advance(box, step.dt, flow, static_cast<long>(step.number), phase->rows, phase->fraction,
+                                      stage));
   phase->rows.follow_in_box(box, std::as_const(*phase).fraction[0],
                             rows_reach(phase->material, domain_->spec().ghosts));
   fill_wall_ghosts_even(box, at_centre, phase->fraction[0], domain_->spec().ghosts, &phase->rows);
@@ -451,8 +454,8 @@ PetscErrorCode FreeBodies::move(const Box &box, const Step &step, const Field &f
   PetscCall(find_solid(box, *phase));
   if (!phase->material.elastic()) PetscFunctionReturn(0);
   const PhasePlace place{&box, sides_, nullptr};
-  PetscCall(solids_.find_layers(box, *phase));
-  PetscCall(solids_.advance(place, {step.dt, step.number, fluid_, flow, before}, &phase->rows, *phase, stage));
+  PetscCall(tools().solids.find_layers(box, *phase));
+  PetscCall(tools().solids.advance(place, {step.dt, step.number, fluid_, flow, before}, &phase->rows, *phase, stage));
   PetscCall(place.update_ghosts(phase->tensor.field, Box::stencil_width, &phase->rows));
   PetscFunctionReturn(0);
 }
@@ -476,30 +479,37 @@ PetscErrorCode FreeBodies::move_membrane(const Step &step, const Field &flow, Bo
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FreeBodies::advance_body(std::size_t b, const Step &step, const Field &velocity, long *unresolved) {
+  PetscFunctionBeginUser;
+  Body &body = bodies_[b];
+  const int dimension = body.box.dimension();
+  const bool is_membrane = body.phase.material.is_membrane();
+  const int own = is_membrane ? MembraneMechanics::work_fields + dimension : stage_fields(body.phase);
+  Field memory = scratch(body.box, dimension + own), flow = memory.part(0, dimension),
+        work = memory.part(dimension, own);
+  bring_velocity(b, step, velocity, &flow);
+  PetscCall(move(body.box, step, flow, work, &body.phase));
+  if (is_membrane) PetscCall(move_membrane(step, flow, &body, work, unresolved));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FreeBodies::advance(const Step &step, const Field &velocity, long *unresolved) {
   PetscFunctionBeginUser;
   *unresolved = 0;
   net_force_ = NetForce(*domain_, drifts_);
   PetscCall(exchange_.fetch(velocity));
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    Body &body = bodies_[b];
-    const int dimension = body.box.dimension();
-    const bool is_membrane = body.phase.material.is_membrane();
-    const int own = is_membrane ? MembraneMechanics::work_fields + dimension : stage_fields(body.phase);
-    Field memory = scratch(body.box, dimension + own), flow = memory.part(0, dimension),
-          work = memory.part(dimension, own);
-    bring_velocity(b, step, velocity, &flow);
-    PetscCall(move(body.box, step, flow, work, &body.phase));
-    if (is_membrane) PetscCall(move_membrane(step, flow, &body, work, unresolved));
-  }
+  std::vector<long> found(bodies_.size(), 0);
+  PetscCall(for_bodies([&](std::size_t b) { return advance_body(b, step, velocity, &found[b]); }));
+  *unresolved = std::accumulate(found.begin(), found.end(), 0L);
   bool changed = false;
   PetscCall(fit_boxes(&changed, unresolved));
   if (changed) {
     PetscCall(find_forces());
     PetscFunctionReturn(0);
   }
-  for (Body &body : bodies_)
-    if (!body.phase.material.is_membrane()) PetscCall(find_force(&body));
+  PetscCall(for_bodies([this](std::size_t b) {
+    return bodies_[b].phase.material.is_membrane() ? PetscErrorCode(0) : find_force(&bodies_[b]);
+  }));
   PetscCall(net_force_.find_mean(&mean_force_));
   PetscFunctionReturn(0);
 }

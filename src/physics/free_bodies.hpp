@@ -3,6 +3,7 @@
 // grid and the force that goes back a body needs no message: docs/architecture.md.
 #pragma once
 
+#include "base/events.hpp"
 #include "base/petsc.hpp"
 #include "field/box_exchange.hpp"
 #include "field/phase.hpp"
@@ -115,6 +116,12 @@ public:
   }
 
 private:
+  /// What a thread needs to work on a body.
+  struct Tools {
+    InterfaceTransport interface;
+    SolidTransport solids{true};
+    std::vector<double> memory;
+  };
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and beyond that
   /// faces feel its stress. The rest of the margin is for what moves until the next fit.
   static int needed(const Material &material) { return 1 + (material.is_membrane() ? MembraneMechanics::reach : 1); }
@@ -131,9 +138,14 @@ private:
   PetscErrorCode find_force(Body *body);
   PetscErrorCode gather_force(MembraneMechanics &membrane, Body *body, Field &force);
   PetscErrorCode find_forces();
+  PetscErrorCode look_at(std::size_t body, const Step &step, const Field &velocity, BodyInBox *seen);
+  PetscErrorCode advance_body(std::size_t body, const Step &step, const Field &velocity, long *unresolved);
   PetscErrorCode move(const Box &box, const Step &step, const Field &flow, Field &stage, Phase *phase);
   PetscErrorCode move_membrane(const Step &step, const Field &flow, Body *body, Field &work, long *unresolved);
+  Tools &tools() { return tools_[TeamMember::number()]; }
   Field scratch(const Box &box, int components);
+  template <class Work>
+  PetscErrorCode for_bodies(const Work &work);
   PetscErrorCode connect_fractions();
 
   const Domain *domain_;
@@ -145,8 +157,7 @@ private:
   Field walls_;  ///< of the grid, solid fraction of rigid bodies that stay; none: null
   NetForce net_force_;
   Real3 mean_force_{};
-  InterfaceTransport interface_;
-  SolidTransport solids_{true};
+  std::vector<Tools> tools_;  ///< of all threads
   std::vector<Body> bodies_;  ///< by their numbers
   /// What look() has made of a body.
   struct Seen {
@@ -154,8 +165,27 @@ private:
     Field velocity;
   };
   std::vector<Seen> seen_;
-  std::vector<double> scratch_;
   bool fitted_ = false;  ///< the boxes are those that the exchange knows
 };
+
+/// work(place) for all bodies of this rank: where there are as many as threads, each of them all on one thread.
+template <class Work>
+PetscErrorCode FreeBodies::for_bodies(const Work &work) {
+#ifdef PETSC_USE_DEBUG  // every thread would note its functions on one stack
+  constexpr bool serial = true;
+#else
+  const bool serial = threads() == 1 || static_cast<int>(bodies_.size()) < threads();
+#endif
+  PetscFunctionBeginUser;
+  if (serial) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) PetscCall(work(b));
+    PetscFunctionReturn(0);
+  }
+  VerbScope scope(Verb::boxes);
+  std::vector<PetscErrorCode> errors(bodies_.size(), 0);
+  scope.flops(in_team(static_cast<int>(bodies_.size()), [&](int b) { errors[b] = work(b); }));
+  for (const PetscErrorCode error : errors) PetscCall(error);
+  PetscFunctionReturn(0);
+}
 
 }  // namespace eulastic

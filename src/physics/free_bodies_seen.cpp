@@ -7,31 +7,35 @@
 
 namespace eulastic {
 
+PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {
+  PetscFunctionBeginUser;
+  const Body &body = bodies_[b];
+  Seen &own = seen_[b];
+  own.velocity = Field(body.box, body.box.dimension());
+  bring_velocity(b, step, velocity, &own.velocity);
+  seen->velocity = &own.velocity;
+  if (step.dt == 0) PetscFunctionReturn(0);
+  own.moved.copy_from(body.phase);
+  const bool is_membrane = body.phase.material.is_membrane();
+  Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : stage_fields(body.phase));
+  PetscCall(move(body.box, step, own.velocity, work, &own.moved));
+  if (is_membrane) {
+    MembraneMechanics membrane({&body.box, sides_, nullptr});
+    long unresolved = 0;
+    PetscCall(membrane.find(own.moved, work));
+    PetscCall(membrane.move(step.dt, own.velocity, {}, &own.moved, &unresolved));
+  }
+  seen->phase = &own.moved;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::vector<BodyInBox> *seen) {
   PetscFunctionBeginUser;
   PetscCall(exchange_.fetch(velocity));
   *seen = list();
   seen_.clear();
   seen_.resize(bodies_.size());
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Body &body = bodies_[b];
-    Seen &own = seen_[b];
-    own.velocity = Field(body.box, body.box.dimension());
-    bring_velocity(b, step, velocity, &own.velocity);
-    (*seen)[b].velocity = &own.velocity;
-    if (step.dt == 0) continue;
-    own.moved.copy_from(body.phase);
-    const bool is_membrane = body.phase.material.is_membrane();
-    Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : stage_fields(body.phase));
-    PetscCall(move(body.box, step, own.velocity, work, &own.moved));
-    if (is_membrane) {
-      MembraneMechanics membrane({&body.box, sides_, nullptr});
-      long unresolved = 0;
-      PetscCall(membrane.find(own.moved, work));
-      PetscCall(membrane.move(step.dt, own.velocity, {}, &own.moved, &unresolved));
-    }
-    (*seen)[b].phase = &own.moved;
-  }
+  PetscCall(for_bodies([&](std::size_t b) { return look_at(b, step, velocity, &(*seen)[b]); }));
   PetscFunctionReturn(0);
 }
 
@@ -187,7 +191,8 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
 }
 
 std::size_t FreeBodies::bytes() const {
-  std::size_t sum = scratch_.size() * sizeof(double) + exchange_.bytes();
+  std::size_t sum = exchange_.bytes();
+  for (const Tools &own : tools_) sum += own.memory.size() * sizeof(double);
   const auto add = [&sum](const Phase &phase) {
     sum += phase.fraction.bytes() + (phase.material.carries_tensor() ? phase.tensor.field.bytes() : 0);
   };

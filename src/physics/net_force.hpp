@@ -19,9 +19,9 @@ class NetForce {
 public:
   /// Not `wanted`: does nothing.
   NetForce(const Domain &domain, bool wanted);
-  /// Row of component d that part `part` of row_parts(box) has added on the faces of a block.
+  /// Row of component d that part `part` of row_parts(box), or a member of a team, has added on the faces of a block.
   void add_row(const Box &box, int part, int d, const double *added) {
-    if (!sums_.empty()) sums_[part].add_row(d, added, box.cells()[0], box.layout().begin[0]);
+    if (!sums_.empty()) sums_[TeamMember::number() + part].add_row(d, added, box.cells()[0], box.layout().begin[0]);
   }
   /// Its mean in periodic directions, 0 in others. Collective.
   PetscErrorCode find_mean(Real3 *mean);

@@ -27,11 +27,13 @@ STIRRED = "-body_force .5,0,0 -initial_velocity taylor_green -initial_velocity_a
 
 class Boxes(SceneCase):
     def same_on_ranks(self, rows, *scene, steps=6, ranks=(1, 2, 3, 4), restart=True, prefix="ranks"):
-        """Runs a scene of bodies with these centres on these ranks, and from the middle on; returns the one on one rank."""
+        """Runs a scene of bodies with these centres on these ranks, on two threads, and from the middle on; returns the one on one rank."""
         file = self.room / "places.csv"
         file.write_text("\n".join(["x,y,z", *(",".join(map(str, row)) for row in rows), ""]))
         words = [*ALL, file, *(ELASTIC if "-cell_law" not in scene else []), *map(str, scene)]
         runs = {f"{prefix}{n}": ([*words, "-time_steps_max", steps], {"ranks": n}) for n in ranks}
+        if len(ranks) > 1:
+            runs[f"{prefix}threads"] = ([*words, "-time_steps_max", steps, "-threads", 2], {"ranks": 1})
         if restart:
             runs[f"{prefix}half"] = ([*words, "-time_steps_max", steps // 2], {"ranks": 2})
         found = self.run_together(runs)

@@ -1,5 +1,6 @@
 // Parts of the rows and pieces of work that threads share.
 #include "grid/threads.hpp"
+#include "base/events.hpp"
 #include "bodies/body_sums.hpp"
 #include "field/exact_sum.hpp"
 
@@ -104,4 +105,24 @@ TEST_F(Threads, SumsOfPartsAreThoseOfTheWhole) {
     EXPECT_EQ(parts[s], whole[s]);
     for (int b = 0; b < 3; ++b) EXPECT_EQ(some.value(b, s), bodies.value(b, s));
   }
+}
+
+TEST_F(Threads, ATeamDoesEveryTaskWhole) {
+  set_threads(3);
+  std::vector<std::atomic<int>> done(50);
+  std::atomic<int> members{0};
+  const Domain domain = make_grid({32, 32, 32});
+  EXPECT_GT(row_parts(domain), 1);
+  const double flops = in_team(50, [&](int n) {
+    ++done[n];
+    members |= 1 << TeamMember::number();
+    const VerbScope ended_by_the_member(Verb::boxes);
+    VerbScope(Verb::bodies).flops(n);
+    EXPECT_EQ(row_parts(domain), 1);
+    in_parallel(3, 3, [&](int) { EXPECT_TRUE(TeamMember::is_here()); });
+  });
+  EXPECT_EQ(flops, 49 * 50 / 2);
+  EXPECT_LT(members, 1 << 3);
+  EXPECT_FALSE(TeamMember::is_here());
+  for (const std::atomic<int> &times : done) EXPECT_EQ(times, 1);
 }
