@@ -1,8 +1,8 @@
 // What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of
 // that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
 #include "app/openings.hpp"
+#include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
 
 #include <petscksp.h>

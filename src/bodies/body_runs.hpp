@@ -1,9 +1,9 @@
 // Sums over the cells of bodies, run by run: exact to the last bit on any ranks, without a sum for every cell.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "bodies/body_owners.hpp"
 #include "bodies/unwrap.hpp"
-#include "field/exact_sum.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "grid/box.hpp"

@@ -2,9 +2,9 @@
 
 #include "base/deliver.hpp"
 #include "base/events.hpp"
+#include "base/exact_sum.hpp"
 #include "bodies/body_runs.hpp"
 #include "bodies/body_sums.hpp"
-#include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "grid/domain.hpp"
 #include "grid/threads.hpp"

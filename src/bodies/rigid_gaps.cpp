@@ -1,6 +1,6 @@
 // RigidBodies: the volume between the surface of bodies that rest and the faces inside them.
+#include "base/exact_sum.hpp"
 #include "bodies/rigid.hpp"
-#include "field/exact_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "bodies/stretch_force.hpp"
 
+#include "base/exact_sum.hpp"
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
-#include "field/exact_sum.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #include "bodies/surface_measures.hpp"
 
 #include "base/events.hpp"
+#include "base/exact_sum.hpp"
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
 #include "kernels/plane_area.hpp"
 

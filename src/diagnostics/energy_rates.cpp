@@ -2,8 +2,8 @@
 
 #include "base/events.hpp"
 #include "diagnostics/edge_stress.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
+#include "grid/sum_row_parts.hpp"
 
 #include <algorithm>
 

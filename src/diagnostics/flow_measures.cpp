@@ -3,8 +3,8 @@
 #include "base/events.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "diagnostics/viscous_dissipation.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
+#include "grid/sum_row_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

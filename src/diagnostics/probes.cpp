@@ -1,7 +1,7 @@
 #include "diagnostics/probes.hpp"
 
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "grid/domain.hpp"
 

@@ -1,7 +1,7 @@
 #include "diagnostics/side_flows.hpp"
 
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {

@@ -1,8 +1,8 @@
 #include "diagnostics/surface_loads.hpp"
 
 #include "base/events.hpp"
+#include "base/exact_sum.hpp"
 #include "diagnostics/edge_stress.hpp"
-#include "field/exact_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

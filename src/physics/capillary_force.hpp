@@ -2,8 +2,8 @@
 // on faces, which a pressure balances exactly where the curvature is uniform; docs/method.md, section 17.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/exact_sum.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "grid/active_segments.hpp"

@@ -1,6 +1,6 @@
 #include "physics/limits.hpp"
 
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/law.hpp"
 #include "field/open_sides.hpp"
 #include "grid/domain.hpp"

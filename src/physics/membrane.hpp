@@ -2,8 +2,8 @@
 // cells around the surface of a body, and their force on the flow; docs/method.md, section 18.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/exact_sum.hpp"
 #include "field/phase_place.hpp"
 #include "field/surface_sample.hpp"
 #include "physics/bending.hpp"

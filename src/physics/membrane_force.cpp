@@ -2,6 +2,7 @@
 #include "base/events.hpp"
 #include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
 #include "physics/membrane.hpp"
 #include "physics/membrane_tensor.hpp"
 #include "physics/smooth_row.hpp"

@@ -1,6 +1,6 @@
 // Membrane: energies and power of membranes.
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "physics/membrane.hpp"
 #include "physics/membrane_tensor.hpp"
 

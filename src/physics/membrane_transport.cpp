@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,9 @@
 // that would move all of it for ever. docs/method.md, section 17.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/exact_sum.hpp"
+#include "field/field.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {

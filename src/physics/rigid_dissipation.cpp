@@ -1,6 +1,6 @@
 // Dissipation by viscosity beside rigid bodies.
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "grid/domain.hpp"
 #include "physics/rigid.hpp"
 #include "physics/rigid_rows.hpp"

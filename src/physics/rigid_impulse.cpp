@@ -1,7 +1,7 @@
 #include "physics/rigid_impulse.hpp"
 
 #include "base/events.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "physics/rigid_rows.hpp"
 
 #include <algorithm>

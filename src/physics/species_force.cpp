@@ -1,7 +1,7 @@
 #include "physics/species_force.hpp"
 
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
+#include "grid/sum_row_parts.hpp"
 #include "kernels/isa.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // -NAME_stretch_force of a body that is alone in its box; of the labelled bodies of a grid: bodies/stretch_force.hpp.
 #pragma once
 
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/phase.hpp"
 
 namespace eulastic {

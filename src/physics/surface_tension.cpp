@@ -1,5 +1,7 @@
 #include "physics/surface_tension.hpp"
 
+#include "grid/threads.hpp"
+
 #include <algorithm>
 
 namespace eulastic {

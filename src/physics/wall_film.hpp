@@ -2,7 +2,7 @@
 // beside a wall; docs/method.md, section 18 "Walls".
 #pragma once
 
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 

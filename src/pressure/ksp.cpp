@@ -1,6 +1,6 @@
 #include "pressure/ksp.hpp"
 
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/global_vector.hpp"
 #include "field/open_sides.hpp"
 

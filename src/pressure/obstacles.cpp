@@ -2,6 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/open_sides.hpp"
+#include "grid/sum_row_parts.hpp"
 #include "kernels/momentum.hpp"
 #include "pressure/row_sums.hpp"
 

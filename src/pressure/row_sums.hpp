@@ -1,7 +1,7 @@
 // Exact sums of products over rows.
 #pragma once
 
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "kernels/poisson.hpp"
 
 namespace eulastic {

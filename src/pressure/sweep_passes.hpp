@@ -1,8 +1,8 @@
 // What a pressure sweep does with rows: the sums that say how far to go, and the step.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/exact_sum.hpp"
 #include "grid/domain.hpp"
 #include "pressure/minimise.hpp"
 

@@ -1,7 +1,7 @@
 #include "solver/feeders.hpp"
 
+#include "base/exact_sum.hpp"
 #include "bodies/labels.hpp"
-#include "field/exact_sum.hpp"
 #include "field/fed_velocity.hpp"
 #include "field/open_sides.hpp"
 

@@ -1,5 +1,5 @@
 // Solver: what is behind pressure sides takes part in a step.
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "field/open_sides.hpp"
 #include "physics/correction.hpp"
 #include "solver/solver.hpp"

@@ -2,6 +2,7 @@
 #include "pressure/acm_sweeps.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/state_hash.hpp"
+#include "grid/threads.hpp"
 #include "pressure/smac.hpp"
 #include "support/poisson_scene.hpp"
 

@@ -1,8 +1,8 @@
 // The exact pressure solver: residual, ghosts, known modes, and the same bits on any decomposition.
 #include "pressure/smac.hpp"
+#include "base/exact_sum.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/state_hash.hpp"
-#include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "support/lopsided.hpp"
 

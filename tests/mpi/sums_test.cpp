@@ -1,7 +1,7 @@
 // Global sums and the state hash: the same bits on every decomposition as on one rank.
+#include "base/exact_sum.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/state_hash.hpp"
-#include "field/exact_sum.hpp"
 
 #include <gtest/gtest.h>
 

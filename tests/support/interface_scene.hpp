@@ -1,8 +1,8 @@
 // A solid fraction carried by a given velocity, without a solver.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "bodies/volume_fraction.hpp"
-#include "field/exact_sum.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
 #include "physics/interface.hpp"

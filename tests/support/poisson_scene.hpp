@@ -1,8 +1,8 @@
 // A Poisson problem lap q = D on a grid, with functions of the global cell, its residual, and all decompositions.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "base/rank_zero.hpp"
-#include "field/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "support/lopsided.hpp"

@@ -2,7 +2,7 @@
 #include "grid/threads.hpp"
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
-#include "field/exact_sum.hpp"
+#include "grid/sum_row_parts.hpp"
 
 #include <gtest/gtest.h>
 

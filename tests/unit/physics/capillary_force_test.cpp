@@ -1,6 +1,7 @@
 // CapillaryForce: a drop in a box of its own has the force and the sums of the same drop on the grid, to the bit.
 #include "physics/capillary_force.hpp"
 #include "grid/skipping.hpp"
+#include "grid/threads.hpp"
 #include "physics/surface_tension.hpp"
 #include "support/interface_scene.hpp"
 

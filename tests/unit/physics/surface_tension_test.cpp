@@ -1,6 +1,6 @@
 // Heights and curvature of exact surfaces, the area of planes, and the force of surface tension.
 #include "physics/surface_tension.hpp"
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 #include "kernels/height_curvature.hpp"
 #include "support/interface_scene.hpp"
 #include "support/scene.hpp"

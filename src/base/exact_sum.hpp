@@ -6,9 +6,6 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/field.hpp"
-#include "grid/domain.hpp"
-#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -77,16 +74,5 @@ private:
 PetscErrorCode reduce_parts(MPI_Comm comm, std::vector<ExactSums> &parts, double *result);
 /// The largest of every number of all parts, as many in each, over all ranks. Drops NaN. Collective.
 PetscErrorCode reduce_maxima(MPI_Comm comm, const std::vector<std::vector<double>> &parts, std::vector<double> *result);
-
-/// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
-template <class Add>
-PetscErrorCode sum_row_parts(const Domain &domain, int count, const Add &add, double *result) {
-  PetscFunctionBeginUser;
-  const int parts = row_parts(domain);
-  std::vector<ExactSums> sums(parts, ExactSums(count));
-  in_parallel(parts, parts, [&](int part) { add(row_part(domain, part, parts), sums[part]); });
-  PetscCall(reduce_parts(domain.comm(), sums, result));
-  PetscFunctionReturn(0);
-}
 
 }  // namespace eulastic

@@ -1,5 +1,5 @@
 // The superaccumulator against hand values and against Shewchuk's exact expansions; lane sums; blocks of a row.
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "field/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
