@@ -6,6 +6,8 @@ import re
 import subprocess
 import sys
 
+import program_environment  # noqa: F401
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINE = re.compile(r"^> Made with eulastic .*\n", re.M)
 

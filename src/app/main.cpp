@@ -8,7 +8,6 @@
 #include "base/rank_zero.hpp"
 #include "io/hdf5_handle.hpp"
 
-#include <unistd.h>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -27,28 +26,7 @@ bool finalize() {
   return true;
 }
 
-// Ranks and threads that wait give up their core, which others may need, unless the environment has it otherwise.
-// OpenMP's run time looks at its environment before main: the program begins once more.
-void wait_passively(char **argv) {
-  setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
-  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  setenv("OMP_WAIT_POLICY", "passive", 1);
-  char self[4096];
-  const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-  if (length <= 0) return;
-  self[length] = 0;
-  (void)execv(self, argv);  // comes back only if it cannot
-}
-
 int program(int argc, char **argv) {
-  wait_passively(argv);
-  // Open MPI guards shared file pointers, which nobody uses here, with a semaphore named after the file. A process
-  // killed while it holds it leaves it locked, and the next run that opens a file of that name waits for ever.
-  setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // one rank by itself needs no daemon of Open MPI beside it
-  const auto has = [](const char *name) { return std::getenv(name) != nullptr; };
-  if (!has("OMPI_COMM_WORLD_RANK") && !has("PMIX_RANK") && !has("PMI_RANK"))
-    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);  // nor a directory, which runs that end meanwhile may remove
   int threads;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads)) return exit_failed;
   const auto environment = on_rank_0([] {

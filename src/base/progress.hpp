@@ -15,7 +15,7 @@ public:
     double cells = 0;                      ///< cells that one step updates, for the rate
   };
 
-  /// Terminal or log, whatever `out` is; silent on every rank but 0.
+  /// Terminal or log, whichever `out` is, but log under the mpiexec of Open MPI; silent on every rank but 0.
   static Style style_of(std::FILE *out, int rank);
 
   Progress(std::FILE *out, Style style, const Goal &goal) : out_(out), style_(style), goal_(goal) {}

@@ -16,7 +16,8 @@ import unittest
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from restart_case import BINARY, ENDLESS, FLAT, MPIEXEC, OFTEN, Restart  # noqa: E402
+from program import BINARY, MPIEXEC  # noqa: E402
+from restart_case import ENDLESS, FLAT, OFTEN, Restart  # noqa: E402
 
 
 class Ends(Restart):
@@ -95,7 +96,7 @@ class Ends(Restart):
                 self.assertEqual(summary["checkpoint"], self.checkpoints()[-1].name)
                 self.assertIn(f"stopped by a signal at t = {summary['time']:.9g}, step {summary['steps']}; results: run; ", last)
                 self.assertIn(": ends after this step, with a checkpoint\n", process.stderr.read())
-                command = last.split(summary["checkpoint"] + ": ")[1].replace("mpiexec", MPIEXEC + " --oversubscribe")
+                command = last.split(summary["checkpoint"] + ": ")[1].replace("mpiexec", MPIEXEC)
                 again = subprocess.run(f"{command} -time_steps_max {summary['steps'] + 3}", shell=True, cwd=self.room,
                                        env=self.environment, capture_output=True, text=True, timeout=120)
                 self.assertEqual((again.returncode, again.stderr), (0, ""))

@@ -18,9 +18,8 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from eulastic import Run, read_options  # noqa: E402
 from many_runs import Plan  # noqa: E402
+from program import BINARY, launcher  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 ALL_CASES = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
 HUGE = ["capillary_paper"]  # coarse, they would not be themselves any more: only checked
 CASES = [case for case in ALL_CASES if case not in HUGE]
@@ -28,7 +27,7 @@ STEPS = 3
 
 
 def environment(options=""):
-    return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", PETSC_OPTIONS=options)
+    return dict(os.environ, PETSC_OPTIONS=options)
 
 
 def coarse(case):
@@ -49,8 +48,7 @@ class Cases(unittest.TestCase):
 
     def run_case(self, case, *options, ranks=1, name="run"):
         directory = self.room / f"{case}_{name}"
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        done = subprocess.run([*command, BINARY, ROOT / f"options/{case}.opts", *options, "-output_dir", directory],
+        done = subprocess.run([*launcher(ranks), BINARY, ROOT / f"options/{case}.opts", *options, "-output_dir", directory],
                               capture_output=True, text=True, env=environment(), timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("error", done.stderr)
@@ -100,7 +98,7 @@ class Cases(unittest.TestCase):
 
     def test_huge_cases_pass_the_check(self):
         for case in HUGE:
-            done = subprocess.run([BINARY, ROOT / f"options/{case}.opts", "-check_only"], capture_output=True, text=True,
+            done = subprocess.run([*launcher(), BINARY, ROOT / f"options/{case}.opts", "-check_only"], capture_output=True, text=True,
                                   env=environment(), timeout=300)
             self.assertEqual(done.returncode, 0, done.stderr)
             for line in ("cells: 3072 x 640 x 640", "memory: ", "wall time (estimate): ", "hematocrit: 0.2"):

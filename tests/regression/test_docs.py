@@ -16,9 +16,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from full import FULL  # noqa: E402
+from program import BINARY  # noqa: E402
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
 FLAT = SHORT.replace("16,16,16", "16,16,1")
 OTHERS = {"python.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
@@ -92,8 +92,7 @@ class Docs(unittest.TestCase):
         srun = cls.room / "build/release/srun"  # as SLURM has it for a job of two tasks
         srun.write_text('#!/bin/sh\nexec mpiexec "$@"\n')
         srun.chmod(0o755)
-        cls.environment = dict(os.environ, SLURM_NTASKS="2", SCRATCH=str(cls.room / "scratch"), OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                               OMPI_MCA_rmaps_base_oversubscribe="1", PETSC_OPTIONS=SHORT)
+        cls.environment = dict(os.environ, SLURM_NTASKS="2", SCRATCH=str(cls.room / "scratch"), PETSC_OPTIONS=SHORT)
         cls.environment.pop("EULASTIC", None)
         cls.environment["PATH"] = f"{cls.room / 'build/release'}:{os.environ['PATH']}"
 

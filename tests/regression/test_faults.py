@@ -13,7 +13,8 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from restart_case import BINARY, ENDLESS, FLAT, MPIEXEC, OFTEN, ROOT, Restart  # noqa: E402
+from program import BINARY, launcher  # noqa: E402
+from restart_case import ENDLESS, FLAT, OFTEN, ROOT, Restart  # noqa: E402
 
 LIBRARY = os.environ["EULASTIC_FAULT_LIBRARY"]
 VERBS = re.findall(r'"(Eul[A-Z]\w+)"', (ROOT / "src/base/events.cpp").read_text().split("stage_names")[0])
@@ -34,7 +35,7 @@ class Faults(Restart):
         if verb in WITHOUT:
             at = scene.index(WITHOUT[verb])
             del scene[at:at + 2]
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks), BINARY, *scene, *OFTEN, *NEEDS.get(verb, []),
+        command = [*launcher(ranks), BINARY, *scene, *OFTEN, *NEEDS.get(verb, []),
                    "-time_steps_max", "60", "-output_dir", f"{kind}_{verb}_{rank}"]
         result = subprocess.run(list(map(str, command)), cwd=self.room, env=self.environment, timeout=SECONDS,
                                 capture_output=True, text=True)

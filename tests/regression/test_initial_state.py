@@ -12,12 +12,11 @@ import h5py
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from eulastic import Run  # noqa: E402
+from program import BINARY, launcher  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 GRID = "-grid_cells 24,20,1 -grid_length 1.2,1,1 -boundary_y wall -fluid_viscosity .05".split()
 SOLID = "-species cell -cell_shear_modulus 1".split()
 Z = (1, 20, 24)
@@ -32,10 +31,8 @@ class WithRoom(unittest.TestCase):
 
     def start(self, *options, ranks=1):
         self.runs += 1
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        return subprocess.run([*command, BINARY, *options, "-output_dir", f"out{self.runs}"], cwd=self.room,
-                              capture_output=True, text=True, env=environment, timeout=120)
+        return subprocess.run([*launcher(ranks), BINARY, *options, "-output_dir", f"out{self.runs}"], cwd=self.room,
+                              capture_output=True, text=True, timeout=120)
 
     def run_case(self, *options, ranks=1):
         done = self.start(*options, ranks=ranks)

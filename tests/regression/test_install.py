@@ -6,12 +6,17 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import h5py
 
-BUILD = pathlib.Path(os.environ["EULASTIC"]).resolve().parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from program import BINARY, launcher  # noqa: E402
+
+BUILD = pathlib.Path(BINARY).resolve().parent
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHORT = ["-grid_cells", "16,16,1", "-time_steps_max", "2"]
 
@@ -53,7 +58,7 @@ class Installed(unittest.TestCase):
         self.call("eulastic-plot", "run")
         self.assertTrue((self.room / "run/plot_series.png").exists())
         case = self.prefix / "share/eulastic/options/disc_in_channel.opts"
-        self.call(self.environment.get("EULASTIC_MPIEXEC", "mpiexec"), "-n", "2", "eulastic", case, *SHORT, "-output_dir", "other")
+        self.call(*launcher(2), "eulastic", case, *SHORT, "-output_dir", "other")
         self.assertEqual(*((self.room / name / "series.csv").read_text() for name in ("run", "other")))
 
     def test_other_commands_on_the_path(self):

@@ -7,11 +7,14 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from program import BINARY, launcher  # noqa: E402
+
 SCENE = "-grid_cells 16,16,1 -boundary_y wall -time_end 3e-3 -time_step 1e-3 -initial_velocity random".split()
 
 
@@ -22,10 +25,8 @@ class Ksp(unittest.TestCase):
         self.room = pathlib.Path(room.name)
 
     def run_program(self, options, ranks=1, scene=SCENE):
-        command = [MPIEXEC, "-quiet", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
         variables = {k: v for k, v in os.environ.items() if k != "PETSC_OPTIONS"}
-        variables.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
-        return subprocess.run([*command, BINARY, *scene, *options.split()], cwd=self.room, env=variables,
+        return subprocess.run([*launcher(ranks), BINARY, *scene, *options.split()], cwd=self.room, env=variables,
                               capture_output=True, text=True, timeout=120)
 
     def summary(self, options, directory, **more):

@@ -18,8 +18,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
 from many_runs import Plan  # noqa: E402
+from program import BINARY, launcher  # noqa: E402
 
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 SCENE = ("-grid_cells 16,16,1 -grid_length 1,1,1 -fluid_viscosity .1 -body_force 1,0,0 -species disc -disc_shape sphere "
          "-disc_radius .25 -disc_shear_modulus 1 -disc_initial_stretch 1.2,.8333333333333334,1 -snapshot_interval .05 "
          "-probe_points .5,.5,.5").split()
@@ -71,10 +71,8 @@ class NothingIsLost(unittest.TestCase):
 
     @classmethod
     def start(cls, *words, ranks=1, **more):
-        launcher = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        return subprocess.run([*launcher, os.environ["EULASTIC"], *map(str, words)], cwd=cls.room, capture_output=True,
-                              text=True, timeout=120, **more,
-                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+        return subprocess.run([*launcher(ranks), BINARY, *map(str, words)], cwd=cls.room, capture_output=True,
+                              text=True, timeout=120, **more)
 
     def refuse(self, cases):
         """On one rank each by itself, on two one after the other in one start of MPI."""
@@ -127,7 +125,7 @@ class NothingIsLost(unittest.TestCase):
         self.assertEqual(done.stderr.count("eulastic: error:"), 1, done.stderr)
         self.assertEqual(listing(self.room / "run"), before)
         # One whose first step never ends: killed when its files are there, and then one that is refused.
-        process = subprocess.Popen([os.environ["EULASTIC"], *map(str, words)], stdout=subprocess.DEVNULL)
+        process = subprocess.Popen([*launcher(), BINARY, *map(str, words)], stdout=subprocess.DEVNULL)
         while not list((self.room / "run").glob(".new/*.csv")):
             self.assertIsNone(process.poll())
         process.kill()

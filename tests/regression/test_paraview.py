@@ -15,7 +15,10 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 
-BINARY = os.environ["EULASTIC"]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from program import BINARY, launcher  # noqa: E402
+
 CELLS, LENGTH = numpy.array([12, 10, 8]), numpy.array([1.2, 1.0, 0.8])
 SCENE = ("-grid_cells 12,10,8 -grid_length 1.2,1,.8 -boundary_y wall -wall_ymax_velocity 1,0,0 -fluid_viscosity .5 "
          "-initial_velocity couette -species cell,seed -cell_shape sphere -cell_radius .2 -cell_centre .6,.3,.4 "
@@ -80,8 +83,7 @@ numpy.savez(sys.argv[2], origin=image.GetOrigin(), spacing=image.GetSpacing(), e
 
 
 def start(*command):
-    return subprocess.run(command, capture_output=True, text=True,
-                          env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 def listed(directory):
@@ -267,7 +269,7 @@ class Paraview(unittest.TestCase):
         for name, values in seen.items():
             numpy.testing.assert_array_equal(values.ravel(), self.last[name][...].ravel(), name)
             self.assertEqual(values.dtype, self.last[name].dtype)
-        done = start(os.environ.get("EULASTIC_MPIEXEC", "mpiexec"), "--oversubscribe", "-n", "2", BINARY, *words, "-output_dir", two)
+        done = start(*launcher(2), BINARY, *words, "-output_dir", two)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((two / "snapshot_000002.vti").read_bytes(), (out / "snapshot_000002.vti").read_bytes())
         longer = [".02" if word == ".01" else word for word in words]

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "scripts/studies", "tests/support")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "scripts/lib", "scripts/studies", "tests/support")]
 sys.dont_write_bytecode = True
 from full import FULL, full  # noqa: E402
 from validation import exact, report  # noqa: E402

@@ -9,10 +9,8 @@ import pathlib
 import subprocess
 
 import h5py
+from program import launcher
 
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
-# One rank by itself needs no daemon of Open MPI, nor a directory.
-ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
 
 
 @dataclasses.dataclass
@@ -60,10 +58,8 @@ class Plan:
         """{name: Outcome}. `cwd`: the directory in which all of them run."""
         plan = self.room / "plan.txt"
         plan.write_text("\n".join(self.lines) + "\n")
-        launcher = [MPIEXEC, "--oversubscribe", "-n", str(self.ranks)] if self.ranks > 1 else []
-        environment = os.environ if self.ranks > 1 else {**os.environ, **ALONE}
-        done = subprocess.run([*launcher, os.environ[program], str(plan)], capture_output=True, text=True, timeout=timeout,
-                              stdin=subprocess.DEVNULL, env=environment, cwd=cwd)
+        done = subprocess.run([*launcher(self.ranks), os.environ[program], str(plan)], capture_output=True, text=True, timeout=timeout,
+                              stdin=subprocess.DEVNULL, cwd=cwd)
         outcomes = {}
         for name in self.names:
             text = lambda end: (self.room / (name + end)).read_text() if (self.room / (name + end)).exists() else ""

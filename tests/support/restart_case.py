@@ -18,9 +18,8 @@ import unittest
 
 import h5py
 import numpy
+from program import BINARY, launcher
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FLAT = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -wall_ymax_frequency .9 "
         "-fluid_viscosity .3 -body_force .1,0,0 -species cell,bead -cell_shape sphere -cell_radius .8 "
@@ -42,10 +41,9 @@ class Restart(unittest.TestCase):
         self.addCleanup(room.cleanup)
         self.room = pathlib.Path(room.name)
         self.environment = {k: v for k, v in os.environ.items() if k != "PETSC_OPTIONS"}
-        self.environment.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
 
     def command(self, arguments, ranks):
-        return [*([MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks else []), BINARY, *map(str, arguments)]
+        return [*launcher(ranks), BINARY, *map(str, arguments)]
 
     def call(self, *arguments, ranks=0, **more):
         return subprocess.run(self.command(arguments, ranks), cwd=self.room, env=self.environment, timeout=120,

@@ -112,7 +112,6 @@ PetscErrorCode execute(const char *plan) {
 }  // namespace
 
 int main(int argc, char **argv) {
-  setenv("OMPI_MCA_sharedfp", "^sm,lockedfile", 0);
   unsetenv("PETSC_OPTIONS");
   const char *plan = argc > 1 ? argv[1] : "";
   int count = 1;

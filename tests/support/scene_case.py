@@ -12,9 +12,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from eulastic import Run  # noqa: E402
 from many_runs import Plan  # noqa: E402
+from program import BINARY, launcher  # noqa: E402
 
-BINARY = os.environ["EULASTIC"]
-MPIEXEC = os.environ.get("EULASTIC_MPIEXEC", "mpiexec")
 
 
 class SceneCase(unittest.TestCase):
@@ -25,11 +24,9 @@ class SceneCase(unittest.TestCase):
 
     def run_program(self, name, *options, ranks=1):
         """The Run in self.room / name, which must end well."""
-        command = [MPIEXEC, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         directory = self.room / name
-        done = subprocess.run([*command, BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
-                              env=environment, timeout=300)
+        done = subprocess.run([*launcher(ranks), BINARY, *options, "-output_dir", directory], capture_output=True, text=True,
+                              timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         return Run(directory)
 

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 
 import h5py
+import program_environment  # noqa: F401
 from eulastic import Run
 
 from .case import ROOT
@@ -23,8 +24,6 @@ class Runner:
         self.program, self.work = program, work
         self.version = hashlib.sha256(program.read_bytes()).hexdigest()
         self.environment = {name: value for name, value in os.environ.items() if name != "PETSC_OPTIONS"}
-        self.environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                                OMPI_MCA_hwloc_base_binding_policy="none", OMP_NUM_THREADS="1")
 
     def command(self, case, setting, key, folder, more):
         options = {"method": setting.method, "pressure_solver": setting.solver, **case.options(key, folder),
