@@ -10,14 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 namespace eulastic {
 namespace {
-
-namespace fs = std::filesystem;
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
@@ -111,16 +107,6 @@ double ghosted_cells(const Config &config, const Int3 &parts) {
   return cells;
 }
 
-// The least of the limits in `file` of the folder `base`/`path` and all above it.
-double least_above(const fs::path &base, fs::path path, const char *file) {
-  double least = std::numeric_limits<double>::infinity();
-  for (;; path = path.parent_path()) {
-    double limit;
-    if (std::ifstream(base / path / file) >> limit && limit > 0) least = std::min(least, limit);
-    if (path.empty()) return least;
-  }
-}
-
 std::string too_little(int ranks, double needed, double limit, double share) {
   char text[320];
   std::snprintf(text, sizeof text,
@@ -139,20 +125,7 @@ double bytes_per_rank(const Config &config, const Int3 &parts) {
 
 double bytes_in_boxes(const Config &config) { return sizeof(double) * boxed_values(config); }
 
-double memory_limit(const std::string &root) {
-  double limit = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  std::ifstream groups(root + "/proc/self/cgroup");
-  for (std::string line; std::getline(groups, line);) {  // number:controllers:/path; of version 2: 0::/path
-    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
-    const fs::path path = fs::path(line.substr(second + 1)).relative_path();
-    if (controllers == ",,") limit = std::min(limit, least_above(root + "/sys/fs/cgroup", path, "memory.max"));
-    if (controllers.find(",memory,") != std::string::npos)
-      limit = std::min(limit, least_above(root + "/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
-  }
-  return limit;
-}
+double memory_limit() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
 
 PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *refusal) {
   MPI_Comm node;

@@ -11,9 +11,8 @@ double bytes_per_rank(const Config &config, const Int3 &parts);
 /// Of all bodies that lie in boxes of their own, of all ranks; bytes_per_rank() counts a share of them.
 double bytes_in_boxes(const Config &config);
 
-/// Bytes this machine lets the program use: its memory, or less where a control group says so. `root` is put before
-/// the names of the files that tell; physical memory counts wherever that is.
-double memory_limit(const std::string &root = "");
+/// Bytes of physical memory of this machine.
+double memory_limit();
 
 /// Collective. `refusal`: one line if some node has too little memory for its ranks (-guard_memory), or if a rank would
 /// hold more numbers than PETSc's indices can count.

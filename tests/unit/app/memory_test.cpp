@@ -1,17 +1,15 @@
-// What the machine has, from files as kernels write them; what is refused, with both numbers.
+// The memory of the machine; runs that need more are refused with both numbers.
 #include "app/memory.hpp"
 #include "support/command_line.hpp"
-#include "support/files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
 
 using namespace eulastic;
-using namespace eulastic::test;
 
 namespace {
-
-void put(const std::string &path, const std::string &text) {
-  fs::create_directories(fs::path(path).parent_path());
-  std::ofstream(path) << text;
-}
 
 std::string refusal(const std::string &line) {
   const ParseResult parsed = parse_line(line);
@@ -23,30 +21,12 @@ std::string refusal(const std::string &line) {
 
 }  // namespace
 
-TEST(Memory, PhysicalWithoutGroups) {
-  const TemporaryDirectory empty;
-  EXPECT_EQ(memory_limit(empty / "none"), double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)));
-  EXPECT_GT(memory_limit(), 0);
-  EXPECT_LE(memory_limit(), memory_limit(empty / "none"));
-}
-
-TEST(Memory, TheLeastOfTheGroupsAbove) {
-  const TemporaryDirectory root;
-  put(root / "proc/self/cgroup", "0::/user.slice/job\n");
-  put(root / "sys/fs/cgroup/user.slice/job/memory.max", "max\n");
-  EXPECT_EQ(memory_limit(root / ""), memory_limit(root / "none"));
-  put(root / "sys/fs/cgroup/user.slice/memory.max", "7000000\n");
-  EXPECT_EQ(memory_limit(root / ""), 7000000);
-  put(root / "sys/fs/cgroup/user.slice/job/memory.max", "6000000\n");
-  EXPECT_EQ(memory_limit(root / ""), 6000000);
-}
-
-TEST(Memory, OldGroups) {
-  const TemporaryDirectory root;
-  put(root / "proc/self/cgroup", "12:cpu,cpuacct:/a\n4:hugetlb,memory:/b/c\nnonsense\n0::/\n");
-  put(root / "sys/fs/cgroup/memory/b/memory.limit_in_bytes", "5000000\n");
-  put(root / "sys/fs/cgroup/cpu/a/memory.limit_in_bytes", "1\n");
-  EXPECT_EQ(memory_limit(root / ""), 5000000);
+TEST(Memory, PhysicalMemoryOfTheMachine) {
+  std::ifstream kernel("/proc/meminfo");  // MemTotal: <number> kB
+  std::string name;
+  double kilobytes = 0;
+  ASSERT_TRUE(kernel >> name >> kilobytes && name == "MemTotal:");
+  EXPECT_EQ(memory_limit(), 1024 * kilobytes);
 }
 
 TEST(Memory, RefusedWithBothNumbers) {
