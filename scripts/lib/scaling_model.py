@@ -7,7 +7,8 @@
 LogGP's terms (Alexandrov et al. 1995): latency and overhead of a message, bandwidth of a rank; and what memory takes to
 pack and unpack. tools/step_counts.csv, by scripts/studies/scaling/scaling_tables --count, is of the inner one of 27 ranks with boxes of
 32^3 cells: bytes to neighbours across faces, edges and corners give the sums of w, w^2 and w^3 over the fields of a
-step, w layers each, and with them the bytes of a box of any size.
+step, w layers each, and with them the bytes of a box of any size. What the boxes of bodies send (`boxes` there) goes to
+whichever rank owns a part of them and has sums of its own.
 """
 import collections
 import csv
@@ -28,12 +29,16 @@ COUNTED_BOX, COUNTED_SPLIT = 32, 3
 LEVEL_GATHERED = 4096  # cells: what the V-cycle gathers on every rank
 LEVEL_MESSAGES = 3     # to a neighbour in a sweep, of each coarse level that is not gathered
 SPACING = 21.12 / 96   # of CASE as counted
+BOXES = "boxes"        # the verb of what a step sends because bodies lie in boxes of their own
 # What stands on the command line of scripts/count_communication beside CASE, for the counts and for -check_only.
 SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
             "classic": ["-method", "classic", "-time_step", "0.004"]}
 ASSUMPTIONS = [
     "a rank's messages leave one after the other, nothing overlaps, no other traffic, no contention in the network",
-    "an exchange of a block of fields is a message to each neighbour and waits for one latency",
+    "an exchange of a block of fields is a message to each neighbour and waits for one latency, and so is one with the boxes of "
+    "bodies, though fewer ranks share a body",
+    "a body is owned by the rank that has its centre, which may be anywhere, and what lies in the cells of other ranks travels; that "
+    "bodies go to other ranks to even out the work is left out",
     "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
     "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
     "levels of the V-cycle beyond those counted send three messages to a neighbour in a sweep, as the counted do; their "
@@ -94,24 +99,49 @@ class Moments:
 
 
 @dataclasses.dataclass
+class Bodies:
+    """In boxes of their own, which the exchange of velocities and forces fills and empties."""
+    exchanges: float = 0     # in a step, of three components each
+    per_cell: float = 0      # bodies for each cell of the grid
+    width: tuple = (0, 0, 0)  # of the box of a body, in cells
+
+    def elsewhere(self, split):
+        """The part of a box that lies in the cells of ranks other than the one that has its centre, in the mean."""
+        here = 1.0
+        for width, n, parts in zip(self.width, split.box, split.ranks):
+            if parts > 1:
+                here *= 1 - width / (4 * n) if width < 2 * n else n / width
+        return 1 - here
+
+    def bytes(self, split):
+        """That a rank sends of them in a step."""
+        return 8 * 3 * self.exchanges * self.per_cell * math.prod(split.box) * math.prod(self.width) * self.elsewhere(split)
+
+
+@dataclasses.dataclass
 class Step:
     method: str
-    plain: Moments       # all but those of the V-cycle
+    plain: Moments       # all but those of the V-cycle and of the boxes of bodies
     cycle: Moments
     sweeps: float        # with a V-cycle
     reductions: list     # [(calls, bytes of one)]
     relative: float      # arithmetic of a cell over that of classic
+    bodies: Bodies = dataclasses.field(default_factory=Bodies)
 
     @classmethod
     def read(cls, method, path=COUNTS):
         groups = {False: collections.defaultdict(lambda: (0, 0)), True: collections.defaultdict(lambda: (0, 0))}
         reductions, gathers = [], 0.0
         with open(path) as file:
-            rows = [row for row in csv.DictReader(file) if row["setting"] == method and row["stage"] == "Step"]
+            everything = list(csv.DictReader(file))
+        rows = [row for row in everything if row["setting"] == method and row["stage"] == "Step"]
+        boxes = {(row["kind"], row["partner"]): float(row["calls"]) for row in everything if row["setting"] == f"{method}_{BOXES}"}
         if not rows:
             sys.exit(f"{path}: nothing of {method}; scripts/studies/scaling/scaling_tables --count writes it")
         for row in rows:
             calls, size = float(row["calls"]), float(row["bytes"])
+            if row["kind"] == "send" and row["verb"] == BOXES:
+                continue
             if row["kind"] == "send":
                 group, rank = groups[row["verb"] == "EulACM"], int(row["partner"])
                 group[rank] = group[rank][0] + calls, group[rank][1] + size
@@ -120,7 +150,9 @@ class Step:
             else:
                 reductions.append((calls, size / calls))
         plain, cycle = (Moments.of(group) if group else Moments() for group in (groups[False], groups[True]))
-        return cls(method, plain, cycle, gathers, reductions, estimate(method) / estimate("classic"))
+        bodies = Bodies(boxes["exchanges", "0"], boxes["bodies", "0"] / (COUNTED_BOX * COUNTED_SPLIT) ** 3,
+                        tuple(boxes["width", str(d)] for d in range(3))) if boxes else Bodies()
+        return cls(method, plain, cycle, gathers, reductions, estimate(method) / estimate("classic"), bodies)
 
 
 @dataclasses.dataclass
@@ -202,11 +234,12 @@ def model(machine, step, split):
     parts = {"compute": math.prod(split.box) * machine.classic_seconds_per_cell * step.relative}
     if split.count == 1:
         return parts
-    messages = step.plain.messages + step.cycle.messages + more_messages(step, split)
+    messages = step.plain.messages + step.bodies.exchanges + step.cycle.messages + more_messages(step, split)
     rounds = (split.count - 1).bit_length()  # the logarithm to base 2, rounded up
     hop = machine.latency + 2 * machine.overhead
     gathered = 8 * math.prod(split.cells) / 8 ** shared_levels(split.cells)
-    parts.update(exchanges(machine, split, messages, split.bytes(step.plain.w) + split.bytes(step.cycle.w)))
+    size = split.bytes(step.plain.w) + split.bytes(step.cycle.w) + step.bodies.bytes(split)
+    parts.update(exchanges(machine, split, messages, size))
     parts["reductions"] = sum(calls * rounds * (hop + bytes / machine.bandwidth) for calls, bytes in step.reductions)
     parts["gather"] = step.sweeps * (rounds * hop + gathered / machine.bandwidth)
     return parts

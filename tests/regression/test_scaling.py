@@ -1,6 +1,7 @@
 """scripts/studies/paper/paper_figure5 and paper_figure6: models by hand, what pictures say of them, and real runs."""
 import contextlib
 import csv
+import dataclasses
 import io
 import os
 import shutil
@@ -12,7 +13,7 @@ import matplotlib.pyplot
 sys.dont_write_bytecode = True
 from test_scripts import SCRIPTS, WithFolder, load, start  # noqa: E402
 import scaling_figures  # noqa: E402
-from scaling_model import COUNTED_BOX, Machine, Moments, Split, Step, model  # noqa: E402
+from scaling_model import COUNTED_BOX, COUNTS, Bodies, Machine, Moments, Split, Step, model  # noqa: E402
 
 
 class Model(unittest.TestCase):
@@ -38,6 +39,34 @@ class Model(unittest.TestCase):
         # Three layers of velocity, phi and B, and one of v* and D*: five exchanges of blocks.
         self.assertEqual(classic.plain, Moments(5, (10 * 3 + 4, 10 * 9 + 4, 10 * 27 + 4)))
         self.assertEqual((classic.cycle.messages, classic.sweeps, fast.sweeps), (0, 0, 2))
+        # Bodies lie in boxes: three layers of velocity, one of v* and of a pressure are left outside of verbs.
+        viscous = Moments(11, (66, 132, 264))
+        self.assertEqual(fast.plain, Moments(3 + viscous.messages, (3 * 3 + 4 + 66, 3 * 9 + 4 + 132, 3 * 27 + 4 + 264)))
+        self.assertEqual(classic.bodies, Bodies())
+
+    def test_boxes_of_bodies_that_are_stored(self):
+        bodies = Step.read("fast").bodies
+        self.assertEqual((bodies.exchanges, bodies.per_cell), (3, 16 / 96 ** 3))
+        with open(COUNTS) as file:
+            counted = next(float(row["bytes"]) for row in csv.DictReader(file)
+                           if row["setting"] == "fast_boxes" and row["kind"] == "send")
+        # With fewer bodies than ranks some have gone to ranks far from their centre.
+        split = Split((96,) * 3, (3,) * 3, (COUNTED_BOX,) * 3)
+        self.assertLess(bodies.bytes(split), counted)
+        self.assertLess(counted, bodies.bytes(split) / bodies.elsewhere(split))
+
+    def test_boxes_of_bodies_by_hand(self):
+        bodies = Bodies(2, 1 / 1000, (8, 4, 40))
+        # A centre anywhere in a rank leaves 1 - 8/64 of 8 cells in its 16, and 16 of 40 at most in 16.
+        self.assertAlmostEqual(bodies.elsewhere(self.split), 1 - (1 - 8 / 1024) * (1 - 4 / 64) * 16 / 40, delta=1e-12)
+        whole_x = Split((256, 64, 64), (1, 1, 4), (256, 64, 16))
+        self.assertAlmostEqual(bodies.bytes(whole_x), 48 * 262.144 * 1280 * (1 - 16 / 40), delta=1e-6)
+        machine = Machine("m", "r", 1e-6, 1e-5, 1e-6, 1e9, 4e9, [])
+        step = Step("fast", Moments(), Moments(), 0, [], 1)
+        without = model(machine, step, self.split)
+        parts = model(machine, dataclasses.replace(step, bodies=bodies), self.split)
+        self.assertAlmostEqual(parts["latency"] - without["latency"], 2 * (1e-5 + 2e-6 * 26), delta=1e-12)
+        self.assertAlmostEqual(parts["exchange"] - without["exchange"], bodies.bytes(self.split) / 1e9, delta=1e-12)
 
     def test_parts_by_hand(self):
         machine = Machine("m", "r", 1e-6, 1e-5, 1e-6, 1e9, 4e9, [])
