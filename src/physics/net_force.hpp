@@ -4,6 +4,7 @@
 
 #include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
+#include "base/team.hpp"
 #include "field/field.hpp"
 #include "grid/domain.hpp"
 
