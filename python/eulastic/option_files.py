@@ -1,4 +1,4 @@
-"""Files of options, read by the rules of the program (src/app/option_source.cpp)."""
+"""Files of options, read by the rules of the program (src/options/option_source.cpp)."""
 import pathlib
 
 DEPTH_MAX = 8  # of files that bring in others

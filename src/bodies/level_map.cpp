@@ -29,8 +29,8 @@ std::vector<double> smooth(const Int3 &size, std::vector<double> from, int dimen
 
 }  // namespace
 
-// The level of the surface itself, as in physics/surface_cells.cpp: a filter moves a surface by half its variance times
-// the curvature, twice the filter accordingly further.
+// The level of the surface itself, as in membranes/surface_cells.cpp: a filter moves a surface by half its variance
+// times the curvature, twice the filter accordingly further.
 LevelMap::LevelMap(const FractionBox &box, int dimension)
     : dimension_(dimension), size_(box.size), spacing_(box.spacing), first_(box.first) {
   const std::vector<double> once = smooth(size_, box.fraction, dimension), twice = smooth(size_, once, dimension);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "field/law.hpp"
-#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
+#include "flow/local_viscosity.hpp"
 #include "grid/box.hpp"
 
 #include <algorithm>

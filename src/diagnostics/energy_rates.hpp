@@ -5,9 +5,9 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "flow/local_viscosity.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {
@@ -18,7 +18,7 @@ struct EnergyNumbers {
   Real3 force{};                      ///< body force per mass, now
   const BoxSides *sides = nullptr;    ///< null: no wall moves
   double time = 0;
-  const Field *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
+  const Field *local_viscosity = nullptr;  ///< kinematic (flow/local_viscosity.hpp), where bodies have their own
 };
 
 /// Energy per time; 2-D: per unit depth.

@@ -15,7 +15,7 @@ struct FlowNumbers {
   double density = 1, viscosity = 1;       ///< rho and mu (dynamic)
   double dt = 0;                           ///< time step
   double force = 0;                        ///< |f|, per mass
-  const Field *local_viscosity = nullptr;  ///< kinematic (field/local_viscosity.hpp), where bodies have their own
+  const Field *local_viscosity = nullptr;  ///< kinematic (flow/local_viscosity.hpp), where bodies have their own
   const BoxSides *sides = nullptr;         ///< null: volume crosses none
 };
 

@@ -1,10 +1,10 @@
 // What the fluid exerts on elastic vessels and obstacles: the integral of the whole stress over their surface, as
-// -sigma.grad(phi) over the box (docs/method.md, section 14). Rigid bodies: physics/rigid.hpp.
+// -sigma.grad(phi) over the box (docs/method.md, section 14). Rigid bodies: rigid/rigid_surfaces.hpp.
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
+#include "flow/local_viscosity.hpp"
 
 namespace eulastic {
 

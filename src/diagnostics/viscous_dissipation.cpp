@@ -1,6 +1,6 @@
 #include "diagnostics/viscous_dissipation.hpp"
 
-#include "field/tangential_rows.hpp"
+#include "flow/tangential_rows.hpp"
 
 namespace eulastic {
 namespace {

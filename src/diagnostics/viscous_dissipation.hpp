@@ -1,7 +1,7 @@
 // What viscosity takes where bodies have their own.
 #pragma once
 
-#include "field/local_viscosity.hpp"
+#include "flow/local_viscosity.hpp"
 
 namespace eulastic {
 

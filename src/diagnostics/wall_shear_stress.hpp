@@ -4,9 +4,9 @@
 // cells.
 #pragma once
 
-#include "field/local_viscosity.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
+#include "flow/local_viscosity.hpp"
 #include "grid/box.hpp"
 
 namespace eulastic {

@@ -29,7 +29,7 @@ struct TensorComponent {
 const std::vector<TensorComponent> &tensor_components(int dimension, bool centred = false);
 
 /// Where a tensor evolves, and what is outside: I, or an extension; by that also what of it counts as unresolved
-/// (physics/unresolved.hpp).
+/// (solids/unresolved.hpp).
 struct EvolveRule {
   double centre = 2, edge = 2;  ///< least solid fraction, at centres and (mean of four) on edges; 2: nowhere
   double stressed = 2;          ///< least solid fraction that makes stress

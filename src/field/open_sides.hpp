@@ -27,7 +27,7 @@ void clear_open_ghosts(const Box &box, View field, int width);
 /// Whether volume crosses any side, and whether the pressure is given on any.
 bool volume_crosses(const BoxSides &sides);
 bool opens(const BoxSides &sides);
-/// Whether a stretch of the domain feeds any side with its flow and its bodies (solver/feeders.hpp).
+/// Whether a stretch of the domain feeds any side with its flow and its bodies (openings/feeders.hpp).
 bool has_feeders(const BoxSides &sides);
 
 /// The largest difference of given pressures along each direction per length and density: what it does to a fluid at

@@ -1,5 +1,5 @@
 // A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one on
-// the grid. Where its bodies lie in boxes of their own (physics/free_bodies.hpp), each of them is a phase, and that of
+// the grid. Where its bodies lie in boxes of their own (boxes/free_bodies.hpp), each of them is a phase, and that of
 // the species is empty.
 #pragma once
 

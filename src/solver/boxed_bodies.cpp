@@ -1,8 +1,8 @@
 // Solver: bodies that lie in boxes of their own.
 #include "base/deliver.hpp"
 #include "bodies/unwrap.hpp"
-#include "physics/share_out.hpp"
-#include "physics/transport.hpp"
+#include "boxes/share_out.hpp"
+#include "solids/transport.hpp"
 #include "solver/solver.hpp"
 
 #include <algorithm>

@@ -29,7 +29,7 @@ struct Method {
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
   /// v* = v + dt dv/dt, without more stages.
   bool explicit_predictor() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
-  /// Whether free bodies may lie in boxes of their own (physics/free_bodies.hpp).
+  /// Whether free bodies may lie in boxes of their own (boxes/free_bodies.hpp).
   bool boxes_bodies() const {
     return staggered() && interface == InterfaceScheme::plic && exterior == SolidExterior::extrapolate;
   }

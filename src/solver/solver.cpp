@@ -2,14 +2,14 @@
 
 #include "field/law.hpp"
 #include "field/open_sides.hpp"
-#include "physics/correction.hpp"
-#include "physics/divergence.hpp"
-#include "physics/transport.hpp"
-#include "physics/viscous_stress.hpp"
+#include "flow/correction.hpp"
+#include "flow/divergence.hpp"
+#include "flow/viscous_stress.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 #include "pressure/ksp.hpp"
 #include "pressure/smac.hpp"
+#include "solids/transport.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,25 +3,25 @@
 
 #include "base/petsc.hpp"
 #include "bodies/measures.hpp"
-#include "bodies/rigid.hpp"
-#include "bodies/surface_measures.hpp"
+#include "boxes/free_bodies.hpp"
+#include "drops/surface_tension.hpp"
+#include "field/fluid.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/work_space.hpp"
+#include "flow/limits.hpp"
+#include "flow/momentum.hpp"
+#include "flow/super_time_stepping.hpp"
 #include "grid/domain.hpp"
-#include "physics/fluid.hpp"
-#include "physics/free_bodies.hpp"
-#include "physics/interface.hpp"
-#include "physics/limits.hpp"
-#include "physics/membrane_transport.hpp"
-#include "physics/momentum.hpp"
-#include "physics/rigid_impulse.hpp"
-#include "physics/solid_transport.hpp"
-#include "physics/super_time_stepping.hpp"
-#include "physics/surface_tension.hpp"
+#include "membranes/membrane_transport.hpp"
+#include "membranes/surface_measures.hpp"
+#include "openings/feeders.hpp"
+#include "openings/outlet_loads.hpp"
 #include "pressure/obstacles.hpp"
-#include "solver/feeders.hpp"
+#include "rigid/rigid_bodies.hpp"
+#include "rigid/rigid_impulse.hpp"
+#include "solids/interface.hpp"
+#include "solids/solid_transport.hpp"
 #include "solver/method.hpp"
-#include "solver/outlet_loads.hpp"
 #include "solver/state.hpp"
 
 #include <functional>
@@ -59,7 +59,7 @@ public:
   /// Before prepare(); null or without bodies where nothing is rigid. Collective.
   PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
   /// Adds a body of a species, whose phase is `boxed` and empty, to this rank: `phase` has material, phi and B on `box`
-  /// (physics/free_bodies.hpp).
+  /// (boxes/free_bodies.hpp).
   PetscErrorCode add_body(int number, int species, const Box &box, Phase &&phase);
   /// Takes the labelled bodies of a species, whose phase is `boxed`, off the grid. Collective, before prepare().
   PetscErrorCode box_bodies(int species);
@@ -84,7 +84,7 @@ public:
   /// Measures the flow: time step limits, WENO5's velocity scale.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;
-  /// Kinematic viscosities (physics/viscosity.hpp) at the time of the velocity, until the next step; null where all are
+  /// Kinematic viscosities (flow/viscosity.hpp) at the time of the velocity, until the next step; null where all are
   /// the fluid's.
   PetscErrorCode viscosity_now(const Field **viscosity);
   /// Energy of the surfaces at the time of the velocity and what the flow gives to it; zero without surface tension and

@@ -1,7 +1,7 @@
 // S5: B carried by a prescribed velocity: homogeneous deformations, rigid rotation, and the Taylor-Green cell.
 #include "support/scene.hpp"
 
-#include "physics/transport.hpp"
+#include "solids/transport.hpp"
 
 #include <gtest/gtest.h>
 

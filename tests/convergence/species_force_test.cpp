@@ -1,6 +1,6 @@
 // A force on the bodies of one species: a layer of marked fluid below s drives the channel; exact, steady,
 // u = f (s - s^2/2) y/nu - f y^2/(2 nu) in it, f s^2 (1 - y)/(2 nu) above.
-#include "physics/species_force.hpp"
+#include "solids/species_force.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>

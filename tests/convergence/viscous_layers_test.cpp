@@ -1,7 +1,7 @@
 // Layers of viscosity 1 and lambda, along the grid and across it: steady shear, and the slowest mode.
-#include "physics/correction.hpp"
-#include "physics/divergence.hpp"
-#include "physics/viscous_stress.hpp"
+#include "flow/correction.hpp"
+#include "flow/divergence.hpp"
+#include "flow/viscous_stress.hpp"
 #include "pressure/smac.hpp"
 #include "support/polynomials.hpp"
 

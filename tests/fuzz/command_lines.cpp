@@ -1,7 +1,7 @@
 #include "fuzz/command_lines.hpp"
 
-#include "app/option_table.hpp"
-#include "app/petsc_options.hpp"
+#include "options/option_table.hpp"
+#include "options/petsc_options.hpp"
 
 #include <algorithm>
 #include <sstream>

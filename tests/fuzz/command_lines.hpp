@@ -1,8 +1,8 @@
 // Command lines near the border between right and wrong, made from the option table itself.
 #pragma once
 
-#include "app/config.hpp"
 #include "fuzz/dice.hpp"
+#include "scene/config.hpp"
 
 namespace eulastic::fuzz {
 

@@ -4,8 +4,6 @@
 // accepted, and what was found: a refusal of no line or of several, something written by a run that was refused,
 // options that do not survive being written, a case that takes longer than a minute. A crash ends the program and names
 // its case.
-#include "app/check_only.hpp"
-#include "app/run.hpp"
 #include "base/events.hpp"
 #include "base/message_keeper.hpp"
 #include "fuzz/command_lines.hpp"
@@ -14,6 +12,8 @@
 #include "fuzz/watchdog.hpp"
 #include "grid/domain.hpp"
 #include "io/checkpoint.hpp"
+#include "run/run.hpp"
+#include "scene/check_only.hpp"
 #include "support/leaks.hpp"
 
 #include <fcntl.h>

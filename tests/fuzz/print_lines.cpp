@@ -1,5 +1,5 @@
-#include "app/parse_options.hpp"
 #include "fuzz/command_lines.hpp"
+#include "options/parse_options.hpp"
 
 #include <algorithm>
 #include <cstdio>

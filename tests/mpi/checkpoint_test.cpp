@@ -1,6 +1,6 @@
 // Checkpoints on 1-4 ranks: a solver that reads one goes on with the bits of the one that wrote it.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "output/saved_state.hpp"
 #include "support/files.hpp"
 #include "support/scene.hpp"
 

@@ -1,8 +1,8 @@
 // Two beads that a shear flow drives together: separate, whole, the same bits on any ranks and after a restart.
-#include "app/saved_state.hpp"
-#include "app/scene.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/energy_rates.hpp"
+#include "output/saved_state.hpp"
+#include "scene/scene.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
 #include "support/files.hpp"

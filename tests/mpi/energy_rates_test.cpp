@@ -2,7 +2,7 @@
 #include "base/rank_zero.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "diagnostics/flow_measures.hpp"
-#include "physics/momentum.hpp"
+#include "flow/momentum.hpp"
 #include "support/all_segments.hpp"
 #include "support/materials.hpp"
 #include "support/scene.hpp"

@@ -1,6 +1,6 @@
 // -method fast: the same bits on any ranks, with moving and attached bodies, walls, two phases, both pressure solvers.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "output/saved_state.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"
 

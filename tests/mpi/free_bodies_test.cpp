@@ -1,8 +1,8 @@
 // FreeBodies: bodies in boxes of their own have the bits of the same bodies on the grid, whoever owns them.
-#include "physics/free_bodies.hpp"
+#include "boxes/free_bodies.hpp"
 #include "base/rank_zero.hpp"
-#include "physics/elastic_force.hpp"
-#include "physics/membrane_transport.hpp"
+#include "membranes/membrane_transport.hpp"
+#include "solids/elastic_force.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>

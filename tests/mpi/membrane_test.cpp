@@ -1,8 +1,8 @@
 // Capsules that reach across ranks and walls of the split, and that have to be kept apart: the same bits on any number
 // of ranks.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/fill_phase.hpp"
+#include "output/saved_state.hpp"
 #include "support/all_bodies.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"

@@ -1,8 +1,8 @@
 // Bodies in boxes are shared out so that ranks have about as much work, and -check_only tells it in advance.
-#include "app/rank_work.hpp"
-#include "app/scene.hpp"
+#include "scene/rank_work.hpp"
 #include "base/rank_zero.hpp"
-#include "physics/share_out.hpp"
+#include "boxes/share_out.hpp"
+#include "scene/scene.hpp"
 #include "support/command_line.hpp"
 #include "support/lopsided.hpp"
 

@@ -1,6 +1,6 @@
 // Files are what rank 0 finds. Every rank looks for them in a place of its own: nobody but rank 0 may go there.
 #include "base/rank_zero.hpp"
-#include "app/parse_options.hpp"
+#include "options/parse_options.hpp"
 #include "support/all_bodies.hpp"
 #include "support/files.hpp"
 

@@ -1,7 +1,7 @@
 // Rigid bodies that reach across ranks and sides, one of them turning into itself or, an ellipsoid, through the grid,
 // beside a soft one: the same bits on any number of ranks.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "output/saved_state.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/rigid_scene.hpp"
 

@@ -1,9 +1,9 @@
 // A vessel with red cells and platelets at random: the same scene, and the same first steps, on any ranks.
-#include "app/saved_state.hpp"
-#include "app/scene.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/near_places.hpp"
 #include "diagnostics/state_hash.hpp"
+#include "output/saved_state.hpp"
+#include "scene/scene.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
 #include "support/files.hpp"

@@ -1,5 +1,5 @@
 // share_out(): all ranks get about as much to do, whoever had the bodies before.
-#include "physics/share_out.hpp"
+#include "boxes/share_out.hpp"
 #include "base/rank_zero.hpp"
 
 #include <gtest/gtest.h>

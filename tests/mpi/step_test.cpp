@@ -1,6 +1,6 @@
 // The same bits on any number of ranks: the state after twenty steps has the hash of the run on one rank.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "output/saved_state.hpp"
 #include "support/materials.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"

@@ -1,5 +1,5 @@
 // RKL2 on eigenmodes of the discrete Laplacian: the stages of a number, as Meyer, Balsara & Aslam (2014) write them.
-#include "physics/super_time_stepping.hpp"
+#include "flow/super_time_stepping.hpp"
 #include "base/rank_zero.hpp"
 #include "support/all_segments.hpp"
 

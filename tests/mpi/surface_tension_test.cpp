@@ -1,6 +1,6 @@
 // Drops that reach across ranks, walls and planes of symmetry: the same bits on any number of ranks.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
+#include "output/saved_state.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"
 

@@ -1,11 +1,11 @@
 // Bodies with a viscosity of their own: the energy balance of the viscous force to round-off, and whole steps with the
 // same bits on any number of ranks; without contrast those of a scene that has never heard of it.
-#include "app/saved_state.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
-#include "physics/viscous_stress.hpp"
+#include "flow/viscous_stress.hpp"
+#include "output/saved_state.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"
 

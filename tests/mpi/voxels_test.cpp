@@ -1,5 +1,5 @@
 // Bodies from files: the same bits on any number of ranks, and however they cut the box.
-#include "app/voxels.hpp"
+#include "scene/voxels.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/fill_phase.hpp"
 #include "support/files.hpp"

@@ -1,14 +1,14 @@
 // The parts of the step that the paper's Table 1 lists, on a solid everywhere. The loops are those of the step, less
 // what the step does in the same pass.
 #include "box.hpp"
+#include "field/advection.hpp"
+#include "flow/momentum.hpp"
 #include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/elastic.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"
-#include "physics/advection.hpp"
-#include "physics/momentum.hpp"
 
 using namespace eulastic;
 using performance::FilledBox;

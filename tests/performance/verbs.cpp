@@ -2,9 +2,9 @@
 // one read before: write-allocate) and the flops it logs say how long it should take.
 #include "../support/verbs.hpp"
 #include "box.hpp"
-#include "physics/correction.hpp"
-#include "physics/divergence.hpp"
-#include "physics/super_time_stepping.hpp"
+#include "flow/correction.hpp"
+#include "flow/divergence.hpp"
+#include "flow/super_time_stepping.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"
 

@@ -1,9 +1,9 @@
 // What the owners of bodies know of them, on every rank.
 #pragma once
 
-#include "app/config.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/body_owners.hpp"
+#include "scene/config.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // A valid scene as a command line, and files for one test.
 #pragma once
 
-#include "app/parse_options.hpp"
+#include "options/parse_options.hpp"
 
 #include <gtest/gtest.h>
 

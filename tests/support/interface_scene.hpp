@@ -5,7 +5,7 @@
 #include "bodies/volume_fraction.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/sides.hpp"
-#include "physics/interface.hpp"
+#include "solids/interface.hpp"
 
 #include <cmath>
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bodies/fill_phase.hpp"
-#include "bodies/rigid.hpp"
+#include "rigid/rigid_bodies.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>

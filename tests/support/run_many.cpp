@@ -5,10 +5,10 @@
 //                                                  RANKS - 1; writes NAME.out, NAME.err and the exit code to NAME.code
 //   wait                                           all ranks wait for each other
 // A run starts as soon as its ranks have ended what comes before it in PLAN.
-#include "app/program.hpp"
 #include "base/rank_zero.hpp"
 #include "grid/skipping.hpp"
 #include "grid/threads.hpp"
+#include "run/program.hpp"
 #include "support/sleeping_barrier.hpp"
 
 #include <fcntl.h>

@@ -1,8 +1,8 @@
 // The verbs of the classic step with the arguments that tests vary.
 #pragma once
 
-#include "physics/momentum.hpp"
-#include "physics/transport.hpp"
+#include "flow/momentum.hpp"
+#include "solids/transport.hpp"
 
 namespace eulastic::test {
 

@@ -1,5 +1,5 @@
 // Fields that rest away from bodies: memory follows what is written.
-#include "app/saved_state.hpp"
+#include "output/saved_state.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>

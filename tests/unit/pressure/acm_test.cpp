@@ -1,8 +1,8 @@
 // (12) against brute force, its guards, and what one step of the solver does to the divergence.
 #include "pressure/acm.hpp"
-#include "physics/divergence.hpp"
+#include "flow/divergence.hpp"
 
-#include "physics/correction.hpp"
+#include "flow/correction.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 

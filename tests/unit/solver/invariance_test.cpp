@@ -1,5 +1,5 @@
 // The whole step: moving scenes, and solids that carry no stress.
-#include "app/saved_state.hpp"
+#include "output/saved_state.hpp"
 #include "support/polynomials.hpp"
 #include "support/scene.hpp"
 

@@ -1,0 +1,210 @@
+// FreeBodies: what others see of the bodies.
+#include "boxes/free_bodies.hpp"
+#include "membranes/stretched_body.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace eulastic {
+
+PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {
+  PetscFunctionBeginUser;
+  const Body &body = bodies_[b];
+  Seen &own = seen_[b];
+  own.velocity = Field(body.box, body.box.dimension());
+  bring_velocity(b, step, velocity, &own.velocity);
+  seen->velocity = &own.velocity;
+  if (step.dt == 0) PetscFunctionReturn(0);
+  own.moved.copy_from(body.phase);
+  const bool is_membrane = body.phase.material.is_membrane();
+  Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : stage_fields(body.phase));
+  PetscCall(move(body.box, step, own.velocity, work, &own.moved));
+  if (is_membrane) {
+    MembraneMechanics membrane({&body.box, sides_, nullptr});
+    long unresolved = 0;
+    PetscCall(membrane.find(own.moved, work));
+    PetscCall(membrane.move(step.dt, own.velocity, {}, &own.moved, &unresolved));
+  }
+  seen->phase = &own.moved;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::vector<BodyInBox> *seen) {
+  PetscFunctionBeginUser;
+  PetscCall(exchange_.fetch(velocity));
+  *seen = list();
+  seen_.clear();
+  seen_.resize(bodies_.size());
+  PetscCall(for_bodies([&](std::size_t b) { return look_at(b, step, velocity, &(*seen)[b]); }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+                                            SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples) {
+  // Of all membranes, then of each species with surface tension.
+  constexpr int of_membranes = MembraneMechanics::sums, of_species = CapillaryForce::sums;
+  const int count = of_membranes + of_species * static_cast<int>(species.size());
+  std::vector<ExactSums> sum(threads(), ExactSums(count));
+  PetscFunctionBeginUser;
+  samples->assign(seen.size(), {});
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    const BodyInBox &body = seen[b];
+    Field work = scratch(*body.box, std::max(MembraneMechanics::work_fields, CapillaryForce::work_fields));
+    if (body.phase->material.is_membrane()) {
+      MembraneMechanics membrane({body.box, sides_, nullptr});
+      PetscCall(membrane.find(*body.phase, work));
+      PetscCall(membrane.measure(*body.phase, *body.velocity, bodies_[b].film, body.number, &sum, &(*samples)[b]));
+    }
+    if (body.phase->material.surface_tension > 0) {
+      CapillaryForce capillary(*body.box, nullptr);
+      PetscCall(capillary.find(*body.phase, work));
+      capillary.measure(*body.velocity, of_membranes + of_species * body.species, &sum);
+    }
+  }
+  std::vector<double> total(count);
+  PetscCall(reduce_parts(domain_->comm(), sum, total.data()));
+  const double volume = domain_->cell_volume();
+  measured->power += total[MembraneMechanics::power] * volume;
+  measured->energy += total[MembraneMechanics::stored] * volume;
+  for (std::size_t s = 0; s < species.size(); ++s) {
+    const double *own = &total[of_membranes + of_species * s];
+    measured->power += own[CapillaryForce::power] * volume;
+    measured->energy += species[s].material.surface_tension * own[CapillaryForce::area];
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::stretch_power(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+                                         double *power) {
+  PetscFunctionBeginUser;
+  *power = 0;
+  if (std::none_of(species.begin(), species.end(), [](const Phase &p) { return p.boxed && is_stretched(p.material); }))
+    PetscFunctionReturn(0);
+  ExactSums sum(1);
+  for (const BodyInBox &body : seen)
+    if (is_stretched(body.phase->material))
+      StretchedBody(*body.box, *body.phase).add_power((*body.velocity)[0], 0, &sum);
+  PetscCall(sum.reduce(domain_->comm(), power));
+  *power *= domain_->cell_volume();
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::show_fractions(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) {
+  PetscFunctionBeginUser;
+  PetscCall(connect_fractions());
+  std::vector<ActiveSegments> filled(seen.size());
+  std::vector<SegmentValues> values(seen.size());
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    constexpr double least = 1e-300;
+    const Phase &phase = *seen[b].phase;
+    if (phases.count(seen[b].species) == 0) continue;
+    filled[b].build(*seen[b].box, phase.fraction[0], phase.rows, least, 0, 0);
+    values[b].take(phase.fraction, filled[b]);
+  }
+  for (const auto &[species, phase] : phases) {
+    std::vector<BoxExchange::Contribution> of_species;
+    for (std::size_t b = 0; b < seen.size(); ++b)
+      of_species.push_back(seen[b].species == species ? BoxExchange::Contribution{&values[b], &filled[b]}
+                                                      : BoxExchange::Contribution{});
+    const View phi = phase->fraction[0];
+    for (const Segment &row : domain_->rows()) {
+      const Segment held = phase->rows.within(row);
+      std::fill_n(phi.row(row.j, row.k) + held.i_begin, held.size(), 0.0);
+    }
+    PetscCall(fractions_.add(of_species, {{&phase->fraction, 1}}));
+  }
+  PetscFunctionReturn(0);
+}
+
+std::vector<BodyInBox> FreeBodies::list() const {
+  std::vector<BodyInBox> all;
+  for (const Body &body : bodies_) all.push_back({body.number, body.species, &body.box, &body.phase, &body.markers});
+  return all;
+}
+
+PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
+  PetscFunctionBeginUser;
+  const int dimension = domain_->dimension();
+  const int tensors = static_cast<int>(tensor_components(dimension).size());
+  // Of a box: the species, phi, B, and for every component of B phi where it lives.
+  enum { species, fraction, tensor };
+  const int part = tensor + tensors, all = part + tensors;
+  std::vector<Field> fields;
+  std::vector<const Field *> shown;
+  std::vector<Box> blocks;
+  std::vector<BoxExchange::NumberedBox> boxes;
+  // Cells of bodies, and those around that B is extended to.
+  for (const BodyInBox &body : seen)
+    blocks.push_back(body.phase->block(*body.box, ExteriorLayers::layers, ExteriorLayers::layers + 1));
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    const BodyInBox &body = seen[b];
+    const Box &block = blocks[b];
+    Field &field = fields.emplace_back(block, all);
+    field.fill(species, body.species);
+    const Int3 first = first_in(*body.box, block);
+    const auto of_block = [&first](ConstView view) {
+      view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
+      return view;
+    };
+    const ConstView phi = of_block(body.phase->fraction[0]);
+    for_points(block.rows(), [&](int i, int j, int k) { field[fraction](i, j, k) = phi(i, j, k); });
+    for (int c = 0; c < tensors; ++c) {
+      const TensorComponent &component = body.phase->tensor.components()[c];
+      const Staggering &at = component.at;
+      const auto [low_a, low_b] = component.steps(phi);
+      const ConstView B = of_block(body.phase->tensor.field[c]);
+      for (int k = 0; k < block.points_end(2, at[2]); ++k)
+        for (int j = 0; j < block.points_end(1, at[1]); ++j)
+          for (int i = 0; i < block.points_end(0, at[0]); ++i) {
+            const double *here = &phi(i, j, k);
+            field[part + c](i, j, k) = 0.25 * ((here[0] + here[-low_a - low_b]) + (here[-low_a] + here[-low_b]));
+            field[tensor + c](i, j, k) = B(i, j, k) - component.rest();
+          }
+    }
+    boxes.push_back({&block, body.number});
+  }
+  for (const Field &field : fields) shown.push_back(&field);
+  std::map<int, Field> most;  // phi of the body that B at the point is of
+  for (const auto &[s, phase] : phases) most[s] = Field::at_rest(*domain_, 1 + tensors);
+  BoxExchange exchange(*domain_, all);
+  PetscCall(exchange.connect(boxes));
+  const std::ptrdiff_t size = domain_->layout().size;
+  PetscCall(exchange.collect(shown, [&](int number, std::ptrdiff_t at, const double *values) {
+    const int s = static_cast<int>(values[species]);
+    Phase &phase = *phases.at(s);
+    double *best = most.at(s).data() + at;
+    if (values[fraction] > 0) phase.fraction.data()[at] += values[fraction];
+    if (values[fraction] > *best) {
+      *best = values[fraction];
+      if (phase.label) phase.label.data()[at] = number;
+    }
+    for (int c = 0; c < tensors; ++c) {
+      const double rest = phase.tensor.components()[c].rest();
+      double &B = phase.tensor.field.data()[c * size + at], &largest = best[(1 + c) * size];
+      const bool first = largest == 0 && values[tensor + c] != 0 && B == rest;
+      if (!first && values[part + c] <= largest) continue;
+      B = rest + values[tensor + c];
+      largest = values[part + c];
+    }
+  }));
+  PetscFunctionReturn(0);
+}
+
+std::size_t FreeBodies::bytes() const {
+  std::size_t sum = exchange_.bytes();
+  for (const Tools &own : tools_) sum += own.memory.size() * sizeof(double);
+  const auto add = [&sum](const Phase &phase) {
+    sum += phase.fraction.bytes() + (phase.material.carries_tensor() ? phase.tensor.field.bytes() : 0);
+  };
+  for (const Body &body : bodies_) {
+    add(body.phase);
+    sum += body.force.bytes();
+  }
+  for (const Seen &own : seen_) {
+    if (own.moved.fraction) add(own.moved);
+    sum += own.velocity.bytes();
+  }
+  return sum;
+}
+
+}  // namespace eulastic

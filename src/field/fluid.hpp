@@ -1,0 +1,22 @@
+// The fluid and what drives it.
+#pragma once
+
+#include "field/body_force.hpp"
+#include "field/material.hpp"
+
+namespace eulastic {
+
+struct Fluid {
+  double density = 1;    ///< rho
+  double viscosity = 1;  ///< mu, dynamic; of bodies too, unless they have their own
+  bool inertia = true;   ///< false drops v.grad v
+  BodyForce body_force;
+  double kinematic_viscosity() const { return viscosity / density; }
+};
+
+/// Dynamic viscosity of a body.
+inline double viscosity_of(const Material &material, const Fluid &fluid) {
+  return material.viscosity > 0 ? material.viscosity : fluid.viscosity;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,39 @@
+// The right-hand side of the momentum equation (2), and the predictor (7).
+#pragma once
+
+#include "base/petsc.hpp"
+#include "field/fluid.hpp"
+#include "field/phase.hpp"
+#include "solids/elastic_force.hpp"
+
+namespace eulastic {
+
+/// WENO5's epsilon for a field of the given scale.
+inline double weno_epsilon(double scale) { return 1e-6 * scale * scale; }
+
+/// How the advection term of this and the last step enter: 1, 0 is Euler, 1 + r/2, -r/2 Adams-Bashforth 2.
+struct AdvectionWeights {
+  double now = 1, before = 0;
+};
+
+/// What the momentum equation needs to know of a step.
+struct MomentumStep {
+  double force_time;  ///< when the body force is taken
+  double dt;
+  double speed_scale;  ///< typical |v|, for WENO5
+  AdvectionWeights weights;
+};
+
+/// dv/dt = -v.grad v + nu lap v - grad p/rho + div(sigma)/rho + f at all owned faces. Needs three ghosts of v, one of
+/// p, phi and B. `advection` holds -v.grad v of the last step (read when its weight is not 0) and gets that of this
+/// one; it may be empty when the weight is 0. Faces of open sides are owned ones.
+PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                             const Field &pressure, const std::vector<Phase> &phases, Field &advection, Field &rate,
+                             const ForceSlope &slope = {});
+
+/// v* = v + dt dv/dt, (7). Faces on walls come out unset: fill the wall ghosts. Rows are wrapped by one around a
+/// periodic x.
+PetscErrorCode predict_velocity(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
+                                const Field &pressure, const std::vector<Phase> &phases, Field &velocity_star);
+
+}  // namespace eulastic

@@ -1,0 +1,431 @@
+#include "membranes/membrane.hpp"
+
+#include "base/events.hpp"
+#include "base/exact_sum.hpp"
+#include "field/sides.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
+#include "kernels/upwind5.hpp"
+#include "membranes/membrane_tensor.hpp"
+#include "membranes/smooth_row.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace eulastic {
+namespace {
+
+using kernels::Tensor;
+using kernels::Vector;
+
+constexpr double doubtful = 2;         // ratio of the traces of B_s of markers and grid
+constexpr double area_doubtful = 0.5;  // energy of the area that markers may have more than the grid, in G_s
+
+template <int Dim>
+struct Local {
+  std::ptrdiff_t stride[3];
+  Real3 h, inverse;
+  explicit Local(const Box &box, ConstView q) {
+    for (int d = 0; d < 3; ++d) {
+      stride[d] = q.stride(d);
+      h[d] = box.spacing()[d];
+      inverse[d] = 1 / h[d];
+    }
+  }
+};
+
+// v and its gradient at the point of the surface nearest to a cell.
+template <int Dim>
+struct Flow {
+  Vector<Dim> v{};
+  Tensor<Dim> L{};
+};
+
+template <int Dim>
+EULASTIC_INLINE double centre_velocity(const double *v, std::ptrdiff_t s) {
+  return 0.5 * (v[0] + v[s]);
+}
+
+template <int Dim>
+EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const Field &velocity, std::ptrdiff_t at,
+                                          const Vector<Dim> &n, double distance) {
+  Flow<Dim> flow;
+  std::ptrdiff_t step[Dim];
+  double part[Dim];
+  for (int d = 0; d < Dim; ++d) {
+    const double away = -distance * n[d] * local.inverse[d];
+    step[d] = away > 0 ? local.stride[d] : -local.stride[d];
+    part[d] = std::min(__builtin_fabs(away), 1.0);
+  }
+  for (int corner = 0; corner < 1 << Dim; ++corner) {
+    double w = 1;
+    std::ptrdiff_t o = at;
+    for (int d = 0; d < Dim; ++d) {
+      const bool far = corner >> d & 1;
+      w *= far ? part[d] : 1 - part[d];
+      o += far ? step[d] : 0;
+    }
+    if (w == 0) continue;
+    for (int a = 0; a < Dim; ++a) {
+      const double *v = velocity[a].origin + o;
+      const std::ptrdiff_t s = local.stride[a];
+      flow.v[a] = kernels::fma(w, centre_velocity<Dim>(v, s), flow.v[a]);
+      for (int d = 0; d < Dim; ++d) {
+        const std::ptrdiff_t t = local.stride[d];
+        const double near = centre_velocity<Dim>(v + t, s) - centre_velocity<Dim>(v - t, s);
+        const double far = centre_velocity<Dim>(v + 2 * t, s) - centre_velocity<Dim>(v - 2 * t, s);
+        flow.L[a][d] = kernels::fma(w * local.inverse[d], (8 * near - far) / 12, flow.L[a][d]);
+      }
+    }
+  }
+  return flow;
+}
+
+// -v.grad B + L B + B L^T. Linear differences: weights that follow the smoothness of each component, as those of WENO5,
+// would not keep the trace of a mean of planes.
+template <int Dim>
+EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std::ptrdiff_t at, const Flow<Dim> &flow) {
+  const Tensor<Dim> b = tensor_at<Dim>(B, at);
+  Tensor<Dim> rate;
+  for (int x = 0; x < Dim; ++x)
+    for (int y = x; y < Dim; ++y) {
+      const double *q = B[x == y ? x : Dim == 2 ? 2 : 6 - x - y].origin + at;
+      double carried = 0, stretched = 0;
+      for (int d = 0; d < Dim; ++d) {
+        carried = kernels::fma(flow.v[d] * local.inverse[d], kernels::upwind5_difference(q, local.stride[d], flow.v[d]),
+                               carried);
+        stretched += flow.L[x][d] * b[d][y] + b[x][d] * flow.L[y][d];
+      }
+      rate[x][y] = rate[y][x] = stretched - carried;
+    }
+  return rate;
+}
+
+}  // namespace
+
+PetscErrorCode MembraneMechanics::find(const Phase &phase, Field &work) {
+  PetscFunctionBeginUser;
+  surface_fields_ = work.part(0, SurfaceCells::work_fields);
+  others_ = work.part(SurfaceCells::work_fields, work_fields - SurfaceCells::work_fields);
+  PetscCall(surface_.find(phase, surface_fields_));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneMechanics::start(Phase *phase) {
+  PetscFunctionBeginUser;
+  const double area = phase->material.membrane.initial_area_stretch;
+  const double stretch = place_.box->dimension() == 2 ? area * area : area;  // squared, of lengths
+  for (std::size_t c = 0; c < surface_.nearest(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) continue;
+    const auto set = [&](auto dim) {
+      Tensor<dim> value =
+          kernels::surface_part<dim>(tensor_at<dim>(phase->tensor.field, cell.at), normal_of<dim>(cell.normal));
+      for (auto &row : value)
+        for (double &entry : row) entry *= stretch;
+      set_tensor<dim>(phase->tensor.field, cell.at, value);
+    };
+    if (place_.box->dimension() == 2)
+      set(std::integral_constant<int, 2>());
+    else
+      set(std::integral_constant<int, 3>());
+  }
+  PetscCall(surface_.extend(*phase, phase->tensor.field));
+  PetscFunctionReturn(0);
+}
+
+// First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same. Areas stay above half of
+// those at the start.
+template <int Dim>
+PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *phase, Field &next, long *unresolved) {
+  PetscFunctionBeginUser;
+  const double least = least_area_squared(*phase);
+  std::vector<long> kept(row_parts(*place_.box));
+  const Local<Dim> local(*place_.box, velocity[0]);
+  std::vector<Flow<Dim>> flows(surface_.nearest());
+  Field &tensor = phase->tensor.field;
+  const auto stage = [&](bool second, std::size_t c, long *lost) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) return;
+    const Vector<Dim> n = normal_of<Dim>(cell.normal);
+    if (!second) flows[c] = flow_at_surface<Dim>(local, velocity, cell.at, n, cell.distance);
+    const Field &from = second ? next : tensor;
+    const Tensor<Dim> rate = rate_of<Dim>(local, from, cell.at, flows[c]);
+    Tensor<Dim> value = tensor_at<Dim>(from, cell.at);
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) value[a][b] = kernels::fma(dt, rate[a][b], value[a][b]);
+    if (second) {
+      const Tensor<Dim> old = tensor_at<Dim>(tensor, cell.at);
+      for (int a = 0; a < Dim; ++a)
+        for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
+      value = kernels::project_surface<Dim>(value, n);
+      *lost += kernels::keep_area<Dim>(n, least, &value);
+    }
+    set_tensor<Dim>(second ? tensor : next, cell.at, value);
+  };
+  const int parts = row_parts(*place_.box);
+  for (const bool second : {false, true}) {
+    {
+      VerbScope scope(Verb::membrane);
+      in_parallel(parts, parts, [&](int part) {
+        const Piece piece(surface_.nearest(), part, parts);
+        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c, &kept[part]);
+      });
+      scope.flops(double(surface_.nearest()) * (Dim == 2 ? 250 : 1300));
+    }
+    if (!second) PetscCall(surface_.extend(*phase, next));
+  }
+  *unresolved = std::accumulate(kept.begin(), kept.end(), *unresolved);
+  PetscFunctionReturn(0);
+}
+
+double MembraneMechanics::least_area_squared(const Phase &phase) {
+  const double stretch = phase.material.membrane.initial_area_stretch;
+  return 0.25 * std::min(1.0, stretch * stretch);
+}
+
+// The strain of the grid comes nearer to that of the markers with every cell that the surface passes, as what fades
+// does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
+// tell of something else altogether lie where a quadratic is not determined, or have been carried by a flow that the
+// grid does not resolve, as at an edge that is pressed to a wall.
+void MembraneMechanics::recall(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt,
+                               Phase *phase, long *unresolved) {
+  const double least = least_area_squared(*phase);
+  const auto each = [&](auto dim) {
+    for (const SurfaceMarkers::Strain &strain : strains) {
+      const SurfaceCells::Cell &cell = surface_.all()[strain.cell];
+      Field &tensor = phase->tensor.field;
+      Tensor<dim> found;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b) found[a][b] = strain.B[kernels::position<dim>(a, b)];
+      const kernels::SurfaceStrain told = kernels::surface_strain<dim>(found);
+      const kernels::SurfaceStrain known = kernels::surface_strain<dim>(tensor_at<dim>(tensor, cell.at));
+      const kernels::Membrane &law = phase->material.membrane;
+      const double more = kernels::area_energy(law, told) - kernels::area_energy(law, known);
+      if (!(told.trace < doubtful * known.trace && known.trace < doubtful * told.trace)) continue;
+      if (!(more < area_doubtful * law.shear_modulus)) continue;
+      double passed = 0;
+      for (int d = 0; d < dim; ++d)
+        passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
+                  place_.box->spacing()[d];
+      const double share = std::min(passed, 1.0);
+      for (int f = 0; f < tensor.count(); ++f) {
+        double &B = tensor[f].origin[cell.at];
+        B = kernels::fma(share, strain.B[f] - B, B);
+      }
+      Tensor<dim> value = tensor_at<dim>(tensor, cell.at);
+      if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
+      ++*unresolved;
+      set_tensor<dim>(tensor, cell.at, value);
+    }
+  };
+  if (place_.box->dimension() == 2)
+    each(std::integral_constant<int, 2>());
+  else
+    each(std::integral_constant<int, 3>());
+}
+
+PetscErrorCode MembraneMechanics::move(double dt, const Field &velocity,
+                                       const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase,
+                                       long *unresolved) {
+  PetscFunctionBeginUser;
+  Field next = others_.part(0, phase->tensor.field.count());
+  if (place_.box->dimension() == 2)
+    PetscCall(heun<2>(dt, velocity, phase, next, unresolved));
+  else
+    PetscCall(heun<3>(dt, velocity, phase, next, unresolved));
+  recall(strains, velocity, dt, phase, unresolved);
+  PetscCall(extend(phase));
+  PetscFunctionReturn(0);
+}
+
+// The force of membranes on the flow.
+
+namespace {
+
+// Half way between q[-s] and q[0], of fourth order.
+EULASTIC_INLINE double between(const double *q, std::ptrdiff_t s) noexcept {
+  return (9. / 16) * (q[-s] + q[0]) - (1. / 16) * (q[-2 * s] + q[s]);
+}
+
+// div T on faces of component a, of a row. Within the few cells of delta the terms have to cancel where the surface is
+// flat and its tension uniform, in whatever direction.
+template <int Dim>
+EULASTIC_INLINE void divergence_row(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+  const ConstView q = T[a];
+  const double *aa = q.row(j, k);
+  const std::ptrdiff_t sa = q.stride(a);
+  for (int i = 0; i < n; ++i) out[i] = inverse[a] * (aa[i] - aa[i - sa]);
+  for (int e = 1; e < Dim; ++e) {
+    const int b = (a + e) % Dim;
+    const double *ab = T[Dim == 2 ? 2 : 6 - a - b].row(j, k);
+    const double ib = inverse[b];
+    const std::ptrdiff_t sb = q.stride(b);
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      const double *p = ab + i;
+      const double near = between(p + sb, sa) - between(p - sb, sa);
+      const double far = between(p + 2 * sb, sa) - between(p - 2 * sb, sa);
+      out[i] = kernels::fma(ib, (2. / 3) * near - (1. / 12) * far, out[i]);
+    }
+  }
+}
+EULASTIC_CLONES void divergence_2d(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+  divergence_row<2>(T, a, inverse, n, j, k, out);
+}
+EULASTIC_CLONES void divergence_3d(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
+  divergence_row<3>(T, a, inverse, n, j, k, out);
+}
+
+// Of these differences: the stress lives in three cells around a body, and rows that are not idle reach five.
+constexpr int force_reach = 2;
+
+}  // namespace
+
+// delta tau at centres, with the ghosts that the force takes; 0 elsewhere on rows that feel it.
+PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::membrane);
+  const int dim = place_.box->dimension();
+  for (int f = 0; f < stress.count(); ++f) clear_around(*place_.box, phase.rows, force_reach, stress[f]);
+  const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
+    auto B = zero;
+    const kernels::MembraneState state = kernels::membrane_state(
+        phase.material.membrane, kernels::surface_strain<int(std::tuple_size_v<decltype(B)>)>(B));
+    for (std::size_t a = 0; a < B.size(); ++a)
+      for (std::size_t b = 0; b < B.size(); ++b)
+        B[a][b] = cell.spread * kernels::fma(state.alpha, B[a][b], state.beta * P[a][b]);
+    return B;
+  };
+  for (const SurfaceCells::Cell &cell : surface_.all()) {
+    if (!cell.owned) continue;
+    if (dim == 2)
+      set_tensor<2>(
+          stress, cell.at,
+          set(cell, tensor_at<2>(phase.tensor.field, cell.at), kernels::tangential<2>(normal_of<2>(cell.normal))));
+    else
+      set_tensor<3>(
+          stress, cell.at,
+          set(cell, tensor_at<3>(phase.tensor.field, cell.at), kernels::tangential<3>(normal_of<3>(cell.normal))));
+  }
+  PetscCall(place_.exchange_ghosts(stress, force_reach, &phase.rows));
+  fill_wall_ghosts_centred_tensor(*place_.box, stress, force_reach, &phase.rows);
+  PetscFunctionReturn(0);
+}
+
+// That of the stress, then that of bending.
+PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const ForceRow &use,
+                                                 std::vector<double> *bending_energy) {
+  PetscFunctionBeginUser;
+  const int dim = place_.box->dimension();
+  const Real3 &h = place_.box->spacing(), inverse{1 / h[0], 1 / h[1], 1 / h[2]};
+  const int n = place_.box->cells()[0];
+  if (bending_energy) bending_energy->assign(surface_.all().size(), 0);
+  for (const bool bending : {false, true}) {
+    if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
+    Field fields = others_.part(0, bending ? MembraneBending::work_fields : phase.tensor.field.count());
+    if (bending)
+      PetscCall(bending_.find(phase, smooth(), fields));
+    else
+      PetscCall(find_stress(phase, fields));
+    VerbScope scope(Verb::membrane);
+    in_row_parts(*place_.box, [&](const RowPart &part) {
+      RowScratch scratch(*place_.box, 1);
+      double *force = scratch.row(0);
+      for (int k = part.k_begin; k < part.k_end; ++k)
+        for (int j = part.j_begin; j < part.j_end; ++j) {
+          if (phase.rows.idle(j, k)) continue;
+          for (int a = 0; a < dim; ++a) {
+            if (bending)
+              bending_.force_row(fields, a, j, k, force);
+            else
+              (dim == 2 ? divergence_2d : divergence_3d)(fields, a, inverse, n, j, k, force);
+            use(part.number, bending, a, j, k, force);
+          }
+        }
+    });
+    for (std::size_t c = 0; bending && bending_energy && c < bending_energy->size(); ++c)
+      if (const SurfaceCells::Cell &cell = surface_.all()[c]; cell.owned)
+        (*bending_energy)[c] = MembraneBending::energy(phase.material, fields, cell.at);
+    scope.flops(double(phase.rows.cells()) * dim * (bending ? 6 : 12 * dim));
+  }
+  PetscFunctionReturn(0);
+}
+
+// Energies and power of membranes.
+
+namespace {
+
+// Per volume of a cell.
+struct Energies {
+  double shear, area;
+  double rest, stretch;  ///< of SurfaceSample
+  double total() const { return shear + area; }
+};
+template <int Dim>
+Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
+  const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
+  const kernels::MembraneState state = kernels::membrane_state(phase.material.membrane, strain);
+  const double area = kernels::area_energy(phase.material.membrane, strain), weight = cell.delta / state.area;
+  return {weight * (state.energy - area), weight * area, weight, kernels::larger_stretch(strain)};
+}
+
+// Of the surface that curvatures are those of: a filter moves both, and what it does to the area makes up for the
+// curvature.
+double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
+  const double *p = psi.origin + at;
+  Real3 g{};
+  for (int d = 0; d < box.dimension(); ++d) g[d] = (p[psi.stride(d)] - p[-psi.stride(d)]) / (2 * box.spacing()[d]);
+  return std::sqrt((g[0] * g[0] + g[1] * g[1]) + g[2] * g[2]);
+}
+
+Real3 centre_velocity(const Field &velocity, std::ptrdiff_t at) {
+  Real3 v{};
+  for (int d = 0; d < velocity.count(); ++d) {
+    const double *face = velocity[d].origin + at;
+    v[d] = 0.5 * (face[0] + face[velocity[d].stride(d)]);
+  }
+  return v;
+}
+
+}  // namespace
+
+PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
+                                          std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples) {
+  PetscFunctionBeginUser;
+  const Box &box = *place_.box;
+  const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
+  const double volume = box.cell_volume();
+  std::vector<double> bending;
+  PetscCall(for_force_rows(
+      phase,
+      [&](int part, bool, int a, int j, int k, double *force) {
+        const double *v = velocity[a].row(j, k);
+        for (int i = 0; i < n; ++i) force[i] *= -v[i];
+        (*sum)[part].add_row(power, force, n, first);
+      },
+      &bending));
+  VerbScope scope(Verb::sums);
+  film.add_energy(phase, velocity, power, stored, &sum->front());
+  for (std::size_t c = 0; c < bending.size(); ++c)
+    if (bending[c] > 0) bending[c] *= smoothed_delta(box, smooth(), surface_.all()[c].at);
+  std::vector<int> labels;
+  if (samples && label > 0)
+    labels.assign(bending.size(), label);
+  else if (samples && phase.label)
+    PetscCall(surface_.find_labels(phase, surface_fields_, &labels));
+  for (std::size_t c = 0; c < bending.size(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) continue;
+    const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
+    sum->front().add(stored, energies.total() + bending[c]);
+    if (!labels.empty())
+      samples->push_back({labels[c], cell.place, cell.delta, energies.rest, energies.stretch,
+                          centre_velocity(velocity, cell.at), energies.shear * volume, energies.area * volume,
+                          bending[c] * volume});
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,183 @@
+#include "openings/feeders.hpp"
+
+#include "base/exact_sum.hpp"
+#include "bodies/labels.hpp"
+#include "field/fed_velocity.hpp"
+#include "field/open_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace eulastic {
+
+Feeders::~Feeders() {
+  for (Stretch &stretch : stretches_) (void)MPI_Comm_free(&stretch.line);
+}
+
+PetscErrorCode Feeders::create(const Domain &domain, const BoxSides &sides) {
+  PetscFunctionBeginUser;
+  domain_ = &domain;
+  const Int3 position = domain.split().position_of(domain.rank());
+  for (int d = 0; d < domain.dimension(); ++d)
+    for (const int high : {0, 1}) {
+      if (sides[d][high].feeder == 0) continue;
+      Int3 first = position;
+      first[d] = 0;
+      MPI_Comm line;
+      PetscCallMPI(MPI_Comm_split(domain.comm(), domain.split().rank_at(first), position[d], &line));
+      stretches_.push_back({d, high, sides[d][high].feeder, line});
+    }
+  PetscFunctionReturn(0);
+}
+
+template <class Visit>
+void Feeders::for_cells(const Box &box, const Stretch &stretch, const Visit &visit) {
+  const int d = stretch.d, deep = stretch.cells + beyond, begin = box.layout().begin[d];
+  Int3 from{}, to = box.cells();
+  if (stretch.high)
+    from[d] = std::max(0, box.domain_cells()[d] - deep - begin);
+  else
+    to[d] = std::min(to[d], deep - begin);
+  for (int k = from[2]; k < to[2]; ++k)
+    for (int j = from[1]; j < to[1]; ++j)
+      for (int i = from[0]; i < to[0]; ++i) visit(i, j, k);
+}
+
+PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::string *wrong) const {
+  constexpr double same = 0.05;  // of a solid fraction; surfaces of triangles and voxels are not quite straight
+  std::vector<double> change(stretches_.size(), 0);
+  PetscFunctionBeginUser;
+  for (std::size_t s = 0; s < stretches_.size(); ++s)
+    for (const Phase &phase : phases) {
+      if (!phase.material.is_rigid()) continue;
+      const ConstView phi = phase.fraction[0];
+      const std::ptrdiff_t next = (stretches_[s].high ? -1 : 1) * phi.stride(stretches_[s].d);
+      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
+        const double *here = &phi(i, j, k);
+        change[s] = std::max(change[s], std::fabs(here[next] - here[0]));
+      });
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, change.data(), static_cast<int>(change.size()), MPI_DOUBLE, MPI_MAX,
+                             domain_->comm()));
+  for (std::size_t s = 0; s < stretches_.size(); ++s)
+    if (change[s] > same)
+      *wrong = std::string("-inflow_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
+               "_feeder: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Feeders::feed_velocity(double time, const Field &velocity, BoxSides *sides) const {
+  PetscFunctionBeginUser;
+  for (const Stretch &stretch : stretches_) {
+    const int d = stretch.d, N = domain_->domain_cells()[d];
+    const int end = stretch.high ? N - stretch.cells : stretch.cells;
+    Side &side = (*sides)[d][stretch.high];
+    auto fed = std::make_shared<FedVelocity>();
+    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, end, stretch.line, fed.get()));
+    ExactSums sums(1);
+    double sum, cells = 1;
+    for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : domain_->domain_cells()[e];
+    const Int3 &n = domain_->cells();
+    const Split &split = domain_->split();
+    // One rank of the line adds, that which has the faces.
+    const bool adds = split.position_along(d, end) == split.position_of(domain_->rank())[d];
+    fed->for_each([&](const Int3 &at, double &value) {
+      bool own = adds;
+      for (int e = 0; e < 3; ++e) own = own && (e == d || (at[e] >= 0 && at[e] < n[e]));
+      if (own) sums.add(0, value);
+    });
+    PetscCall(sums.reduce(domain_->comm(), &sum));
+    const double missing = (stretch.high ? -1 : 1) * side.given.at(time) - sum / cells;
+    fed->for_each([&](const Int3 &at, double &value) { value += missing * inflow_shape(*domain_, side, d, at); });
+    side.fed = std::move(fed);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Feeders::recall_velocity(const Field &velocity, BoxSides *sides) const {
+  PetscFunctionBeginUser;
+  for (const Stretch &stretch : stretches_) {
+    const int d = stretch.d;
+    auto fed = std::make_shared<FedVelocity>();
+    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, stretch.high ? domain_->domain_cells()[d] : 0, stretch.line,
+                                fed.get()));
+    (*sides)[d][stretch.high].fed = std::move(fed);
+  }
+  PetscFunctionReturn(0);
+}
+
+// visit(stretch, label) for all cells of bodies in stretches, one after the other.
+template <class Visit>
+void Feeders::for_bodies(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
+                         const Visit &visit) const {
+  for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
+    for (const BodyInBox &body : boxed) {
+      const ConstView phi = body.phase->fraction[0];
+      bool any = false;
+      for_cells(*body.box, stretches_[s],
+                [&](int i, int j, int k) { any = any || phi(i, j, k) > BodyCells::threshold; });
+      if (any) visit(s, body.number);
+    }
+    for (const Phase &phase : phases) {
+      if (!phase.label || phase.material.is_rigid()) continue;
+      const BodyCells cells{phase.label[0], phase.fraction[0]};
+      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
+        if (const int label = static_cast<int>(cells(i, j, k)); label > 0) visit(s, label);
+      });
+    }
+  }
+}
+
+PetscErrorCode Feeders::start(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed) {
+  std::map<int, int> here;
+  PetscFunctionBeginUser;
+  for_bodies(phases, boxed, [&](int stretch, int label) { here.try_emplace(label, stretch); });
+  PetscCall(set_inside(here));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
+  std::vector<int> some, all, counts(domain_->ranks()), begins(domain_->ranks() + 1, 0);
+  PetscFunctionBeginUser;
+  for (const auto &[label, stretch] : here) some.insert(some.end(), {label, stretch});
+  const int count = static_cast<int>(some.size());
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, domain_->comm()));
+  std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
+  all.resize(begins.back());
+  PetscCallMPI(
+      MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, domain_->comm()));
+  inside_.clear();
+  for (std::size_t n = 0; n < all.size(); n += 2) {
+    int &stretch = inside_.try_emplace(all[n], all[n + 1]).first->second;
+    stretch = std::min(stretch, all[n + 1]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
+                                    std::vector<int> *labels) const {
+  std::vector<int> inside;
+  PetscFunctionBeginUser;
+  labels->clear();
+  for (const auto &[label, stretch] : inside_) inside.push_back(label);
+  std::vector<int> still(inside.size(), 0);
+  for_bodies(phases, boxed, [&](int stretch, int label) {
+    const auto at = std::lower_bound(inside.begin(), inside.end(), label);
+    if (at != inside.end() && *at == label && inside_.at(label) == stretch) still[at - inside.begin()] = 1;
+  });
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, domain_->comm()));
+  for (std::size_t n = 0; n < inside.size(); ++n)
+    if (still[n] == 0) labels->push_back(inside[n]);
+  PetscFunctionReturn(0);
+}
+
+Int3 Feeders::shift_of(int label) const {
+  const Stretch &stretch = stretches_[inside_.at(label)];
+  Int3 shift{};
+  shift[stretch.d] = stretch.high ? stretch.cells : -stretch.cells;
+  return shift;
+}
+
+}  // namespace eulastic

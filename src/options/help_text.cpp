@@ -1,0 +1,194 @@
+#include "options/help_text.hpp"
+
+#include "io/option_values.hpp"
+#include "options/not_supported.hpp"
+#include "options/option_table.hpp"
+#include "options/petsc_options.hpp"
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <regex>
+
+namespace eulastic {
+namespace {
+
+const char *introduction =
+    "Options stand in PETSc style, -name value, on the command line or in an options file with lines -name value\n"
+    "(# starts a comment, \"...\" holds a value together). The command line wins over the environment variable\n"
+    "PETSC_OPTIONS, which wins over the file; .petscrc is not read. The value none makes an option of the file not "
+    "given;\n"
+    "an option of the file that another one has made meaningless is dropped with a warning. Lists have commas and no\n"
+    "spaces. Units are any consistent set. Wrong input ends the program with exit code 2, before anything is "
+    "written.\n";
+
+// One species stands for all.
+Config example() {
+  Config config;
+  config.species.resize(1);
+  config.species[0].name = "NAME";
+  return config;
+}
+
+std::string default_text(const Option &option) {
+  if (option.required) return "required";
+  if (!option.default_note.empty()) return option.default_note;
+  return option.text ? option.text() : "";
+}
+
+std::string remarks(const Option &option) {
+  return option.doc + (option.only_with.empty() ? "" : "; only with " + option.only_with);
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+// A cell of a table.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
+  return text;
+}
+
+// As troff shows it: a - that can be copied, no escapes, and no line that is taken for a request.
+std::string troff(const std::string &text) {
+  std::string shown;
+  for (const char c : text) {
+    const bool at_line = shown.empty() || shown.back() == '\n';
+    if (at_line && (c == '.' || c == '\'')) shown += "\\&";
+    shown += c == '-' ? "\\-" : c == '\\' ? "\\e" : std::string(1, c);
+  }
+  return shown;
+}
+
+// Those with `word`, of families also those that it may belong to: ksp_type to -pressure_ksp_*.
+std::string petsc_names(const std::string &word = {}) {
+  std::string text;
+  for (const std::string &name : petsc_option_names()) {
+    const bool family = name.back() == '_';
+    const auto begins = [&](const std::string &option) { return option.compare(0, name.size(), name) == 0; };
+    const bool has = name.find(lower_case(word)) != std::string::npos;
+    if (has || (family && (begins(word) || begins("pressure_" + word))))
+      text += (text.empty() ? "-" : ", -") + name + (family ? "*" : "");
+  }
+  return text;
+}
+
+std::string description(const Option &option) {
+  const std::string value = default_text(option);
+  return "  -" + option.name + (value.empty() ? "" : " (" + value + ")") + "\n      " + remarks(option) +
+         (option.unit.empty() ? "" : " [" + option.unit + "]") + "\n      " + option.accepted + "\n";
+}
+
+// The side that the name of an option says: xmin, ..., zmax; or nothing.
+std::string side_of(const std::string &name) {
+  static const std::regex side("_([xyz](min|max))(_|$)");
+  std::smatch found;
+  return std::regex_search(name, found, side) ? found[1].str() : "";
+}
+
+// SIDE in place of xmin, ..., zmax.
+std::string with_any_side(const std::string &text) {
+  static const std::regex side("_[xyz](min|max)(?![a-z])"), wall("-boundary_[xyz] wall");
+  return std::regex_replace(std::regex_replace(text, side, "_SIDE"), wall, "-boundary_SIDE wall");
+}
+
+// Options that differ by their side only, or a single one.
+struct OptionsOfSides {
+  const Option *first;
+  std::vector<std::string> sides;
+};
+
+// Those whose description has `word`. Without a word all of them, each by itself.
+std::vector<OptionsOfSides> options_with(const std::string &word, const std::vector<Option> &table) {
+  std::vector<OptionsOfSides> found;
+  std::map<std::string, std::size_t> places;
+  for (const Option &option : table) {
+    if (lower_case(description(option)).find(lower_case(word)) == std::string::npos) continue;
+    const std::string side = side_of(option.name), name = word.empty() ? option.name : with_any_side(option.name);
+    const auto [place, fresh] = places.emplace(name, found.size());
+    if (fresh) found.push_back({&option, {}});
+    if (!side.empty()) found[place->second].sides.push_back(side);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string version_text() {
+  return "eulastic " EULASTIC_VERSION ", PETSc " + std::to_string(PETSC_VERSION_MAJOR) + "." +
+         std::to_string(PETSC_VERSION_MINOR) + "." + std::to_string(PETSC_VERSION_SUBMINOR) + "\n";
+}
+
+std::string usage_text() {
+  return version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
+         "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n"
+         "  eulastic options/channel_rbc.opts -output_dir output/mine    runs a case, here one that comes with it\n"
+         "  eulastic CASE -check_only                                    validates it, prints derived numbers\n"
+         "  eulastic -help WORD                                          options with this word; -help alone: all\n"
+         "  mpiexec -n 4 eulastic CASE                                   on four ranks\n\n"
+         "README.md begins with a first case of one's own.\n";
+}
+
+std::string help_text(const std::string &word) {
+  std::string text;
+  if (word.empty())
+    text = version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
+           "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n" + introduction;
+  Config config = example();
+  const std::vector<Option> table = option_table(config);
+  std::string group;
+  for (const OptionsOfSides &found : options_with(word, table)) {
+    if (found.first->group != group) text += "\n" + (group = found.first->group) + "\n";
+    const std::string entry = description(*found.first);
+    text += found.sides.size() < 2 ? entry : with_any_side(entry) + "      SIDE: " + join(found.sides, ", ") + "\n";
+  }
+  if (const std::string names = petsc_names(word); !names.empty())
+    text += "\nPETSc's own options pass through: " + names + "\n";
+  if (const std::string why = word.empty() ? "" : not_supported(word); !why.empty()) text += "\n" + why + "\n";
+  return text;
+}
+
+std::string help_markdown() {
+  std::string text = "# Options\n\nGenerated by `eulastic -help markdown`; do not edit.\n\n";
+  text += "    eulastic [OPTIONS_FILE] [-name value ...]\n\n";
+  text += introduction;
+  Config config = example();
+  std::string group;
+  for (const Option &option : option_table(config)) {
+    if (option.group != group)
+      text += "\n## " + (group = option.group) +
+              "\n\n| option | default | meaning | unit | accepted |\n|---|---|---|---|---|\n";
+    text += "| `-" + option.name + "` | " + default_text(option) + " | " + cell(remarks(option)) + " | " + option.unit +
+            " | " + option.accepted + " |\n";
+  }
+  return text + "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";
+}
+
+std::string man_page() {
+  const std::string version = "eulastic " EULASTIC_VERSION;
+  std::string text = ".TH EULASTIC 1 \"\" \"" + version + "\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\n" +
+                     "eulastic \\- soft bodies in incompressible flow on one fixed grid\n.SH SYNOPSIS\n" +
+                     ".B eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n.br\n" +
+                     ".B mpiexec \\-n 4 eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n" +
+                     ".SH DESCRIPTION\n" + troff(introduction) + ".SH OPTIONS\n";
+  Config config = example();
+  std::string group;
+  for (const Option &option : option_table(config)) {
+    if (option.group != group) text += ".SS " + troff(group = option.group) + "\n";
+    const std::string value = default_text(option);
+    text += ".TP\n\\fB" + troff("-" + option.name) + "\\fR" + (value.empty() ? "" : " (" + troff(value) + ")") + "\n" +
+            troff(remarks(option) + (option.unit.empty() ? "" : " [" + option.unit + "]")) + "\n.br\n" +
+            troff(option.accepted) + "\n";
+  }
+  return text + ".SS PETSc\nPETSc's own options pass through: " + troff(petsc_names()) + "\n" +
+         ".SH EXIT STATUS\n0 fine, 1 failed, 2 wrong input (nothing written), 3 wrong numbers or a guard.\n" +
+         ".SH FILES\nFrom the directory of the program: cases in ../share/eulastic/options, scripts in "
+         "../share/eulastic/scripts, documents "
+         "in ../share/doc/eulastic.\n";
+}
+
+}  // namespace eulastic

@@ -1,0 +1,132 @@
+// Makes rows of the option table out of members of a Config: the type of the member gives kind, arity and how it
+// is read and written.
+#pragma once
+
+#include "io/option_values.hpp"
+#include "options/option_table.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+
+using Names = std::vector<std::string>;
+
+/// For Option::names_file of an option whose every value is a path.
+inline bool any_file(const std::string &) { return true; }
+
+inline std::string several(std::size_t count, const std::string &noun, const Range &range) {
+  return (count == 1 ? (noun[0] == 'i' ? "an " : "a ") + noun : std::to_string(count) + " " + noun + "s") +
+         range.text() + (count == 1 ? "" : ", separated by commas");
+}
+
+// Makes rows out of members: the type of the member gives kind, arity and how it is read and written.
+class Rows {
+public:
+  std::vector<Option> rows;
+  std::string group, prefix;
+
+  Option &add(const std::string &name, const std::string &unit, const std::string &doc) {
+    Option option;
+    option.group = group;
+    option.name = prefix + name;
+    option.unit = unit;
+    option.doc = doc;
+    rows.push_back(option);
+    return rows.back();
+  }
+  Option &reals(const std::string &name, double *target, std::size_t count, const Range &range, const std::string &unit,
+                const std::string &doc) {
+    Option &row = add(name, unit, doc);
+    row.accepted = several(count, "number", range);
+    row.read = [=](const std::string &value) { return read_reals(value, range, target, count); };
+    row.text = [=] {
+      Names items;
+      for (std::size_t i = 0; i < count; ++i) items.push_back(to_text(target[i]));
+      return join(items, ",");
+    };
+    return row;
+  }
+  Option &real(const std::string &name, double &target, const Range &range, const std::string &unit,
+               const std::string &doc) {
+    return reals(name, &target, 1, range, unit, doc);
+  }
+  template <std::size_t N>
+  Option &real(const std::string &name, std::array<double, N> &target, const Range &range, const std::string &unit,
+               const std::string &doc) {
+    return reals(name, target.data(), N, range, unit, doc);
+  }
+  Option &integers(const std::string &name, int *target, std::size_t count, const Range &range,
+                   const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = several(count, "integer", range);
+    row.read = [=](const std::string &value) { return read_integers(value, range, target, count); };
+    row.text = [=] {
+      Names items;
+      for (std::size_t i = 0; i < count; ++i) items.push_back(std::to_string(target[i]));
+      return join(items, ",");
+    };
+    return row;
+  }
+  Option &integer(const std::string &name, long &target, const Range &range, const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = several(1, "integer", range);
+    row.read = [&target, range](const std::string &value) { return read_integer(value, range, &target); };
+    row.text = [&target] { return std::to_string(target); };
+    return row;
+  }
+  Option &boolean(const std::string &name, bool &target, const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = "true or false (also yes, no, 1, 0; alone it means true)";
+    row.bare = true;
+    row.read = [&target](const std::string &value) { return read_boolean(value, &target); };
+    row.text = [&target] { return std::string(target ? "true" : "false"); };
+    return row;
+  }
+  /// T is an enum, bool or int whose values count through `names`.
+  template <class T>
+  Option &choice(const std::string &name, T &target, const Names &names, const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = (names.size() > 1 ? "one of " : "") + join(names, ", ");
+    row.read = [&target, names](const std::string &value) {
+      int index = 0;
+      std::string wrong = read_choice(value, names, &index);
+      if (wrong.empty()) target = static_cast<T>(index);
+      return wrong;
+    };
+    row.text = [&target, names] { return names[static_cast<int>(target)]; };
+    return row;
+  }
+  Option &words(const std::string &name, Names &target, const Names &names, const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = "a list without spaces of " + join(names, ", ");
+    row.read = [&target, names](const std::string &value) { return read_words(value, names, &target); };
+    row.text = [&target] { return join(target, ","); };
+    return row;
+  }
+  Option &path(const std::string &name, std::string &target, const std::string &doc) {
+    Option &row = add(name, "", doc);
+    row.accepted = "a path";
+    row.read = [&target](const std::string &value) { return read_text(value, &target); };
+    row.text = [&target] { return target; };
+    return row;
+  }
+
+  /// The rows from `first` on may differ between a checkpoint and the run that goes on from it.
+  void allow_change(std::size_t first) {
+    for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
+  }
+
+  /// The rows from `first` on mean something only while `target` has one of the `wanted` values. `names` are those
+  /// of `-option`.
+  template <class T>
+  void restrict(std::size_t first, const std::string &option, T &target, const Names &names, std::vector<T> wanted) {
+    Names text;
+    for (T value : wanted) text.push_back(names[static_cast<int>(value)]);
+    for (std::size_t r = first; r < rows.size(); ++r) {
+      rows[r].only_with = "-" + option + " " + join(text, " or ");
+      rows[r].applies = [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); };
+    }
+  }
+};
+
+}  // namespace eulastic

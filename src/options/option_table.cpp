@@ -1,0 +1,303 @@
+#include "options/option_table.hpp"
+
+#include "options/opening_options.hpp"
+#include "options/option_rows.hpp"
+#include "options/petsc_options.hpp"
+#include "options/species_options.hpp"
+
+#include <set>
+
+namespace eulastic {
+namespace {
+
+const Names boundary_names{"periodic", "wall", "symmetry"};
+const Names side_names{"same", "wall", "symmetry", "inflow", "pressure", "outflow"};
+const Names method_names{"fast", "classic"};
+
+void add_grid(Rows &rows, Config &config) {
+  rows.group = "Grid";
+  rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
+                "cells in x, y, z; 1 in z is 2-D, shapes then ignore z");
+  rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("boundary_") + "xyz"[d];
+    rows.choice(name, config.boundary.both[d], boundary_names, std::string("both sides in ") + "xyz"[d]);
+    for (int high = 0; high < 2; ++high)
+      rows.choice(name + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
+                  "this side alone; same: as the option for both sides says");
+  }
+  const std::size_t processors = rows.rows.size();
+  for (int d = 0; d < 3; ++d)
+    rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
+                  std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
+  rows.integers("threads", &config.threads, 1, {1, false, 1024},
+                "threads per rank, which share its planes of cells, in 2-D rows");
+  rows.boolean("balance", config.balance,
+               "cut y and z so that ranks have about as much to do, by an estimate at the start and at restarts");
+  rows.allow_change(processors);
+}
+
+void add_walls(Rows &rows, Config &config) {
+  rows.group = "Moving walls: U cos(frequency t + phase)";
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const std::string wall = std::string("wall_") + "xyz"[d] + (side ? "max" : "min");
+      WallMotion &motion = config.sides[d][side].motion;
+      const std::size_t first = rows.rows.size();
+      rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
+                "velocity U; the component normal to the wall is 0");
+      rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
+      rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
+      for (std::size_t r = first; r < rows.rows.size(); ++r) {
+        rows.rows[r].only_with = std::string("-boundary_") + "xyz"[d] + " wall";
+        rows.rows[r].applies = [&config, d, side] { return config.boundary.is_wall(d, side); };
+      }
+    }
+}
+
+void add_flow(Rows &rows, Config &config) {
+  rows.group = "Fluid";
+  Fluid &fluid = config.fluid;
+  rows.real("fluid_density", fluid.density, positive, "mass/volume", "density, of the bodies too");
+  rows.real("fluid_viscosity", fluid.viscosity, not_negative, "mass/length/time",
+            "dynamic viscosity, of bodies too unless they have -NAME_viscosity");
+  rows.boolean("fluid_inertia", fluid.inertia, "false drops v.grad v");
+  rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
+            "force per mass, F cos(frequency t + phase)");
+  rows.real("body_force_frequency", fluid.body_force.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("body_force_phase", fluid.body_force.phase, any_number, "rad", "phase");
+
+  rows.group = "Initial flow";
+  InitialFlow &initial = config.initial;
+  rows.choice("initial_velocity", initial.kind, initial_velocity_names(),
+              "flow at t = 0; shear_wave_ab: component a varies along b");
+  Option &amplitude =
+      rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time", "amplitude of that flow");
+  amplitude.only_with = "-initial_velocity other than zero, uniform and couette";
+  amplitude.applies = [&initial] {
+    return initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
+           initial.kind != InitialVelocity::couette;
+  };
+  rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
+  rows.path("initial_state", config.initial_state,
+            "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)")
+      .names_file = any_file;
+}
+
+void add_bodies(Rows &rows, Config &config) {
+  rows.group = "Bodies";
+  Option &species = rows.add("species", "", "names of the species; each has the options of species NAME");
+  species.accepted = "a list without spaces of names made of letters, digits and _, beginning with a letter";
+  species.default_note = "none";
+  species.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
+  species.text = [&config] {
+    Names names;
+    for (const SpeciesSpec &spec : config.species) names.push_back(spec.name);
+    return join(names, ",");
+  };
+  rows.boolean(
+      "body_series", config.body_series,
+      "name, follow and measure every body; false: no labels, no bodies.h5, no body in snapshots, and no cost");
+  for (SpeciesSpec &spec : config.species) {
+    rows.group = "Bodies: species " + spec.name;
+    add_species_rows(rows, spec, !config.initial_state.empty());
+  }
+}
+
+// What the two presets say; the default of a row that they set.
+std::string by_method(const Option &row, Method &method) {
+  const Method present = method;
+  method = method_preset(MethodKind::fast);
+  const std::string fast = row.text();
+  method = method_preset(MethodKind::classic);
+  const std::string classic = row.text();
+  method = present;
+  return fast == classic ? fast : fast + "; " + classic + " with -method classic";
+}
+
+void add_method(Rows &rows, Config &config) {
+  rows.group = "Method";
+  Method &method = config.method;
+  const Names integrator_names{"staggered", "euler"};
+  rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
+  const std::size_t parts = rows.rows.size();
+  rows.choice("time_integrator", method.integrator, integrator_names,
+              "second order with solids at half steps, or explicit Euler");
+  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage");
+  rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
+              "solid fraction: sharp and conservative, or WENO5");
+  rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
+              "B outside bodies: extended, or reset to I");
+  const std::size_t force = rows.rows.size();
+  rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
+              "elastic force within a step: linear in time, or that of its middle");
+  rows.restrict(force, "time_integrator", method.integrator, integrator_names, {TimeIntegrator::staggered});
+  const Names pressure_names{"acm", "smac", "ksp"};
+  const std::size_t pressure = rows.rows.size();
+  rows.choice("pressure_solver", method.pressure, pressure_names,
+              "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
+              "-pressure_pc_type");
+  const std::size_t first = rows.rows.size();
+  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step");
+  rows.real("acm_tolerance", method.acm_tolerance, positive, "", "sweep until rms(div v) h/U is below");
+  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4}, "increments of earlier steps used as directions");
+  rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids");
+  rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
+  rows.allow_change(pressure);
+  for (std::size_t r = parts; r < rows.rows.size(); ++r) rows.rows[r].default_note = by_method(rows.rows[r], method);
+}
+
+// `mean`, or where the line cuts the plane of the other two directions.
+void add_profile(Rows &rows, ProfileSpec &profile, int d) {
+  const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+  const std::string plane{"xyz"[a], ',', "xyz"[b]};
+  Option &row =
+      rows.add(std::string("profile_") + "xyz"[d], "length",
+               std::string("flow along ") + "xyz"[d] + ", at the centres of the cells: averaged over planes, " +
+                   "or along the line through " + plane);
+  row.accepted = "mean, or 2 numbers " + plane;
+  row.default_note = "none";
+  row.read = [&profile, a, b](const std::string &value) {
+    profile.kind = ProfileSpec::Kind::mean;
+    if (value == "mean") return std::string();
+    profile.kind = ProfileSpec::Kind::line;
+    double place[2];
+    std::string wrong = read_reals(value, any_number, place, 2);
+    if (wrong.empty()) profile.line[a] = place[0], profile.line[b] = place[1];
+    return wrong;
+  };
+  row.text = [&profile, a, b] {
+    if (profile.kind == ProfileSpec::Kind::none) return std::string();
+    if (profile.kind == ProfileSpec::Kind::mean) return std::string("mean");
+    return to_text(profile.line[a]) + "," + to_text(profile.line[b]);
+  };
+}
+
+void add_samples(Rows &rows, Config &config) {
+  SampleControl &samples = config.samples;
+  Option &probes = rows.add("probe_points", "length", "points where probes.csv records the flow, with series.csv");
+  probes.accepted = "points x,y,z separated by colons, x,y,z:x,y,z";
+  probes.default_note = "none";
+  probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
+  probes.text = [&samples] {
+    Names points;
+    for (const Real3 &p : samples.probes) points.push_back(to_text(p[0]) + "," + to_text(p[1]) + "," + to_text(p[2]));
+    return join(points, ":");
+  };
+  for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
+  rows.real("profile_interval", samples.profile_interval, not_negative, "time",
+            "time between profiles, the start and the end included; 0 = only at the end");
+}
+
+void add_running(Rows &rows, Config &config) {
+  const std::size_t first = rows.rows.size();
+  rows.group = "Time";
+  rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
+  rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "stop after so many steps; 0 = no limit");
+
+  rows.group = "Output";
+  OutputControl &output = config.output;
+  rows.path("output_dir", output.directory, "directory of everything that is written");
+  rows.boolean("output_overwrite", output.overwrite,
+               "replaces the run that -output_dir holds; counts only on the command line, not in a file of options")
+      .command_line = true;
+  rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
+            "time between snapshots, the start and the end included; 0 = none");
+  rows.choice(
+      "snapshot_times", output.snapshot_exact, {"steps", "exact"},
+      "steps: of the first step at or after each multiple of the interval; exact: interpolated to the multiple");
+  rows.words("snapshot_fields", output.snapshot_fields,
+             {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"},
+             "fields in snapshots");
+  rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
+  rows.choice(
+      "snapshot_format", output.snapshot_format, {"xdmf", "vtkhdf", "vti"},
+      "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later; vti: also a "
+      "file for each that every version of VTK and ParaView reads, with the wall shear stress always");
+  rows.real("series_interval", output.series_interval, not_negative, "time",
+            "time between lines of series.csv; 0 = default")
+      .default_note = "time_end/200";
+  add_samples(rows, config);
+
+  rows.group = "Checkpoints and restart";
+  CheckpointControl &checkpoint = config.checkpoint;
+  const std::size_t regular = rows.rows.size();
+  rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
+            "simulated time between checkpoints; 0 = none but by wall time and before the end");
+  rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
+            "wall time between checkpoints; 0 = none but by simulated time and before the end");
+  for (std::size_t r = regular; r < rows.rows.size(); ++r) {
+    rows.rows[r].only_with = "-checkpoint_keep > 0";
+    rows.rows[r].applies = [&checkpoint] { return checkpoint.keep > 0; };
+  }
+  rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
+               "checkpoints that stay; a run that ends well leaves one of its end, with 0 none");
+  rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
+            "wall time after which a checkpoint is written and the run ends; 0 = never");
+  rows.path("restart", checkpoint.restart,
+            "checkpoint, or output directory whose newest good one is taken; in the same -output_dir its files go on");
+
+  rows.group = "Guards: bounds that stop the run; 0 = none";
+  GuardControl &guard = config.guard;
+  rows.real("guard_cfl", guard.cfl, not_negative, "", "CFL number, the sum of max |v_i| dt/h_i");
+  rows.real("guard_divergence", guard.divergence, not_negative, "", "rms(div v) h/U, as in series.csv");
+  rows.real("guard_mach", guard.mach, not_negative, "",
+            "largest |v| over the sound speed of artificial compressibility, where there is one");
+  rows.real("guard_volume_drift", guard.volume_drift, not_negative, "", "relative change of the volume of any body");
+  rows.real(
+      "guard_energy_growth", guard.energy_growth, not_negative, "",
+      "energy that a run makes of its own within any time, per energy that it held at the beginning of that time and "
+      "was supplied with since");
+  rows.real("guard_memory", guard.memory, not_negative, "",
+            "memory that the ranks of a node need, per memory it has; looked at before the start");
+
+  rows.group = "Program";
+  rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
+  rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
+                "with -check_only: as if the run had so many ranks; 0 = those of mpiexec, as a run has");
+  rows.boolean("print_options", config.print_options, "validate, print every option as resolved and stop");
+  rows.add("options_file", "", "options of another file; those of this file win").accepted =
+      "only in an options file; a path, from the directory of this file";
+  rows.add("help", "",
+           "print all options and stop; -help WORD those with this word in name, text or values; -help markdown prints "
+           "docs/options.md, -help man a page for man; -h a few lines")
+      .accepted = "only on the command line";
+  rows.add("version", "", "print the version and stop").accepted = "only on the command line";
+  rows.allow_change(first);
+}
+
+}  // namespace
+
+std::string read_method(const std::string &value, Config *config) {
+  int kind = 0;
+  std::string wrong = read_choice(value, method_names, &kind);
+  if (wrong.empty()) config->method = method_preset(static_cast<MethodKind>(kind));
+  return wrong;
+}
+
+std::vector<Option> option_table(Config &config) {
+  Rows rows;
+  add_grid(rows, config);
+  add_walls(rows, config);
+  add_openings(rows, config);
+  add_flow(rows, config);
+  add_bodies(rows, config);
+  add_method(rows, config);
+  add_running(rows, config);
+  return std::move(rows.rows);
+}
+
+bool is_reserved_word(const std::string &word) {
+  static const std::set<std::string> words = [] {
+    const auto first = [](const std::string &name) { return name.substr(0, name.find('_')); };
+    std::set<std::string> set;
+    Config config;
+    for (const Option &option : option_table(config)) set.insert(first(option.name));
+    for (const std::string &name : petsc_option_names()) set.insert(first(name));
+    return set;
+  }();
+  return words.count(word) > 0;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,34 @@
+// From the command line to a validated Config, without PETSc: all ranks together, with the same answer.
+#pragma once
+
+#include "options/input_files.hpp"
+#include "scene/config.hpp"
+
+#include <string>
+#include <vector>
+
+namespace eulastic {
+
+struct ParseResult {
+  Config config;
+  std::string error;                  ///< one line without "eulastic: error: ", empty if all is well; exit code 2
+  std::vector<InputFile> inputs;      ///< files that options name, of a config without error
+  std::vector<std::string> warnings;  ///< one line each, without "eulastic: warning: "
+  std::string message;                ///< -help, -version: print to stdout and exit 0
+  bool alone = false;                 ///< nothing was asked for: the message is the usage, the exit code 2
+  std::string program = "eulastic";   ///< as it was started
+  /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
+  /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
+  std::vector<std::string> petsc_arguments;
+  std::string petsc_options;  ///< PETSC_OPTIONS as found
+};
+
+/// `arguments`: the command line without the program name: options and at most one options file. An options file
+/// has lines `-name value`, # starts a comment. The command line wins over `petsc_options` (the environment
+/// variable), which wins over the file. Rank 0 reads the files that they name; nothing is written.
+ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options = {});
+
+/// Every option as resolved; itself an options file that gives the same run.
+std::string options_text(const ParseResult &result);
+
+}  // namespace eulastic

@@ -1,0 +1,167 @@
+// Outputs: what is said of bodies.
+#include "flow/limits.hpp"
+#include "output/outputs.hpp"
+#include "scene/red_cell.hpp"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+
+namespace eulastic {
+
+// Of all bodies, those of other ranks too.
+PetscErrorCode Outputs::measure_drift(Measured *measured) {
+  Measured &m = *measured;
+  struct {
+    double drift = 0;
+    int label = 0;
+  } resolved_one;  // MPI_DOUBLE_INT; of equal ones the first
+  PetscFunctionBeginUser;
+  m.volume_drift = 0;
+  const std::vector<double> &first_volumes = solver_->bodies().first_volumes();
+  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+    const BodyMeasure &body = m.bodies[b];
+    const double first = first_volumes[b];
+    const double drift = first > 0 && !body.leaves ? std::fabs(body.volume / first - 1) : 0;
+    m.volume_drift = std::max(m.volume_drift, drift);
+    if (resolved(first) && (drift > resolved_one.drift || resolved_one.label == 0)) resolved_one = {drift, body.label};
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m.volume_drift, 1, MPI_DOUBLE, MPI_MAX, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &resolved_one, 1, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
+  m.resolved_drift = resolved_one.drift;
+  m.drifting_body = resolved_one.label;
+  Real3 place{};
+  for (const BodyMeasure &body : m.bodies)
+    if (body.label == m.drifting_body) place = body.centroid;
+  PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
+  PetscFunctionReturn(0);
+}
+
+// The largest strains of all bodies, those of other ranks too.
+PetscErrorCode Outputs::measure_strains(Measured *measured) {
+  Measured &m = *measured;
+  Largest largest[2];  // stretch; area of a red cell. MPI_DOUBLE_INT; of equal ones the first
+  const auto see = [](double value, int label, Largest *of) {
+    if (of->label == 0 || value > of->value) *of = {value, label};
+  };
+  PetscFunctionBeginUser;
+  if (solver_->bodies().bodies() == 0) PetscFunctionReturn(0);
+  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
+    const BodyMeasure &body = m.bodies[b];
+    const SpeciesSpec &spec = config_.species[body.species];
+    see(largest_stretch(m.bodies, m.surfaces, b), body.label, &largest[0]);
+    if (spec.law == Law::red_cell && b < m.surfaces.size()) see(m.surfaces[b].area_strain, body.label, &largest[1]);
+  }
+  for (Largest &l : largest)
+    if (l.label == 0) l = {-HUGE_VAL, INT_MAX};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
+  for (Largest &l : largest)
+    if (l.label == INT_MAX) l = {};
+  m.stretch = largest[0];
+  m.red_cell_area = largest[1];
+  PetscFunctionReturn(0);
+}
+
+// Of body b of `bodies`; of membranes that along the surface.
+double Outputs::largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
+                                std::size_t b) const {
+  if (config_.species[bodies[b].species].is_membrane()) return b < surfaces.size() ? surfaces[b].largest_stretch : 1;
+  return std::sqrt(stretch_squared(bodies[b].trace_max, domain_->dimension()));
+}
+
+std::string Outputs::strain_warning() {
+  constexpr double stretched = 2;
+  const Measured &m = written_;
+  const auto once = [&](const Largest &of, double limit, bool *said) {
+    const bool now = !*said && of.value > limit;
+    *said = *said || now;
+    return now;
+  };
+  char text[300];
+  if (once(m.red_cell_area, red_cell_bursts, &area_warned_)) {
+    std::snprintf(
+        text, sizeof text,
+        "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane bursts; a "
+        "weaker flow, or a larger -NAME_area_modulus",
+        m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
+    return text;
+  }
+  if (once(m.stretch, stretched, &stretch_warned_)) {
+    std::snprintf(text, sizeof text,
+                  "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; more "
+                  "-grid_cells, and look at the verdict at the end",
+                  m.time, m.stretch.label, m.stretch.value, stretched);
+    return text;
+  }
+  return {};
+}
+
+PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
+  long small = 0;
+  PetscFunctionBeginUser;
+  for (const double volume : solver_->bodies().first_volumes()) small += !resolved(volume);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &small, 1, MPI_LONG, MPI_SUM, domain_->comm()));
+  *line = small == 0 ? ""
+                     : "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) +
+                           " of " + std::to_string(solver_->bodies().bodies()) +
+                           "; hardly resolved, and -guard_volume_drift does not look at them; more -grid_cells";
+  PetscFunctionReturn(0);
+}
+
+std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
+                                         const std::vector<SurfaceMeasure> &surfaces) const {
+  std::vector<BodyRecord> records;
+  // Loads are those of all bodies that bear some, in their order.
+  std::size_t rigid = 0, elastic = 0;
+  const auto pass = [&](const SpeciesSpec &spec) { ++(spec.law == Law::rigid ? rigid : elastic); };
+  for (int s = 0; s < static_cast<int>(config_.species.size()) && !bodies.empty(); ++s)
+    if (config_.species[s].bears_load())
+      solver_->bodies().for_labels(s, bodies.front().label, [&](int) { pass(config_.species[s]); });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const BodyMeasure &body = bodies[b];
+    if (b > 0 && config_.species[bodies[b - 1].species].bears_load()) pass(config_.species[bodies[b - 1].species]);
+    BodyRecord record;
+    record.id = body.label;
+    record.species = config_.species[body.species].name;
+    record.centroid = body.centroid;
+    record.velocity = body.velocity;
+    record.volume = body.volume;
+    record.taylor_deformation = body.taylor_deformation;
+    record.inclination = body.inclination;
+    record.elastic_energy = body.elastic_energy;
+    record.largest_stretch = largest_stretch(bodies, surfaces, b);
+    record.rest_deformation = body.rest_deformation;
+    if (config_.species[body.species].law == Law::rigid && rigid < measured.loads.size()) {
+      record.force = measured.loads[rigid].force;
+      record.torque = measured.loads[rigid].torque;
+    } else if (elastic < measured.surface_loads.size() && measured.surface_loads[elastic].label == body.label) {
+      record.force = measured.surface_loads[elastic].force;
+      record.torque = measured.surface_loads[elastic].torque;
+    }
+    if (b < surfaces.size()) {
+      const SurfaceMeasure &surface = surfaces[b];
+      record.surface_area = surface.area;
+      record.shear_energy = surface.shear_energy;
+      record.area_energy = surface.area_energy;
+      record.bending_energy = surface.bending_energy;
+      record.turning_rate = surface.turning_rate;
+    }
+    records.push_back(record);
+  }
+  return records;
+}
+
+// The first of all bodies, on rank 0.
+PetscErrorCode Outputs::list_bodies(Summary *summary) const {
+  std::vector<BodyMeasure> bodies;
+  std::vector<SurfaceMeasure> surfaces;
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = domain_->comm();
+  const int all = solver_->bodies().bodies();
+  PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.bodies, &bodies));
+  if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.surfaces, &surfaces));
+  summary->bodies = records(now_.measured, bodies, surfaces);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,64 @@
+// Bounds that stop a run before it goes on with wrong numbers: -guard_*, and fields that are not finite.
+//
+// They look at numbers that others have found: the limits of the time step, the measures of the flow. Only a run that
+// stops pays for finding the place.
+#pragma once
+
+#include "base/petsc.hpp"
+#include "bodies/measures.hpp"
+#include "diagnostics/flow_measures.hpp"
+#include "diagnostics/surface_loads.hpp"
+#include "scene/config.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+/// Why a run has to stop; nothing = it goes on.
+struct Stop {
+  std::string reason;   ///< exit_reason of summary.json: nonfinite or guard
+  std::string message;  ///< one line: step, time, place, what is beyond which limit, what to change
+  explicit operator bool() const { return !reason.empty(); }
+};
+
+/// The largest value of all bodies, and the label of the body that has it; 0 if there is none.
+struct Largest {
+  double value = 0;
+  int label = 0;
+};
+
+/// A state as measured for series.csv.
+struct Measured {
+  double time = -1;  ///< of the state; negative: not yet
+  FlowMeasures flow;
+  SurfaceEnergy surface;
+  std::vector<RigidLoad> loads;            ///< of the rigid ones among the bodies
+  std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
+  std::vector<BodyMeasure> bodies;         ///< that this rank owns
+  std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
+  double volume_drift = 0;                 ///< of the body that has changed most
+  double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
+  int drifting_body = 0;      ///< its label
+  Real3 drifting_place{};
+  double energy_made = 0;  ///< EnergyBudget::made_share()
+  Largest stretch;         ///< of all bodies
+  Largest red_cell_area;   ///< of red cells: growth of the area since rest
+  double mach = 0;         ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
+};
+
+class Guards {
+public:
+  explicit Guards(const Config &config);
+
+  /// Collective. Before a step of `dt`, from freshly measured extremes.
+  PetscErrorCode before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const;
+  /// Collective. Velocity and B of any state, and whether bodies near each other are separate.
+  PetscErrorCode check_finite(const Solver &solver, Stop *stop) const;
+  /// Collective. A measured state; that of the start passes.
+  PetscErrorCode check(const Solver &solver, const Measured &measured, Stop *stop) const;
+
+private:
+  GuardControl control_;
+  std::string pressure_advice_;
+};
+
+}  // namespace eulastic

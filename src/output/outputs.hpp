@@ -1,0 +1,125 @@
+// What a run leaves behind: series.csv, bodies.h5, snapshots, summary.json. Looks at the state, never touches it.
+#pragma once
+
+#include "base/petsc.hpp"
+#include "diagnostics/energy_budget.hpp"
+#include "diagnostics/side_flows.hpp"
+#include "grid/domain.hpp"
+#include "io/bodies_file.hpp"
+#include "io/series.hpp"
+#include "io/summary.hpp"
+#include "output/due.hpp"
+#include "output/guards.hpp"
+#include "output/sample_files.hpp"
+#include "output/snapshot_output.hpp"
+#include "scene/config.hpp"
+#include "scene/vessels.hpp"
+#include "solver/solver.hpp"
+
+#include <memory>
+
+namespace eulastic {
+
+/// How far the files of a run have come: what a restart needs to go on with them.
+struct OutputsPosition {
+  long series_rows = 0, bodies_rows = 0, snapshots = 0;
+  double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
+  EnergyBudget energy;
+  double mach_max = 0;
+};
+
+class Outputs {
+public:
+  /// Can measure from here on. `position`: how far the run had come that goes on.
+  void start(const Config &config, const Domain &domain, Solver *solver, const OutputsPosition &position);
+  /// Opens the files in `directory`, which exists and is ours. In that of a run that goes on its files are cut back to
+  /// `position`.
+  PetscErrorCode open(const std::string &directory, const OutputsPosition &position, bool same_directory);
+  /// Rank 0 has moved the files.
+  void moved_to(const std::string &directory);
+  /// Brings all rows to the disk and says how far they are.
+  PetscErrorCode sync(OutputsPosition *position);
+  /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time. A
+  /// row of series.csv waits where phases are behind, but for the last one.
+  PetscErrorCode write_due(bool last);
+  bool row_waits() const { return waits_; }
+  /// After a restart: the row of the checkpoint waits again, if it did.
+  PetscErrorCode resume_row();
+  /// In the middle of the next step, of dt: the row that waits becomes what lies between that and the last middle; the
+  /// next write_due() writes it.
+  PetscErrorCode see_middle(double dt);
+  /// Later in that step, with its pressure and the velocity of its start: the same of what passes the sides.
+  PetscErrorCode see_pressure(double dt);
+  /// Writes the row that waits if there is no next step.
+  PetscErrorCode write_waiting();
+  /// The last row, once; null if there is no new one.
+  const Measured *take_row();
+  /// One line, once per run, if a red cell or any body is strained much in the last row, or nothing.
+  std::string strain_warning();
+  /// Measures the state, if that has not been done.
+  PetscErrorCode measure();
+  /// As of the last measure().
+  const Measured &measured() const { return now_.measured; }
+  /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing. Collective, after measure().
+  PetscErrorCode unresolved_bodies(std::string *line) const;
+  /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
+  PetscErrorCode write_summary(Summary summary);
+  /// Those of the summary that was written last.
+  const std::vector<Summary::Verdict> &verdicts() const { return verdicts_; }
+
+private:
+  int few_cells() const { return domain_->dimension() == 3 ? 8 : 4; }
+  bool resolved(double volume) const { return volume >= few_cells() * domain_->cell_volume(); }
+  /// Of these bodies, with the loads that were measured.
+  std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
+                                  const std::vector<SurfaceMeasure> &surfaces) const;
+  PetscErrorCode list_bodies(Summary *summary) const;
+  PetscErrorCode measure_drift(Measured *measured);
+  PetscErrorCode measure_strains(Measured *measured);
+  double largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
+                         std::size_t b) const;
+  /// Of times within the last step.
+  PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
+  /// A state and what series.csv has of it beside.
+  struct Row {
+    double dt = 0, step = 0;
+    int bodies = 0;  ///< of the whole box
+    Measured measured;
+    EnergyState energy;
+    std::vector<SideFlow> sides;
+  };
+  PetscErrorCode look(Measured *measured);
+  PetscErrorCode look_at_energy(const Measured &measured, Row *row);
+  PetscErrorCode look(Row *row);
+  void set_energy_scales(EnergyState *energy) const;
+  PetscErrorCode await_row(double time_before);
+  PetscErrorCode see_power();
+  PetscErrorCode write_row();
+  PetscErrorCode write_row_now();
+  EnergyBudget budget_now() const;
+
+  Config config_;
+  double probes_time_ = -1;  ///< until which those of a run that goes on stay
+  bool membranes_ = false;
+  const Domain *domain_ = nullptr;
+  Solver *solver_ = nullptr;
+  std::string directory_;
+  Series series_;
+  SampleFiles samples_;
+  std::unique_ptr<BodiesFile> bodies_file_;
+  std::unique_ptr<SnapshotOutput> snapshots_;
+  Due series_due_, snapshot_due_;
+  Row now_;           ///< as of the last measure()
+  Row row_;           ///< the one that waits, as it was in the middle of the last step, or is written
+  Measured written_;  ///< of the last row
+  bool waits_ = false, seen_ = false, is_new_ = false;
+  double series_time_before_ = -1;  ///< of the row before the one that waits
+  EnergyBudget energy_;
+  std::string energy_unknown_;  ///< why the energy budget cannot be judged, or empty
+  bool area_warned_ = false, stretch_warned_ = false;
+  std::vector<Summary::Verdict> verdicts_;
+  long bodies_rows_ = 0, snapshots_before_ = 0;
+  double mach_max_ = 0;
+};
+
+}  // namespace eulastic

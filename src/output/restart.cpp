@@ -1,0 +1,175 @@
+#include "output/restart.hpp"
+
+#include "base/one_line.hpp"
+#include "base/rank_zero.hpp"
+#include "io/fail_together.hpp"
+#include "options/option_table.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace eulastic {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Value {
+  std::string text, content;  ///< the value, and of a file what it contains if that is known
+  bool differs(const Value &other) const {
+    const bool known = !content.empty() && !other.content.empty();
+    return known ? content != other.content : text != other.text;
+  }
+};
+
+std::map<std::string, Value> values_of(const std::string &options) {
+  std::map<std::string, Value> values;
+  std::istringstream lines(options);
+  std::string name;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.find(' ');
+    if (line.rfind(content_mark, 0) == 0 && !name.empty()) values[name].content = line.substr(content_mark.size());
+    if (line[0] != '-' || space == std::string::npos) continue;
+    name = line.substr(1, space - 1);
+    values[name].text = line.substr(space + 1);
+  }
+  return values;
+}
+
+std::string shown(const Value &value) {
+  if (value.text.empty()) return "not given";
+  return value.text + (value.content.empty() ? "" : " with the content " + value.content);
+}
+
+// Rank 0's answer counts: others may see the directory a moment later.
+std::vector<std::string> list_everywhere(const std::string &directory) {
+  std::istringstream lines(on_rank_0([&] {
+    std::string text;
+    for (const std::string &path : list_checkpoints(directory)) text += path + "\n";
+    return text;
+  }));
+  std::vector<std::string> paths;
+  for (std::string line; std::getline(lines, line);) paths.push_back(line);
+  return paths;
+}
+
+// `refusal`: the file is whole but this run must not go on from it.
+PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *solver, RunPosition *position,
+                    std::string *refusal) {
+  CheckpointFile file;
+  std::string options;
+  PetscFunctionBeginUser;
+  PetscCall(file.open(solver->domain().comm(), path));
+  PetscCall(file.read_options(&options));
+  *refusal = changed_option(options, parsed);
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  PetscCall(load_state(&file, path, solver, position));
+  const std::string step = "time_step";
+  if (values_of(options)[step].text != values_of(options_text(parsed))[step].text)
+    position->dt = 0;  // chosen anew at once
+  if (file.version() != EULASTIC_VERSION)
+    (void)PetscFPrintf(
+        solver->domain().comm(), stderr, "eulastic: warning: %s\n",
+        one_line(path + " was written by version " + file.version() + ": the same bits are not certain").c_str());
+  PetscFunctionReturn(0);
+}
+
+// A run that is beyond its end already.
+std::string beyond_end(const State &state, const TimeControl &time) {
+  char text[160];
+  if (time.end > 0 && state.time > time.end * (1 + 1e-12))
+    std::snprintf(text, sizeof text, "-time_end: the checkpoint is at t = %.9g already; accepted: a later end",
+                  state.time);
+  else if (time.steps_max > 0 && state.step > time.steps_max)
+    std::snprintf(text, sizeof text, "-time_steps_max: the checkpoint is at step %lld already; accepted: more steps",
+                  static_cast<long long>(state.step));
+  else
+    return {};
+  return text;
+}
+
+}  // namespace
+
+bool restarts_in_place(const Config &config) {
+  const fs::path source = config.checkpoint.restart;
+  return on_rank_0([&] {
+    std::error_code error;
+    const fs::path directory = fs::is_directory(source, error) ? source : fs::absolute(source, error).parent_path();
+    return fs::equivalent(directory, config.output.directory, error);
+  });
+}
+
+PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away) {
+  int rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    std::ifstream rows(directory + "/series.csv");
+    double last = time;
+    for (std::string row; std::getline(rows, row);) last = std::strtod(row.c_str(), nullptr);
+    *thrown_away = std::max(0.0, last - time);
+  }
+  PetscCallMPI(MPI_Bcast(thrown_away, 1, MPI_DOUBLE, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+std::string shorter_end(const Config &config, double held) {
+  if (config.time.end >= held * (1 - 1e-12)) return {};
+  char times[100];
+  std::snprintf(times, sizeof times, "-time_end: %.9g is before t = %.9g, to which the run in ", config.time.end, held);
+  return times + config.output.directory +
+         " has come; accepted: a later end, another -output_dir, or -output_overwrite to lose what comes after";
+}
+
+std::string changed_option(const std::string &before, const ParseResult &now) {
+  const auto then = values_of(before), here = values_of(options_text(now));
+  const auto value = [](const std::map<std::string, Value> &values, const std::string &name) {
+    const auto found = values.find(name);
+    return found == values.end() ? Value{} : found->second;
+  };
+  Config config = now.config;
+  for (const Option &option : option_table(config)) {
+    if (option.applies && !option.applies()) continue;  // earlier versions had some of them in options.txt
+    const Value a = value(then, option.name), b = value(here, option.name);
+    if (!option.may_change && a.differs(b))
+      return "-" + option.name + ": cannot change at a restart; in the checkpoint: " + shown(a) + ", now: " + shown(b);
+  }
+  return {};
+}
+
+PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *position, std::string *path,
+                       std::string *refusal) {
+  const MPI_Comm comm = solver->domain().comm();
+  const fs::path source = parsed.config.checkpoint.restart;
+  std::error_code error;
+  const bool is_directory = on_rank_0([&] { return fs::is_directory(source, error); });
+  PetscFunctionBeginUser;
+  const std::vector<std::string> all =
+      list_everywhere(is_directory ? source : fs::absolute(source, error).parent_path());
+  const std::vector<std::string> candidates = is_directory ? all : std::vector<std::string>{source};
+  if (candidates.empty()) *refusal = "-restart: there is no checkpoint in " + source.string();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    std::string damage;
+    *path = candidates[c];
+    PetscCall(catch_together([&] { return load(parsed, *path, solver, position, refusal); }, &damage));
+    if (damage.empty()) {
+      if (refusal->empty()) *refusal = beyond_end(solver->state(), parsed.config.time);
+      PetscFunctionReturn(0);
+    }
+    std::string older;
+    for (const std::string &other : all)
+      if (older.empty() && (checkpoint_step(*path) < 0 || checkpoint_step(other) < checkpoint_step(*path)) &&
+          !on_rank_0([&] { return fs::equivalent(other, *path, error); }))
+        older = other;
+    *refusal = "-restart: " + damage + (older.empty() ? "; there is no older one" : "; the next older one is " + older);
+    if (!is_directory || older.empty()) PetscFunctionReturn(0);
+    (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(*refusal).c_str());
+    refusal->clear();
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

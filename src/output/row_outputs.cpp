@@ -1,0 +1,265 @@
+// Outputs: rows of series.csv and bodies.h5.
+#include "base/events.hpp"
+#include "output/between.hpp"
+#include "output/outputs.hpp"
+#include "output/time_step_control.hpp"
+#include "solids/species_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eulastic {
+
+// All but volume drifts, of phases as Solver::phases_now() has them; `measured`: of another time, or of this velocity.
+PetscErrorCode Outputs::look(Measured *measured) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  Measured &m = *measured;
+  const std::vector<Phase> *phases = nullptr;
+  std::vector<BodyInBox> boxed;
+  PetscCall(solver_->phases_now(&phases));
+  PetscCall(solver_->bodies_now(&boxed));
+  const Fluid &fluid = config_.fluid;
+  const Real3 &f = fluid.body_force.force;
+  const Field *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
+  const bool again = m.time == state.time;  // with the same velocity and pressure
+  if (!again || viscosity) {
+    PetscCall(measure_flow(
+        *domain_, state.velocity,
+        {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
+    PetscCall(solver_->add_rigid_dissipation(&m.flow.viscous_dissipation));
+  }
+  PetscCall(measure_phases(*domain_, *phases, &m.flow, boxed));
+  if (solver_->bodies().bodies() > 0)
+    PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies, boxed));
+  PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
+  // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
+  if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
+  if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
+  constexpr double noise = 1e-5;  // of U/h
+  const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
+  m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
+  m.time = state.time;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
+  PetscFunctionBeginUser;
+  const State &state = solver_->state();
+  const Fluid &fluid = config_.fluid;
+  EnergyState &energy = row->energy = {};
+  const std::vector<Phase> *phases = nullptr;
+  std::vector<BodyInBox> boxed;
+  PetscCall(solver_->phases_now(&phases));
+  PetscCall(solver_->bodies_now(&boxed));
+  energy.kinetic = measured.flow.kinetic_energy;
+  energy.elastic = measured.flow.elastic_energy;
+  energy.surface = measured.surface.energy;
+  energy.surface_power = measured.surface.power;
+  energy.dissipation = measured.flow.viscous_dissipation;
+  const Field *viscosity = nullptr;
+  PetscCall(solver_->viscosity_now(&viscosity));
+  const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
+                              &config_.sides, state.time,      viscosity};
+  PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates, boxed));
+  double power = 0;
+  PetscCall(species_force_power(*domain_, *phases, state.time, fluid.density, state.velocity, &power));
+  energy.rates.force_power += power;
+  PetscCall(solver_->stretch_power(&power));
+  energy.rates.force_power += power;
+  for (std::size_t b = 0; b < measured.loads.size(); ++b) {
+    const RigidLoad &load = measured.loads[b];
+    energy.rates.wall_power += load.power;
+    energy.wall_range += fluid.viscosity * solver_->rigid()->masses[b].dissipation(solver_->rigid()->motion_of(int(b)),
+                                                                                   domain_->dimension());
+  }
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.density, state.velocity,
+                               state.pressure, &row->sides));
+  for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
+  set_energy_scales(&energy);
+  const bool may_start = config_.time.step == 0 || (solver_->rigid() && solver_->rigid()->moves);
+  energy.starts = config_.method.staggered() && may_start && state.step <= starting_steps;
+  row->dt = state.dt;
+  row->step = double(state.step);
+  row->bodies = solver_->bodies().bodies();
+  PetscFunctionReturn(0);
+}
+
+// Elastic energy is made of differences of numbers of order 1. Where forces are balanced by a pressure, what is not is
+// a part of what they give a fluid at rest in a step. Their power is at most |f| sqrt(2 rho K V), by Cauchy and
+// Schwarz.
+void Outputs::set_energy_scales(EnergyState *energy) const {
+  double modulus = 0, volume = 1, shortest = HUGE_VAL;
+  for (int d = 0; d < domain_->dimension(); ++d) {
+    volume *= domain_->domain_shape().length[d];
+    shortest = std::min(shortest, domain_->spacing()[d]);
+  }
+  const State &state = solver_->state();
+  const auto size = [](const Real3 &f) { return std::hypot(f[0], f[1], f[2]); };
+  double force = size(config_.fluid.body_force.force);
+  for (const SpeciesSpec &spec : config_.species) force += size(spec.body_force.force);
+  for (const Phase &phase : state.phases) {
+    const Material &material = phase.material;
+    const double surface = std::max(material.surface_tension, material.membrane.largest_modulus());
+    modulus = std::max({modulus, material.shear_modulus, surface / shortest});
+  }
+  const double mass = config_.fluid.density * volume, speed = force * state.dt;
+  energy->unknown = 1e-12 * modulus * volume + 0.5 * mass * speed * speed;
+  energy->force_range = force * std::sqrt(2 * mass * energy->kinetic);
+}
+
+PetscErrorCode Outputs::look(Row *row) {
+  PetscFunctionBeginUser;
+  PetscCall(look(&row->measured));
+  PetscCall(look_at_energy(row->measured, row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::await_row(double time_before) {
+  PetscFunctionBeginUser;
+  row_ = {};
+  PetscCall(solver_->look_behind([this] { return look(&row_); }));
+  waits_ = true;
+  series_time_before_ = time_before;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::resume_row() {
+  PetscFunctionBeginUser;
+  const double time = solver_->state().time;
+  if (!series_due_.at(time) || !solver_->is_behind()) PetscFunctionReturn(0);
+  PetscCall(await_row(std::exchange(series_due_.last_time, time)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::see_middle(double dt) {
+  PetscFunctionBeginUser;
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  Row next = row_;
+  PetscCall(look(&next));
+  const double share = row_.dt / (row_.dt + dt);
+  go_between(next.measured, share, &row_.measured);
+  go_between(next.energy, share, &row_.energy);
+  PetscCall(measure_drift(&row_.measured));
+  PetscCall(measure_strains(&row_.measured));
+  mach_max_ = std::max(mach_max_, row_.measured.mach);
+  waits_ = false;
+  seen_ = true;
+  PetscFunctionReturn(0);
+}
+
+// The pressure lives half a step beside the velocity, as phases do.
+PetscErrorCode Outputs::see_pressure(double dt) {
+  PetscFunctionBeginUser;
+  if (row_.sides.empty()) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  const State &state = solver_->state();
+  const double share = row_.dt / (row_.dt + dt);
+  std::vector<SideFlow> next;
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, config_.fluid.density, state.velocity,
+                               state.pressure, &next));
+  row_.energy.rates.side_power = 0;
+  for (std::size_t s = 0; s < next.size(); ++s) {
+    SideFlow &side = row_.sides[s];
+    side.pressure += share * (next[s].pressure - side.pressure);
+    side.power += share * (next[s].power - side.power);
+    row_.energy.rates.side_power += side.power;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_waiting() {
+  PetscFunctionBeginUser;
+  if (!waits_ && !seen_) PetscFunctionReturn(0);
+  StageScope stage(Stage::output);
+  VerbScope scope(Verb::write);
+  if (seen_)
+    PetscCall(write_row());
+  else
+    PetscCall(write_row_now());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row_now() {
+  PetscFunctionBeginUser;
+  PetscCall(measure());
+  row_ = now_;
+  PetscCall(write_row());
+  PetscFunctionReturn(0);
+}
+
+// Loads of rigid bodies are those of the middle of a step: their power at a row is between those of both steps.
+PetscErrorCode Outputs::see_power() {
+  PetscFunctionBeginUser;
+  if (!solver_->rigid() || !solver_->rigid()->moves) PetscFunctionReturn(0);
+  const double share = row_.dt / (row_.dt + solver_->state().dt);
+  std::vector<RigidLoad> next;
+  PetscCall(solver_->rigid_loads(&next));
+  for (std::size_t b = 0; b < next.size(); ++b)
+    row_.energy.rates.wall_power += share * (next[b].power - row_.measured.loads[b].power);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Outputs::write_row() {
+  PetscFunctionBeginUser;
+  if (seen_) PetscCall(see_power());
+  waits_ = seen_ = false;
+  is_new_ = true;
+  Measured &measured = row_.measured;
+  const FlowMeasures &flow = measured.flow;
+  const EnergyRates &rates = row_.energy.rates;
+  energy_.advance(measured.time, row_.energy);
+  measured.energy_made = energy_unknown_.empty() ? energy_.made_share() : 0;
+  double solid = 0;
+  for (const double volume : flow.phase_volume) solid += volume;
+  std::vector<double> row{measured.time,
+                          row_.step,
+                          row_.dt,
+                          flow.kinetic_energy,
+                          flow.elastic_energy,
+                          flow.viscous_dissipation,
+                          flow.bulk_velocity[0],
+                          flow.bulk_velocity[1],
+                          flow.bulk_velocity[2],
+                          flow.speed_max,
+                          flow.divergence_rms,
+                          flow.divergence_max,
+                          solid,
+                          measured.volume_drift,
+                          rates.force_power,
+                          rates.wall_power,
+                          rates.elastic_power,
+                          energy_.lost(),
+                          energy_.lost_elastic(),
+                          energy_.lost_extended(),
+                          row_.energy.surface,
+                          row_.energy.surface_power};
+  if (!row_.sides.empty()) row.push_back(rates.side_power);
+  for (const SideFlow &side : row_.sides) row.insert(row.end(), {side.flow_rate, side.pressure});
+  for (const VesselFlow &vessel : vessel_flows(config_, measured.time, flow.bulk_velocity, row_.sides))
+    row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
+  PetscCall(series_.write(row));
+  if (bodies_file_) {
+    const auto name = [this](int label) -> const std::string & {
+      return config_.species[solver_->bodies().species(label)].name;
+    };
+    // As many as there were: others may have come since.
+    PetscCall(
+        bodies_file_->add(measured.time, {row_.bodies, name}, records(measured, measured.bodies, measured.surfaces)));
+    ++bodies_rows_;
+  }
+  written_ = std::move(measured);  // the next row may wait already when this one is taken
+  PetscFunctionReturn(0);
+}
+
+const Measured *Outputs::take_row() {
+  const bool fresh = is_new_;
+  is_new_ = false;
+  return fresh ? &written_ : nullptr;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,104 @@
+#include "output/snapshot_output.hpp"
+
+#include "diagnostics/surface_shear_stress.hpp"
+#include "diagnostics/wall_shear_stress.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+bool wants(const OutputControl &output, const char *name) {
+  const auto &fields = output.snapshot_fields;
+  return std::find(fields.begin(), fields.end(), name) != fields.end();
+}
+
+SnapshotField as_field(const WallStress &wall, Stored precision) {
+  SnapshotField field;
+  field.format.name = std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
+  field.format.stored = precision;
+  field.format.plane = wall.direction;
+  field.format.plane_high = wall.high;
+  field.components = {wall.view(0), wall.view(1), wall.view(2)};
+  return field;
+}
+
+SnapshotSelection selection(const Config &config) {
+  const OutputControl &output = config.output;
+  const auto wanted = [&](const char *name) { return wants(output, name); };
+  SnapshotSelection s;
+  s.velocity = wanted("velocity");
+  s.pressure = wanted("pressure");
+  s.solid_fraction = wanted("solid_fraction");
+  s.left_cauchy_green = wanted("left_cauchy_green");
+  s.body = wanted("body") && config.body_series;
+  s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
+  return s;
+}
+
+// phi of the vessels and obstacles that are rigid, or of those that are not, with ghosts; empty if there are none.
+// Collective.
+PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vector<Phase> &phases, Solver *solver,
+                                Field *solid) {
+  PetscFunctionBeginUser;
+  const Domain &domain = solver->domain();
+  for (const Phase &phase : phases) {
+    const SpeciesSpec *spec = config.species_of(phase);
+    if (!spec || !spec->bears_load() || (spec->law == Law::rigid) != rigid) continue;
+    if (!*solid) *solid = Field(domain, 1);
+    for_points(domain.rows(), [&](int i, int j, int k) {
+      double &sum = (*solid)[0](i, j, k);
+      sum = std::min(1.0, sum + phase.fraction[0](i, j, k));
+    });
+  }
+  if (!*solid) PetscFunctionReturn(0);
+  PetscCall(solver->exchange().update_ghosts(*solid, 3));
+  fill_wall_ghosts_even(domain, at_centre, (*solid)[0], 3);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
+  PetscFunctionBeginUser;
+  PetscCall(solver->with_bodies_on_grid(
+      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver, const std::vector<Phase> &phases) {
+  PetscFunctionBeginUser;
+  const State &state = solver->state();
+  const Domain &domain = solver->domain();
+  const Field *viscosity = nullptr;
+  PetscCall(solver->viscosity_now(&viscosity));
+  const SnapshotSelection wanted = selection(config);
+  std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, phases);
+  std::vector<WallStress> walls;
+  Field rigid, elastic, stress, widened;
+  if (wants(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
+    EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
+    walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, phases);
+    PetscCall(solid_of_vessels(config, true, phases, solver, &rigid));
+    PetscCall(solid_of_vessels(config, false, phases, solver, &elastic));
+    if (rigid || elastic) stress = Field(domain, 3);
+    if (rigid) add_rigid_surface_stress(domain, config.fluid.viscosity, rigid[0], state.velocity, stress);
+    if (elastic && viscosity) {
+      widened.copy_from(*viscosity);
+      PetscCall(solver->exchange().update_ghosts(widened, 2));
+      of_place.local = &widened;
+    }
+    if (elastic) add_elastic_surface_stress({of_place, state.velocity, phases}, elastic[0], stress);
+  }
+  for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
+  if (stress) {
+    const Field &view = stress;
+    SnapshotField &field = fields.emplace_back();
+    field.format = {"wall_shear_stress", at_centre, wanted.precision};
+    field.components = {view[0], view[1], view[2]};
+  }
+  PetscCall(writer_.write(state.time, static_cast<long>(state.step), fields));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,92 @@
+#include "output/time_step_control.hpp"
+
+#include "solids/unresolved.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+constexpr int euler_interval = 10;  // steps between measurements; large steps look each time
+constexpr double growth = 1.05;     // most that dt grows from one measurement to the next
+// The staggered scheme starts with small steps that grow with the time that has passed: a flow that starts changes on
+// that scale, whatever the limits are, it need not balance the forces, RKL2 brings stiff modes only about half way in a
+// step, and solids meanwhile move with what there is. docs/method.md, section 8.
+constexpr double starting_growth = 1.25;
+constexpr double many_steps = 1e9;
+
+// The numbers of such a body mean little.
+std::string unresolved(const State &state) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "t = %.9g: the grid does not resolve the strain of a body (det B > %g, or half of a membrane's area gone), "
+      "part of which is lost there; more -grid_cells",
+      state.time, largest_determinant);
+  return text;
+}
+
+}  // namespace
+
+PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, double *dt, Stop *stop,
+                                       std::string *warning) {
+  PetscFunctionBeginUser;
+  const State &state = solver->state();
+  const bool large_steps = solver->spec().staggered() || solver->spec().viscous == ViscousScheme::rkl;
+  const int interval = large_steps ? 1 : euler_interval;
+  const bool look = state.step % interval == 0 || dt_ == 0;
+  measured_ = look;
+  if (look) {
+    extremes_ = {};
+    PetscCall(solver->measure(&extremes_));
+    const TimeStepLimits limits = solver->limits(extremes_);
+    if (time_.step > 0) {
+      dt_ = time_.step;
+      if (const char *limit = limits.broken(dt_); limit && !warned_) {
+        char text[200];
+        std::snprintf(text, sizeof text, "-time_step %g is beyond the %s limit (automatic: %g)", dt_, limit,
+                      limits.automatic());
+        *warning = text;
+      }
+    } else {
+      dt_ = limits.automatic();
+      const bool starts = solver->spec().staggered() && state.step < starting_steps;
+      if (starts && state.step == 0) dt_ *= std::pow(starting_growth, -starting_steps);
+      if (state.dt > 0) dt_ = std::min(dt_, (starts ? starting_growth : growth) * state.dt);
+    }
+    if (warning->empty() && !warned_) *warning = too_many_steps(state);
+    warned_ = warned_ || !warning->empty();
+  }
+  *dt = dt_;
+  if (time_.end > 0) {
+    const double left = time_.end - state.time;
+    ends_ = left <= *dt * (1 + 1e-9);
+    if (ends_) *dt = left;
+  }
+  if (look) PetscCall(guards.before_step(*solver, extremes_, *dt, stop));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TimeStepControl::forget_unresolved(Solver *solver, std::string *warning) {
+  PetscFunctionBeginUser;
+  if (!measured_) PetscFunctionReturn(0);
+  PetscCall(solver->forget_unresolved(extremes_));
+  if (solver->state().forgotten == 0 || unresolved_ || !warning->empty()) PetscFunctionReturn(0);
+  *warning = unresolved(solver->state());
+  unresolved_ = true;
+  PetscFunctionReturn(0);
+}
+
+// One line if the run will hardly end.
+std::string TimeStepControl::too_many_steps(const State &state) const {
+  double steps = (time_.end - state.time) / dt_;
+  if (time_.steps_max > 0) steps = std::min(steps, double(time_.steps_max) - double(state.step));
+  if (!(steps > many_steps)) return {};
+  char text[200];
+  std::snprintf(text, sizeof text, "-time_end %g is %.2g steps of %.3g away; check the units", time_.end, steps, dt_);
+  return text;
+}
+
+}  // namespace eulastic

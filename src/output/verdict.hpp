@@ -1,0 +1,27 @@
+// What a run says of its own results: energy, volume and area, strain, each "fine", "look" or "do not trust", and why.
+//
+// Thresholds: docs/outputs.md, "The verdict".
+#pragma once
+
+#include "diagnostics/energy_budget.hpp"
+#include "io/summary.hpp"
+#include "output/guards.hpp"
+
+namespace eulastic {
+
+/// What a verdict follows from.
+struct Evidence {
+  const EnergyBudget &budget;
+  const std::string &energy_unknown;  ///< why the budget cannot be judged, or empty
+  const Measured &measured;           ///< at the end
+  double forgotten;                   ///< strain_forgotten of summary.json
+  double evolved;  ///< points at which B was evolved, and markers of membranes, as many as at the end in all steps
+};
+
+Summary::Verdict judge_energy(const Evidence &evidence);
+Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &evidence);
+Summary::Verdict judge_strain(const Evidence &evidence);
+/// One line.
+std::string verdict_line(const Summary::Verdict &verdict);
+
+}  // namespace eulastic

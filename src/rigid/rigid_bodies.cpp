@@ -1,0 +1,585 @@
+#include "rigid/rigid_bodies.hpp"
+
+#include "base/exact_sum.hpp"
+#include "bodies/fill_phase.hpp"
+#include "field/sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace eulastic {
+namespace {
+
+constexpr double inward = 1e-6;      // in cells
+constexpr double on_surface = 1e-9;  // likewise
+constexpr double shortest = 1e-3;    // of a link, in spacings
+constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
+
+// Faces on a surface are fluid, whatever round-off makes of them.
+double depth_inside(const Domain &domain) {
+  const Real3 &h = domain.spacing();
+  return on_surface * (domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
+}
+
+}  // namespace
+
+// Image of a body that lies `shift` boxes on.
+int RigidBodies::image_of(int body, const Int3 &shift) {
+  return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1);
+}
+
+RigidBodies::RigidBodies(const Domain &domain, GhostExchange &exchange) : domain_(domain), exchange_(exchange) {}
+
+PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase,
+                                std::string *wrong) {
+  PetscFunctionBeginUser;
+  const int dimension = domain_.dimension(), motion = static_cast<int>(faces_.motions.size());
+  if (!exist())
+    for (int a = 0; a < dimension; ++a) inside_[a] = Field(domain_, 1);
+  faces_.motions.push_back(spec.motion);
+  faces_.motions.back().travelling = spec.travelling(dimension);
+  faces_.motions.back().turning = spec.turns(dimension);
+  faces_.moves = faces_.moves || spec.motion.moves();
+  faces_.travels = faces_.travels || faces_.motions.back().travels();
+  const bool travels = faces_.motions.back().travels(), turns = spec.turns(dimension),
+             file = spec.shape == Shape::voxels || spec.shape == Shape::state;
+  std::shared_ptr<const Surface> surface;
+  RigidMass mass;
+  if (file && travels) {
+    PetscCall(map_file(spec, *phase, &surface, &mass, wrong));
+    if (!wrong->empty()) PetscFunctionReturn(0);
+  } else if (file) {
+    PetscCall(exchange_.update_ghosts(phase->fraction, 1));
+    fill_wall_ghosts_even(domain_, at_centre, phase->fraction[0], 1);
+  } else {
+    surface = std::make_shared<const Surface>(spec, dimension);
+  }
+  if (turns && !file)
+    mass = moments(*surface, dimension);
+  else if (spec.motion.moves() && !file)
+    mass.volume = volume_in_box(spec, domain_.domain_shape());
+  species_.push_back({spec, file ? Places{{spec.centre, {}}} : places, first_label, surface, mass});
+  for (const NumberedPlace &place : species_.back().places.known) {
+    const int index = faces_.count++;
+    for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}});
+    faces_.masses.push_back(mass);
+    sources_.push_back({surface, nullptr, nullptr, place});
+    put(index, place);
+    for (int a = 0; a < dimension && !travels; ++a) {
+      if (file)
+        mark_file(a, phase->fraction[0], index);
+      else
+        mark(a, index);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+// visit(mark, image, place) for the owned faces that a body may touch.
+template <class Visit>
+void RigidBodies::for_faces(int a, int index, const Visit &visit) {
+  const Layout &own = domain_.layout();
+  const PlacedBody &body = *sources_[index].body;
+  std::array<std::vector<PlacedBody::Range>, 3> pieces;
+  for (int d = 0; d < 3; ++d) {
+    const int first = own.begin[d], last = first + domain_.points_end(d, a == d);
+    pieces[d] = d < domain_.dimension() && body.ends(d) ? body.ranges(d, first, last)
+                                                        : std::vector<PlacedBody::Range>{{first, last, 0}};
+  }
+  const View inside = inside_[a][0];
+  for (const auto &z : pieces[2])
+    for (const auto &y : pieces[1])
+      for (const auto &x : pieces[0]) {
+        const Int3 shift{x.shift / domain_.domain_cells()[0], y.shift / domain_.domain_cells()[1],
+                         z.shift / domain_.domain_cells()[2]};
+        const int image = image_of(index, shift);
+        for (int k = z.begin; k < z.end; ++k)
+          for (int j = y.begin; j < y.end; ++j)
+            for (int i = x.begin; i < x.end; ++i) {
+              const Int3 local{i - own.begin[0], j - own.begin[1], k - own.begin[2]};
+              Real3 place = place_of_face(domain_, a, local[0], local[1], local[2]);
+              place[0] += x.shift;
+              place[1] += y.shift;
+              place[2] += z.shift;
+              // A body that begins on a side of the box covers it.
+              const int at = own.begin[a] + local[a];
+              if (domain_.is_wall(a) && at == 0) place[a] += inward;
+              if (domain_.is_wall(a) && at == domain_.domain_cells()[a]) place[a] -= inward;
+              visit(inside(local[0], local[1], local[2]), image, place);
+            }
+      }
+}
+
+void RigidBodies::mark(int a, int index) {
+  const PlacedBody &body = *sources_[index].body;
+  const double depth = depth_inside(domain_);
+  for_faces(a, index, [&](double &mark, int image, const Real3 &place) {
+    if (!(body.level(place) < -depth)) return;
+    if (mark == 0)
+      mark = 1 + image;
+    else
+      note_contact(static_cast<int>(mark) - 1, image);
+  });
+}
+
+void RigidBodies::clear(int a, int index) {
+  for_faces(a, index, [&](double &mark, int, const Real3 &) {
+    if (mark != 0 && (static_cast<int>(mark) - 1) / images == index) mark = 0;
+  });
+}
+
+// A slab that travels has the volume that the bodies along which it goes leave to it.
+PetscErrorCode RigidBodies::measure_pistons() {
+  PetscFunctionBeginUser;
+  const double depth = depth_inside(domain_);
+  std::vector<double> counted(2 * faces_.count);  // faces across the axis: in the slab, and its own
+  for (int index = 0; index < faces_.count; ++index) {
+    const Species &species = species_[faces_.bodies[images * index].motion];
+    if (species.spec.shape != Shape::slab || !species.spec.travels(domain_.dimension())) continue;
+    const PlacedBody &body = *sources_[index].body;
+    for_faces(species.spec.axis, index, [&](const double &mark, int, const Real3 &place) {
+      if (!(body.level(place) < -depth)) return;
+      ++counted[2 * index];
+      counted[2 * index + 1] += mark != 0 && (static_cast<int>(mark) - 1) / images == index;
+    });
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted.data(), 2 * faces_.count, MPI_DOUBLE, MPI_SUM, domain_.comm()));
+  for (int index = 0; index < faces_.count; ++index)
+    if (counted[2 * index] > 0)
+      faces_.masses[index].volume =
+          species_[faces_.bodies[images * index].motion].mass.volume * (counted[2 * index + 1] / counted[2 * index]);
+  PetscFunctionReturn(0);
+}
+
+// A piston goes along the tube or the plates that it is between.
+void RigidBodies::note_contact(int image, int other) {
+  const RigidBody &one = faces_.bodies[image], &two = faces_.bodies[other];
+  if (one.index == two.index || !(faces_.motions[one.motion].travels() || faces_.motions[two.motion].travels())) return;
+  const SpeciesSpec &first = species_[one.motion].spec, &second = species_[two.motion].spec;
+  if (first.shape == Shape::slab && second.slides(first.axis)) return;
+  if (second.shape == Shape::slab && first.slides(second.axis)) return;
+  contact_ = std::max(contact_, {std::min(one.index, two.index), std::max(one.index, two.index)});
+}
+
+// Of a file a face is inside where phi, averaged to it, is above 1/2.
+void RigidBodies::mark_file(int a, ConstView phi, int index) {
+  if (!level_[a]) level_[a] = Field(domain_, 1);
+  const View inside = inside_[a][0], level = level_[a][0];
+  const std::ptrdiff_t step = phi.stride(a);
+  for (int k = 0; k < domain_.points_end(2, a == 2); ++k)
+    for (int j = 0; j < domain_.points_end(1, a == 1); ++j)
+      for (int i = 0; i < domain_.points_end(0, a == 0); ++i) {
+        const double *q = phi.row(j, k) + i;
+        const double here = 0.5 - 0.5 * (q[0] + q[-step]);
+        if (inside(i, j, k) != 0) continue;
+        level(i, j, k) = here;
+        if (here < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
+      }
+}
+
+// Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.
+double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
+                             double level_inside) const {
+  const Source &source = sources_[image / images];
+  const PlacedBody *body = source.before ? source.before.get() : source.body.get();
+  if (!body) return std::max(shortest, level_outside / (level_outside - level_inside));
+  const Real3 &centre = faces_.bodies[image].centre, &own = body->centre();
+  const Real3 &ahead = faces_.ahead[faces_.bodies[image].motion];
+  double low = 0, high = ahead == Real3{} && !source.before ? 1 : 2;
+  for (int step = 0; step < 48; ++step) {
+    const double middle = 0.5 * (low + high);
+    Real3 place{};
+    for (int d = 0; d < 3; ++d)
+      place[d] = outside[d] + middle * (inside[d] - outside[d]) - centre[d] + own[d] + ahead[d];
+    (body->level(place) < 0 ? high : low) = middle;
+  }
+  return std::max(shortest, 0.5 * (low + high));
+}
+
+// What a fluid face sees of the bodies around it; not cut where it sees none.
+RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
+  const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin, local{i, j, k};
+  const double *inside = inside_[a][0].row(j, k) + i;
+  const double *level = level_[a] ? level_[a][0].row(j, k) + i : nullptr;
+  RigidFaces::Cut cut;
+  cut.i = i;
+  double diagonal = 0, regular = 0;
+  Real3 least{}, place{};  // wrapped into the box, like that of the owner
+  for (int d = 0; d < domain_.dimension(); ++d) {
+    least[d] = (d == a ? 0 : 0.5) - 0.5 * N[d];
+    place[d] = least[d] + domain_.image(d, begin[d] + local[d]);
+  }
+  for (int d = 0; d < domain_.dimension(); ++d)
+    for (int high = 0; high < 2; ++high) {
+      const double h = domain_.spacing()[d], one = high ? 1 : -1;
+      const std::ptrdiff_t step = high ? inside_[a][0].stride(d) : -inside_[a][0].stride(d);
+      const int link = 2 * d + high, body = static_cast<int>(inside[step]) - 1;
+      cut.link[link] = 1 / (h * h);
+      regular += cut.link[link];
+      if (body >= 0) {
+        // The neighbour's own place is in the box: its image may be that of another side.
+        Real3 neighbour = place, here = place;
+        neighbour[d] += one;
+        if (!domain_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
+        if (!domain_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
+        here[d] = neighbour[d] - one;
+        const double part = crossing(body, here, neighbour, level ? level[0] : 0, level ? level[step] : 0);
+        if (cut.walls != 0) note_contact(cut.body, body);
+        cut.walls |= 1U << link;
+        cut.body = body;
+        cut.link[link] /= part;
+        here[d] += one * part;
+        for (int e = 0; e < domain_.dimension(); ++e) here[e] += faces_.ahead[faces_.bodies[body].motion][e];
+        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, domain_.spacing(), 0, 1);
+      }
+      diagonal += cut.link[link];
+    }
+  cut.share = std::min(1.0, regular / diagonal);
+  cut.open = std::max(least_open, cut.share);
+  return cut;
+}
+
+// Faces that see a body lie in or beside the marked part of their row or of those around it.
+RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
+  struct Span {
+    int begin, end;
+  };
+  const Int3 &n = domain_.cells(), &ghosts = domain_.layout().ghosts;
+  const View inside = inside_[a][0];
+  const int first = -ghosts[0], last = n[0] + ghosts[0], rows = n[1] + 2 * ghosts[1];
+  std::vector<Span> marked;
+  for (int k = -ghosts[2]; k < n[2] + ghosts[2]; ++k)
+    for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
+      const double *row = inside.row(j, k);
+      Span span{first, last};
+      while (span.begin < span.end && row[span.begin] == 0) ++span.begin;
+      while (span.begin < span.end && row[span.end - 1] == 0) --span.end;
+      marked.push_back(span);
+    }
+  RigidFaces::Component c;
+  for (int k = -layers[2]; k < n[2] + layers[2]; ++k)
+    for (int j = -layers[1]; j < n[1] + layers[1]; ++j) {
+      c.first_cut.push_back(c.cuts.size());
+      c.first_run.push_back(c.runs.size());
+      const std::size_t at = (j + ghosts[1]) + std::size_t(rows) * (k + ghosts[2]);
+      Span span = marked[at];
+      const auto join = [&](const Span &other) {
+        if (other.begin == other.end) return;
+        span = span.begin == span.end ? other : Span{std::min(span.begin, other.begin), std::max(span.end, other.end)};
+      };
+      join(marked[at - 1]);
+      join(marked[at + 1]);
+      if (ghosts[2] > 0) {
+        join(marked[at - rows]);
+        join(marked[at + rows]);
+      }
+      c.all.push_back(span.begin < span.end && span.begin <= -layers[0] && span.end >= n[0] + layers[0]);
+      if (span.begin == span.end) continue;
+      const double *row = inside.row(j, k);
+      for (int i = std::max(span.begin - 1, -layers[0]); i < std::min(span.end + 1, n[0] + layers[0]); ++i) {
+        const int body = static_cast<int>(row[i]) - 1;
+        if (body < 0) {
+          c.all.back() = false;
+          if (const RigidFaces::Cut cut = cut_at(a, i, j, k); cut.walls != 0) c.cuts.push_back(cut);
+        } else if (c.runs.size() > c.first_run.back() && c.runs.back().end == i && c.runs.back().body == body) {
+          ++c.runs.back().end;
+        } else {
+          c.runs.push_back({i, i + 1, body});
+        }
+      }
+    }
+  c.first_cut.push_back(c.cuts.size());
+  c.first_run.push_back(c.runs.size());
+  return c;
+}
+
+std::size_t RigidBodies::bytes() const {
+  std::size_t sum = faces_.bytes();
+  for (const Species &species : species_) sum += species.surface ? species.surface->bytes() : 0;
+  for (int a = 0; a < 3; ++a) sum += inside_[a].bytes() + level_[a].bytes();
+  return sum;
+}
+
+// The volume between the surface of bodies that rest and the faces inside them.
+
+// Every cell gives half of its solid fraction to each of its two faces of a component. A fluid face has it in excess of
+// what counts as inside; a face inside lacks what the cell has of fluid. Where bodies overlap only one of them counts.
+PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
+  PetscFunctionBeginUser;
+  if (!exist()) PetscFunctionReturn(0);
+  constexpr int per_component = 4, per_body = 3 * per_component;
+  const int dimension = domain_.dimension(), cells = domain_.cells()[0];
+  ExactSums sums(per_body * faces_.count);
+  faces_.footprints.clear();
+  const auto add = [&](int image, int a, const Int3 &cell, int high, double part, bool nearest) {
+    const int index = faces_.bodies[image].index, side = domain_.layout().begin[a] + cell[a] + high;
+    Int3 face = cell;
+    face[a] += high;
+    const Real3 place = place_of_face(domain_, a, face[0], face[1], face[2]);
+    if (domain_.is_wall(a) && (side == 0 || side == domain_.domain_cells()[a]))
+      faces_.footprints.push_back({cell, a, high > 0, image, 2 * part});
+    const PlacedBody *body = sources_[index].body.get();
+    const Real3 &centre = faces_.bodies[image].centre;
+    sums.add(per_body * index + per_component * a, part);
+    for (int d = 0; d < dimension; ++d) {
+      double arm = place[d] - centre[d];
+      if (nearest && body && body->ends(d) && !domain_.is_wall(d))
+        arm -= domain_.domain_cells()[d] * std::round(arm / domain_.domain_cells()[d]);
+      sums.add(per_body * index + per_component * a + 1 + d, part * arm * domain_.spacing()[d]);
+    }
+  };
+  const auto rests = [&](const Phase &phase) { return phase.material.is_rigid() && !travels(phase); };
+  const auto index_of = [&](const Phase &phase, int label) {
+    for (std::size_t index = 0; index < sources_.size(); ++index) {
+      const Species &species = species_[faces_.bodies[images * index].motion];
+      if (species.spec.name != phase.species) continue;
+      return static_cast<int>(index) + label - species.first_label;  // bodies of a species follow each other
+    }
+    return -1;
+  };
+  std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
+  for (const Segment &row : domain_.rows())
+    for (int a = 0; a < dimension; ++a) {
+      for (const int high : {0, 1}) {
+        faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
+        for (int &image : beside[high])
+          if (image >= 0 && faces_.motions[faces_.bodies[image].motion].travels()) image = -1;
+      }
+      for (int i = 0; i < cells; ++i) {
+        double solid = 0;
+        for (const Phase &phase : phases)
+          if (rests(phase)) solid += phase.fraction[0](i, row.j, row.k);
+        const double fluid = 1 - std::min(1.0, solid);
+        if (solid == 0 && beside[0][i] < 0 && beside[1][i] < 0) continue;
+        for (const int high : {0, 1}) {
+          const Int3 cell{i, row.j, row.k};
+          if (beside[high][i] >= 0) {
+            if (fluid > 0) add(beside[high][i], a, cell, high, -0.5 * fluid, false);
+            continue;
+          }
+          for (const Phase &phase : phases) {
+            const double part = rests(phase) ? phase.fraction[0](i, row.j, row.k) : 0;
+            const int index = part > 0 && phase.label ? index_of(phase, int(phase.label[0](i, row.j, row.k))) : -1;
+            if (index >= 0 && index < faces_.count)
+              add(image_of(index, {0, 0, 0}), a, cell, high, 0.5 * part * std::min(1.0, 1 / solid), true);
+          }
+        }
+      }
+    }
+  std::vector<double> total(per_body * faces_.count);
+  PetscCall(sums.reduce(domain_.comm(), total.data()));
+  faces_.gaps.assign(faces_.count, {});
+  for (int index = 0; index < faces_.count; ++index)
+    for (int a = 0; a < 3; ++a) {
+      const double *found = &total[per_body * index + per_component * a];
+      faces_.gaps[index].volume[a] = found[0] * domain_.cell_volume();
+      for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * domain_.cell_volume();
+    }
+  PetscCall(measure_pistons());
+  PetscFunctionReturn(0);
+}
+
+// Where bodies are at a time.
+
+namespace {
+
+constexpr double most_lost = 0.05;  // volume of a body from a file that travels
+
+// Moments in the coordinates of the box.
+RigidMass turned(const RigidMass &mass, const Rotation &R) {
+  const auto &[xx, yy, zz, yz, xz, xy] = mass.second;
+  const Rotation S{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
+  const auto second = [&](int a, int b) {
+    double sum = 0;
+    for (int m = 0; m < 3; ++m)
+      for (int n = 0; n < 3; ++n) sum += R[a][m] * S[m][n] * R[b][n];
+    return sum;
+  };
+  RigidMass now{mass.volume, {}, {second(0, 0), second(1, 1), second(2, 2), second(1, 2), second(0, 2), second(0, 1)}};
+  for (int a = 0; a < 3; ++a)
+    for (int m = 0; m < 3; ++m) now.first[a] += R[a][m] * mass.first[m];
+  return now;
+}
+
+}  // namespace
+
+// Of a body from a file that travels: all of phi, which every rank gets.
+PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase,
+                                     std::shared_ptr<const Surface> *surface, RigidMass *mass, std::string *wrong) {
+  PetscFunctionBeginUser;
+  const int dimension = domain_.dimension();
+  const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin;
+  std::array<int, 6> ends{N[0], N[1], N[2], 1, 1, 1};  // first cells, and -last ones
+  for_points(domain_.rows(), [&](int i, int j, int k) {
+    const Int3 local{i, j, k};
+    for (int d = 0; d < 3 && phase.fraction[0](i, j, k) > 0; ++d) {
+      ends[d] = std::min(ends[d], begin[d] + local[d]);
+      ends[3 + d] = std::min(ends[3 + d], -(begin[d] + local[d]));
+    }
+  });
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends.data(), 6, MPI_INT, MPI_MIN, domain_.comm()));
+  FractionBox box;
+  box.size = {1, 1, 1};
+  std::ptrdiff_t count = 1;
+  Int3 first{};
+  for (int d = 0; d < dimension; ++d) {
+    if (ends[d] == 0 || -ends[3 + d] == N[d] - 1)
+      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the sides of the box along " + "xyz"[d] +
+               ", and what moves there needs fluid around it; accepted: a cell of it, or no motion";
+    first[d] = ends[d] - LevelMap::margin;
+    box.size[d] = -ends[3 + d] - ends[d] + 1 + 2 * LevelMap::margin;
+    box.spacing[d] = domain_.spacing()[d];
+    box.first[d] = (first[d] + 0.5) * domain_.spacing()[d] - spec.centre[d];
+    count *= box.size[d];
+  }
+  if (!wrong->empty()) PetscFunctionReturn(0);
+  box.fraction.resize(count);
+  for_points(domain_.rows(), [&](int i, int j, int k) {
+    const double phi = phase.fraction[0](i, j, k);
+    if (phi > 0)
+      box.fraction[(begin[0] + i - first[0]) +
+                   box.size[0] *
+                       ((begin[1] + j - first[1]) + std::ptrdiff_t(box.size[1]) * (begin[2] + k - first[2]))] = phi;
+  });
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, box.fraction.data(), static_cast<int>(count), MPI_DOUBLE, MPI_SUM, domain_.comm()));
+  *surface = std::make_shared<const Surface>(LevelMap(box, dimension));
+  *mass = moments(**surface, dimension);
+  const double cells = std::accumulate(box.fraction.begin(), box.fraction.end(), 0.0),
+               seen = mass->volume / domain_.cell_volume();
+  if (std::fabs(seen - cells) > most_lost * cells) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  " moves and must be three cells thick to be seen: it would have %.4g cells instead of %.4g; "
+                  "accepted: a finer grid, or no motion",
+                  seen, cells);
+    *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + text;
+  }
+  PetscFunctionReturn(0);
+}
+
+void RigidBodies::put(int index, const BodyPlace &place) {
+  Source &source = sources_[index];
+  Real3 centre{};
+  for (int d = 0; d < domain_.dimension(); ++d)
+    centre[d] = (place.centre[d] - domain_.domain_shape().length[d] / 2) / domain_.spacing()[d];
+  if (source.surface) {
+    source.body = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
+    centre = source.body->centre();
+  }
+  const int motion = faces_.bodies[images * index].motion;
+  if (faces_.motions[motion].turning) faces_.masses[index] = turned(species_[motion].mass, rotation(place.orientation));
+  for (int image = 0; image < images; ++image) {
+    const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+    Real3 &there = faces_.bodies[images * index + image].centre;
+    there = centre;
+    for (int d = 0; d < domain_.dimension(); ++d) there[d] -= shift[d] * domain_.domain_cells()[d];
+  }
+}
+
+// In the box: across periodic sides a body comes back on the other one.
+BodyPlace RigidBodies::place_of(const BodyPlace &start, const RigidMotion &motion, double time) const {
+  BodyPlace place = start;
+  const Real3 shift = motion.shift(time);
+  place.orientation = turned(start.orientation, motion.angle(time));
+  for (int d = 0; d < domain_.dimension(); ++d) {
+    const double length = domain_.domain_shape().length[d];
+    place.centre[d] += shift[d];
+    if (shift[d] != 0 && !domain_.is_wall(d)) place.centre[d] -= length * std::floor(place.centre[d] / length);
+  }
+  return place;
+}
+
+PetscErrorCode RigidBodies::place(double time, double surface_time) {
+  PetscFunctionBeginUser;
+  contact_ = {};
+  faces_.ahead.assign(faces_.motions.size(), {});
+  for (std::size_t m = 0; m < faces_.ahead.size(); ++m)
+    for (int d = 0; d < domain_.dimension(); ++d) {
+      const RigidMotion &motion = faces_.motions[m];
+      faces_.ahead[m][d] = (motion.shift(time)[d] - motion.shift(surface_time)[d]) / domain_.spacing()[d];
+    }
+  for (int index = 0; index < faces_.count; ++index) {
+    const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
+    if (!motion.travels()) continue;
+    for (int a = 0; a < domain_.dimension(); ++a) clear(a, index);
+  }
+  for (int index = 0; index < faces_.count; ++index) {
+    const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
+    if (!motion.travels()) continue;
+    Source &source = sources_[index];
+    BodyPlace place = place_of(source.start, motion, time);
+    put(index, place);
+    if (motion.turning && surface_time != time) {
+      place.orientation = place_of(source.start, motion, surface_time).orientation;
+      source.before = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
+    } else {
+      source.before.reset();
+    }
+    for (int a = 0; a < domain_.dimension(); ++a) mark(a, index);
+  }
+  Int3 layers{};
+  for (int d = 0; d < domain_.dimension(); ++d) layers[d] = domain_.layout().ghosts[d] - 1;
+  std::array<RigidFaces::Component, 3> components;
+  faces_.speed = {};
+  for (int a = 0; a < domain_.dimension(); ++a) {
+    PetscCall(exchange_.update_ghosts(inside_[a], domain_.layout().ghosts[a]));
+    if (level_[a]) PetscCall(exchange_.update_ghosts(level_[a], domain_.layout().ghosts[a]));
+    components[a] = component(a, layers);
+    for (const RigidFaces::Cut &cut : components[a].cuts) {
+      const double along = std::fabs(faces_.motions[faces_.bodies[cut.body].motion].velocity[a]);
+      for (const double turn : cut.turn) faces_.speed[a] = std::max(faces_.speed[a], along + std::fabs(turn));
+    }
+    if (travel()) continue;
+    inside_[a] = {};
+    level_[a] = {};
+  }
+  const double count = faces_.count;
+  std::array<double, 4> most{faces_.speed[0], faces_.speed[1], faces_.speed[2], contact_[0] * count + contact_[1]};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), 4, MPI_DOUBLE, MPI_MAX, domain_.comm()));
+  std::copy_n(most.begin(), 3, faces_.speed.begin());
+  faces_.set(layers, domain_.cells()[1] + 2 * layers[1], std::move(components));
+  touching_.clear();
+  if (most[3] != 0)
+    say_touching({static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))}, time);
+  PetscFunctionReturn(0);
+}
+
+void RigidBodies::say_touching(const std::array<int, 2> &bodies, double time) {
+  const auto species = [&](int index) { return species_[faces_.bodies[images * index].motion].spec; };
+  const SpeciesSpec first = species(bodies[0]), second = species(bodies[1]),
+                    mover = first.travels(domain_.dimension()) ? first : second;
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
+                "paths with fluid between the bodies",
+                mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(),
+                second.name.c_str(), time);
+  touching_ = text;
+}
+
+bool RigidBodies::travels(const Phase &phase) const {
+  return std::any_of(species_.begin(), species_.end(), [&](const Species &s) {
+    return s.spec.name == phase.species && s.spec.travels(domain_.dimension());
+  });
+}
+
+PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const {
+  PetscFunctionBeginUser;
+  for (std::size_t s = 0; s < species_.size(); ++s)
+    for (Phase &phase : *phases) {
+      const RigidMotion &motion = faces_.motions[s];
+      if (!motion.travels() || phase.species != species_[s].spec.name) continue;
+      Places places = species_[s].places;
+      for (BodyPlace &place : places.known) place = place_of(place, motion, time);
+      Phase filled;
+      fill_bodies(domain_, *species_[s].surface, places, species_[s].first_label, &filled);
+      phase.fraction = std::move(filled.fraction);
+      if (phase.label) phase.label = std::move(filled.label);
+    }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

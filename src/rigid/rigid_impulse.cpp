@@ -1,0 +1,270 @@
+#include "rigid/rigid_impulse.hpp"
+
+#include "base/events.hpp"
+#include "base/exact_sum.hpp"
+#include "rigid/rigid_rows.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+namespace {
+
+// What a link of a cut face sees: the image of a body that its neighbour is in, and the place of the cut face beside
+// it, in cells. The neighbour's own place is in the box.
+struct Seen {
+  int body;
+  Real3 place;
+};
+Seen seen_by(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
+  const int d = link / 2, step = link % 2 ? 1 : -1, N = box.domain_cells()[d];
+  Seen seen{0, place_of_face(box, a, face[0], face[1], face[2])};
+  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = seen.place[d] + step;
+  if (!box.is_wall(d) && neighbour < least) seen.place[d] += N;
+  if (!box.is_wall(d) && neighbour > least + N - 1) seen.place[d] -= N;
+  face[d] += step;
+  const RigidFaces::Row row = faces.row(a, face[1], face[2]);
+  for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+    if (run->begin <= face[0] && face[0] < run->end) seen.body = run->body;
+  return seen;
+}
+
+}  // namespace
+
+RigidImpulse::RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid)
+    : domain_(domain), faces_(faces), fluid_(fluid) {
+  find_contacts();
+}
+
+void RigidImpulse::find_contacts() {
+  const int cells = domain_.cells()[0];
+  contacts_.clear();
+  std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
+  for (const Segment &row : domain_.rows())
+    for (int d = 0; d < domain_.dimension(); ++d) {
+      for (const int high : {0, 1}) faces_.find_beside(d, high > 0, row.j, row.k, &beside[high]);
+      for (int i = 0; i < cells; ++i)
+        for (const int high : {0, 1})
+          if (beside[0][i] != beside[1][i] && beside[high][i] >= 0)
+            contacts_.push_back({d, i, row.j, row.k, beside[high][i], high ? 1. : -1.});
+    }
+  for (const RigidFootprint &at : faces_.footprints)
+    contacts_.push_back({at.direction, at.cell[0], at.cell[1], at.cell[2], at.body, at.high ? at.more : -at.more});
+  pressure_.resize(contacts_.size());
+}
+
+std::size_t RigidImpulse::bytes() const {
+  std::size_t sum =
+      contacts_.capacity() * sizeof(Contact) + (pressure_.capacity() + covered_.capacity()) * sizeof(double);
+  for (int a = 0; a < 3; ++a) sum += (lacks_[a].capacity() + means_.velocity[a].capacity()) * sizeof(double);
+  return sum;
+}
+
+void RigidImpulse::begin(double time, double dt, double force_time, const Field &velocity) {
+  if (faces_.travels) find_contacts();
+  time_ = time;
+  dt_ = dt;
+  force_ = fluid_.body_force.at(force_time);
+  for (int a = 0; a < domain_.dimension(); ++a) {
+    lacks_[a].assign(faces_.cuts(a).size(), 0);
+    means_.velocity[a].resize(faces_.cuts(a).size());
+  }
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(domain_, a, cut->i)) means_.velocity[a][index(a, *cut)] = velocity[a](cut->i, j, k);
+  });
+  means_.factors.clear();
+  for (const RigidMotion &motion : faces_.motions)
+    means_.factors.push_back({motion.of_velocity.at(time), motion.of_rotation.at(time)});
+  covered_.clear();
+  for_moving_faces([&](int a, int i, int j, int k, int body) {
+    covered_.push_back(
+        dt > 0 && motion_of(body).travels() ? (velocity_before(a, body, {i, j, k}) - velocity[a](i, j, k)) / dt : 0);
+  });
+}
+
+// Where bodies that travel are, they move at the start of a step.
+double RigidImpulse::velocity_before(int a, int image, const Int3 &face) const {
+  const RigidBody &body = faces_.bodies[image];
+  const RigidMotion &motion = faces_.motions[body.motion];
+  const Real3 then = motion.shift(time_), now = motion.shift(time_ + dt_);
+  Real3 place = place_of_face(domain_, a, face[0], face[1], face[2]);
+  for (int d = 0; d < domain_.dimension(); ++d) place[d] += (now[d] - then[d]) / domain_.spacing()[d];
+  return faces_.velocity(a, body, place, domain_.spacing(), motion.of_velocity.at(time_), motion.of_rotation.at(time_));
+}
+
+// visit(a, i, j, k, image) for owned faces inside bodies that move.
+template <class Visit>
+void RigidImpulse::for_moving_faces(const Visit &visit) const {
+  if (!faces_.moves) return;
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
+      if (!motion_of(run->body).moves()) continue;
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain_.points_end(0, a == 0)); ++i)
+        visit(a, i, j, k, run->body);
+    }
+  });
+}
+
+// What advection of second order has more than (28a), which takes the slope half way to the face ahead.
+double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const Field &velocity) const {
+  const Strides s = strides(velocity[a]);
+  const RigidMotion &motion = motion_of(cut.body);
+  const double *u = velocity[a].row(j, k) + cut.i;
+  double wall[6], more = 0;
+  surface_velocity(faces_, cut, a, motion.of_velocity.at(time_), motion.of_rotation.at(time_), wall);
+  for (int d = 0; d < domain_.dimension(); ++d) {
+    const double along = carrying_velocity(velocity, a, d, cut.i, j, k), h = domain_.spacing()[d];
+    const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
+    if (!(cut.walls >> behind & 1U) || cut.walls >> ahead & 1U) continue;
+    const std::ptrdiff_t step = along > 0 ? s[d] : -s[d];
+    const double theta = 1 / (cut.link[behind] * h * h), slope = (u[step] - wall[behind]) / (1 + theta);
+    const double curvature = 2 * ((u[2 * step] - u[step]) - slope) / (2 + theta);
+    more += std::fabs(along) / h * 0.5 * (1 - theta) * curvature;
+  }
+  return more;
+}
+
+// What cut faces lack because only a share of their rate moves them, in the frame of what travels.
+void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      const int i = cut->i;
+      if (!owned(domain_, a, i)) continue;
+      double rate = (after[i] - before[i]) / dt_;
+      double &lacks = lacks_[a][index(a, *cut)];
+      if (motion_of(cut->body).travels()) {
+        rate -= rate_of_what_rests(domain_, faces_, *cut, a, place_of_face(domain_, a, i, j, k), time_, dt_, before + i,
+                                   strides(velocity[a]));
+        if (fluid_.inertia) lacks = curved_advection(a, *cut, j, k, velocity);
+      }
+      lacks += (1 / cut->share - 1) * rate;
+    }
+  });
+}
+
+void RigidImpulse::set_pressure(const Field &pressure) {
+  for (std::size_t n = 0; n < contacts_.size(); ++n)
+    pressure_[n] = pressure[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
+}
+
+void RigidImpulse::add_increment(const Field &increment, bool partly) {
+  for (std::size_t n = 0; n < contacts_.size(); ++n)
+    pressure_[n] += increment[0](contacts_[n].i, contacts_[n].j, contacts_[n].k);
+  if (!partly) return;
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = 1 / (fluid_.density * domain_.spacing()[a]);
+    const std::ptrdiff_t step = increment[0].stride(a);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (const int i = cut->i; owned(domain_, a, i))
+        lacks_[a][index(a, *cut)] -= (1 - cut->open) * factor * (q[i] - q[i - step]);
+  });
+}
+
+// `place` in cells, of a force along a.
+void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSums *sums) const {
+  const Real3 r = RigidFaces::arm(faces_.bodies[body], place, domain_.spacing());
+  const int at = 6 * faces_.bodies[body].index;
+  Real3 f{};
+  f[a] = push;
+  sums->add(at + a, push);
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, g = (d + 2) % 3;
+    if (e == a || g == a) sums->add(at + 3 + d, r[e] * f[g] - r[g] * f[e]);
+  }
+}
+
+// The viscous terms of a cut face and of its neighbours inside, as if all were fluid, less what the cut face feels of
+// the surface. Inside, the velocity is linear: the other links of the neighbour take what one beyond it would.
+void RigidImpulse::add_cut(int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const {
+  const double volume = volume_of_face(domain_, a, side_of_face(domain_, a, cut.i, j, k));
+  if (volume == 0) return;
+  const double mass = fluid_.density * domain_.cell_volume() * volume, nu = fluid_.kinematic_viscosity(),
+               u = means_.velocity[a][index(a, cut)];
+  const auto &of_body = means_.factors[faces_.bodies[cut.body].motion];
+  double wall[6], lacks = lacks_[a][index(a, cut)];
+  surface_velocity(faces_, cut, a, of_body[0], of_body[1], wall);
+  for (int link = 0; link < 2 * domain_.dimension(); ++link) {
+    if (!(cut.walls >> link & 1U)) continue;
+    const auto [body, here] = seen_by(domain_, faces_, a, {cut.i, j, k}, link);
+    Real3 there = here;
+    there[link / 2] += link % 2 ? 1 : -1;
+    const auto given = [&, body = body](const Real3 &place) {
+      const auto &[along, turning] = means_.factors[faces_.bodies[body].motion];
+      return faces_.velocity(a, faces_.bodies[body], place, domain_.spacing(), along, turning);
+    };
+    const double h = domain_.spacing()[link / 2], rate = nu / (h * h);
+    lacks += rate * (given(there) - u) - nu * cut.link[link] * (wall[link] - u);
+    add(body, a, there, mass * rate * (u - given(here)), sums);
+    add(body, a, here, mass * lacks, sums);
+    lacks = 0;  // the rest of it is that of the first link's body
+  }
+}
+
+// Force and torque of every body, and the power of a body force, less what accelerates them, on faces inside those that
+// move along themselves: of those that travel it is in the force.
+PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
+  PetscFunctionBeginUser;
+  ExactSums sums(7 * faces_.count);
+  for (std::size_t n = 0; n < contacts_.size(); ++n) {
+    const Contact &at = contacts_[n];  // arms along d are those of forces along d, which make no torque
+    add(at.body, at.d, place_of_face(domain_, at.d, at.i, at.j, at.k),
+        at.weight * pressure_[n] * domain_.cell_volume() / domain_.spacing()[at.d], &sums);
+  }
+  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(domain_, a, cut->i)) add_cut(a, *cut, j, k, &sums);
+  });
+  const double mass = fluid_.density * domain_.cell_volume();
+  std::size_t at = 0;
+  for_moving_faces([&](int a, int i, int j, int k, int image) {
+    const RigidBody &body = faces_.bodies[image];
+    const RigidMotion &motion = motion_of(image);
+    const Real3 place = place_of_face(domain_, a, i, j, k), r = RigidFaces::arm(body, place, domain_.spacing());
+    const double fluid = mass * volume_of_face(domain_, a, side_of_face(domain_, a, i, j, k)), rate = covered_[at++];
+    const auto given = [&](double along, double turning) {
+      return faces_.velocity(a, body, place, domain_.spacing(), along, turning);
+    };
+    if (motion.travels())
+      add(image, a, place, fluid * (force_[a] - motion.acceleration(r, middle())[a] - rate), &sums);
+    else
+      sums.add(6 * faces_.count + body.index,
+               fluid * (force_[a] - given(motion.of_velocity.rate(middle()), motion.of_rotation.rate(middle()))) *
+                   given(motion.of_velocity.at(middle()), motion.of_rotation.at(middle())));
+  });
+  total->assign(7 * faces_.count, 0);
+  PetscCall(sums.reduce(domain_.comm(), total->data()));
+  PetscFunctionReturn(0);
+}
+
+// Between the surface and the faces inside the stress balances the body force and what accelerates the body, in its
+// volume less that of these faces.
+PetscErrorCode RigidImpulse::measure(std::vector<RigidLoad> *loads) const {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::rigid);
+  std::vector<double> total;
+  PetscCall(sum(&total));
+  loads->assign(faces_.count, {});
+  for (int index = 0; index < faces_.count; ++index) {
+    const RigidMotion &motion = faces_.motion_of(index);
+    const RigidMass &own = faces_.masses[index];
+    const RigidGap &gap = faces_.gaps[index];
+    const double rho = fluid_.density, along = motion.of_velocity.at(middle()), turn = motion.of_rotation.at(middle()),
+                 *force = &total[6 * index], *torque = force + 3;
+    RigidLoad &load = (*loads)[index];
+    load.power = -total[6 * faces_.count + index];
+    const Real3 by_force = own.force(motion, middle(), rho), by_torque = own.torque(motion, middle(), rho);
+    for (int d = 0; d < 3; ++d) {
+      load.power -= force[d] * motion.velocity[d] * along + torque[d] * motion.angular_velocity[d] * turn;
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+      const bool travels = motion.travels();
+      const double volume = travels ? own.volume : gap.volume[d];
+      load.force[d] = force[d] - rho * force_[d] * volume + by_force[d];
+      const double arm_e = travels ? own.first[e] : gap.first[g][e], arm_g = travels ? own.first[g] : gap.first[e][g];
+      load.torque[d] = torque[d] - rho * (arm_e * force_[g] - arm_g * force_[e]) + by_torque[d];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

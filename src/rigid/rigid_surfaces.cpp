@@ -1,0 +1,219 @@
+#include "rigid/rigid_surfaces.hpp"
+
+#include "base/events.hpp"
+#include "base/exact_sum.hpp"
+#include "grid/domain.hpp"
+#include "kernels/super_time_stepping.hpp"
+#include "kernels/weno5.hpp"
+#include "rigid/rigid_rows.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                        double dt, const Field &velocity, Field &rate, Field *slope) {
+  VerbScope scope(Verb::rigid);
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k);
+    double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(box, a, cut->i)) continue;
+      const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
+      if (faces.motions[faces.bodies[cut->body].motion].travels())
+        out[cut->i] += (1 - cut->share) * rate_of_what_rests(box, faces, *cut, a, place_of_face(box, a, cut->i, j, k),
+                                                             time, dt, u + cut->i, strides(velocity[a]));
+      if (m) m[cut->i] *= cut->share;
+    }
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i) {
+        out[i] = 0;
+        if (m) m[i] = 0;
+      }
+  });
+  scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + (faces.travels ? 70 : 5)));
+}
+
+// By WENO5 a cut face in the wind of a body would take its difference from inside, across the kink of the velocity.
+void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
+                          const Field &velocity, Field *advection, Field &rate) {
+  VerbScope scope(Verb::rigid);
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const Strides s = strides(velocity[a]);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(box, a, cut->i)) continue;
+      const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion];
+      const double *u = velocity[a].row(j, k) + cut->i;
+      double wall[6], more = 0;
+      surface_velocity(faces, *cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+      for (int d = 0; d < box.dimension(); ++d) {
+        const double along = carrying_velocity(velocity, a, d, cut->i, j, k), inverse = 1 / box.spacing()[d];
+        const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
+        if (!(cut->walls >> behind & 1U)) continue;
+        const bool between = cut->walls >> ahead & 1U;
+        const double last = between ? wall[ahead] : u[along > 0 ? s[d] : -s[d]];
+        const double length = (1 / cut->link[behind] + 1 / cut->link[ahead]) * inverse;
+        more += inverse * along * kernels::weno5_difference(u, s[d], along, epsilon) -
+                std::fabs(along) * (last - wall[behind]) / length;
+      }
+      if (advection) (*advection)[a].row(j, k)[cut->i] += more;
+      rate[a].row(j, k)[cut->i] += scale * more;
+    }
+  });
+  scope.flops(cut_faces * (12 + box.dimension() * 8));
+}
+
+void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                                double dt, const Field &velocity, Field &velocity_star) {
+  VerbScope scope(Verb::rigid);
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *u = velocity[a].row(j, k);
+    double *out = velocity_star[a].row(j, k);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      if (!owned(box, a, cut->i)) continue;
+      const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
+      const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
+      out[cut->i] = u[cut->i] + cut->share * change;
+    }
+  });
+  scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + 7));
+}
+
+std::vector<double> cut_face_values(const Box &box, const RigidFaces &faces, const Field &field) {
+  std::vector<double> values;
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(box, a, cut->i)) values.push_back(field[a].row(j, k)[cut->i]);
+  });
+  return values;
+}
+
+void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vector<double> &values, Field &field) {
+  std::size_t at = 0;
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] = values[at++];
+  });
+}
+
+void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, Field &velocity) {
+  VerbScope scope(Verb::rigid);
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    double *out = velocity[a].row(j, k);
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
+      const RigidBody &body = faces.bodies[run->body];
+      const RigidMotion &motion = faces.motions[body.motion];
+      const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i)
+        out[i] = motion.moves()
+                     ? faces.velocity(a, body, place_of_face(box, a, i, j, k), box.spacing(), of_velocity, of_rotation)
+                     : 0;
+    }
+  });
+}
+
+void open_faces(const Box &box, const RigidFaces &faces, Field &field) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
+  });
+  clear_rigid_faces(box, faces, field);
+}
+
+void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field) {
+  for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    double *out = field[a].row(j, k);
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i) out[i] = 0;
+  });
+}
+
+void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const Field &increment,
+                       Field &velocity) {
+  VerbScope scope(Verb::rigid);
+  const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    const double *q = increment[0].row(j, k), factor = dt_over_density / box.spacing()[a];
+    double *u = velocity[a].row(j, k);
+    const std::ptrdiff_t step = increment[0].stride(a);
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      if (const int i = cut->i; owned(box, a, i)) u[i] += (1 - cut->open) * factor * (q[i] - q[i - step]);
+  });
+  scope.flops(cut_faces * 5);
+}
+
+RigidStage::RigidStage(const RigidFaces &faces, double viscosity, double time, double reached, double weight,
+                       RigidMeans *means)
+    : faces_(faces), viscosity_(viscosity), weight_(weight), means_(means) {
+  for (const RigidMotion &motion : faces.motions)
+    moved_.push_back({motion.of_velocity.at(reached) - motion.of_velocity.at(time),
+                      motion.of_rotation.at(reached) - motion.of_rotation.at(time)});
+  for (std::size_t m = 0; means && m < moved_.size(); ++m)
+    for (int of = 0; of < 2; ++of) means->factors[m][of] += weight * moved_[m][of];
+}
+
+void RigidStage::hold(const RigidFaces::Row &row, int dimension, int a, int begin, int end, const kernels::RklStage &c,
+                      const double *now, const std::array<std::ptrdiff_t, 3> &stride, const double *rate,
+                      const double *slope, const double *before, std::vector<double> *held) const {
+  held->clear();
+  for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+    const int i = cut->i;
+    if (i < begin || i >= end) continue;
+    double wall[6] = {};
+    if (faces_.moves) {
+      const std::array<double, 2> &moved = moved_[faces_.bodies[cut->body].motion];
+      surface_velocity(faces_, *cut, a, moved[0], moved[1], wall);
+    }
+    double sum = c.nu * before[i];
+    sum += c.mu * now[i];
+    sum += c.rate * rate[i];
+    if (slope) sum += c.slope * slope[i];
+    sum += c.viscous * viscosity_ * cut->share * cut->laplacian(now + i, stride, dimension, wall);
+    held->push_back(sum);
+    if (means_) means_->velocity[a][cut - faces_.cuts(a).data()] += weight_ * now[i];
+  }
+}
+
+void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const std::vector<double> &held, double *out) {
+  std::size_t at = 0;
+  for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+    if (cut->i >= begin && cut->i < end) out[cut->i] = held[at++];
+}
+
+// Dissipation by viscosity beside rigid bodies.
+
+PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
+                                         const Field &velocity, double *dissipation) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::rigid);
+  const Real3 &h = domain.spacing();
+  ExactSums sums(1);
+  const double cut_faces = for_rigid_rows(domain, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
+      const int i = cut->i;
+      if (!owned(domain, a, i)) continue;
+      const double volume = volume_of_face(domain, a, side_of_face(domain, a, i, j, k));
+      if (volume == 0) continue;
+      const double *u = velocity[a].row(j, k) + i;
+      const RigidBody &body = faces.bodies[cut->body];
+      const RigidMotion &motion = faces.motions[body.motion];
+      const double of_body = faces.velocity(a, body, place_of_face(domain, a, i, j, k), h, motion.of_velocity.at(time),
+                                            motion.of_rotation.at(time));
+      const Viscous rates = viscous_rates(domain, faces, *cut, a, time, u, strides(velocity[a]));
+      sums.add(0, volume * (*u - of_body) * (rates.regular - rates.cut));
+    }
+    // Faces inside feel no friction on sides of the box, where a body has no surface.
+    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.points_end(0, a == 0)); ++i) {
+        const double of_body = velocity[a](i, j, k);
+        if (of_body != 0)
+          sums.add(0, volume_of_face(domain, a, side_of_face(domain, a, i, j, k)) * of_body *
+                          laplacian_of_sides(domain, a, i, j, k, velocity[a]));
+      }
+  });
+  scope.flops(cut_faces * (viscous_rates_flops(domain.dimension()) + 10));
+  PetscCall(sums.reduce(domain.comm(), dissipation));
+  *dissipation *= fluid.viscosity * domain.cell_volume();
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

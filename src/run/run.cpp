@@ -1,0 +1,357 @@
+#include "run/run.hpp"
+
+#include "base/events.hpp"
+#include "base/one_line.hpp"
+#include "base/progress.hpp"
+#include "base/rank_zero.hpp"
+#include "grid/domain.hpp"
+#include "grid/threads.hpp"
+#include "io/fail_together.hpp"
+#include "io/run_directory.hpp"
+#include "io/text_file.hpp"
+#include "options/petsc_options.hpp"
+#include "output/checkpoints.hpp"
+#include "output/signals.hpp"
+#include "output/time_step_control.hpp"
+#include "output/verdict.hpp"
+#include "run/last_word.hpp"
+#include "scene/balance.hpp"
+#include "scene/lumens.hpp"
+#include "scene/memory.hpp"
+#include "scene/overlap_warning.hpp"
+#include "scene/red_cell.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_warnings.hpp"
+#include "scene/wall_distance_warning.hpp"
+
+#include <sched.h>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+struct Run {
+  const ParseResult &parsed;
+  bool in_place;  ///< goes on where its checkpoint lies
+  RunDirectory directory;
+  Solver solver;
+  Outputs outputs;
+  Checkpoints checkpoints;
+  Guards guards;
+  RunPosition position;
+  double begin;         ///< MPI_Wtime
+  double total_before;  ///< wall seconds before a restart
+  std::string exit_reason;
+  Stop stop;              ///< by a guard
+  std::string noted;      ///< newest checkpoint that summary.json knows of
+  bool accepted = false;  ///< summary.json is that of this run
+  bool summary_failed = false;
+};
+
+bool finished(const State &state, const TimeControl &time, std::string *reason) {
+  if (time.end > 0 && state.time >= time.end * (1 - 1e-12))
+    *reason = "time_end";
+  else if (time.steps_max > 0 && state.step >= time.steps_max)
+    *reason = "steps";
+  return !reason->empty();
+}
+
+void print_warning(MPI_Comm comm, const std::string &warning) {
+  if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(warning).c_str());
+}
+
+// Threads that would take turns: Open MPI binds a rank to one core unless told otherwise.
+std::string thread_warning(int threads) {
+  cpu_set_t allowed;
+  if (threads == 1 || sched_getaffinity(0, sizeof allowed, &allowed) != 0) return "";
+  const int processors = CPU_COUNT(&allowed);
+  if (processors >= threads) return "";
+  return "-threads " + std::to_string(threads) + ": this rank may use " + std::to_string(processors) +
+         " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
+         " gives a rank as many as it has threads";
+}
+
+// Of the scene at the start.
+PetscErrorCode print_warnings(const Config &config, const std::string &overlap, const Run &run) {
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = run.solver.domain().comm();
+  std::string unresolved, near_wall;
+  print_warning(comm, overlap);
+  PetscCall(find_membranes_near_walls(comm, config, &near_wall));
+  print_warning(comm, near_wall);
+  PetscCall(run.outputs.unresolved_bodies(&unresolved));
+  print_warning(comm, unresolved);
+  for (const std::string &warning : scene_warnings(config)) print_warning(comm, warning);
+  PetscFunctionReturn(0);
+}
+
+// The guards on a state that has not met them yet.
+PetscErrorCode check_state(Run *run) {
+  PetscFunctionBeginUser;
+  PetscCall(run->guards.check_finite(run->solver, &run->stop));
+  if (run->stop) PetscFunctionReturn(0);
+  PetscCall(run->outputs.measure());
+  PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
+  PetscFunctionReturn(0);
+}
+
+// What a row of series.csv has shown.
+PetscErrorCode check_measured(Run *run) {
+  PetscFunctionBeginUser;
+  const Measured *row = run->outputs.take_row();
+  if (row == nullptr) PetscFunctionReturn(0);
+  print_warning(run->solver.domain().comm(), run->outputs.strain_warning());
+  PetscCall(run->guards.check(run->solver, *row, &run->stop));
+  PetscFunctionReturn(0);
+}
+
+// options.txt and the rows and files of outputs.
+PetscErrorCode open_outputs(Run *run) {
+  PetscFunctionBeginUser;
+  ParseResult whole = run->parsed;
+  if (run->in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
+  PetscCall(write_text_file(run->solver.domain().comm(), run->directory.file("options.txt"), options_text(whole)));
+  PetscCall(run->outputs.open(run->directory.path(), run->position.outputs, run->in_place));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode write_summary(const std::string &reason, Run *run) {
+  PetscFunctionBeginUser;
+  Summary summary;
+  summary.exit_reason = reason;
+  for (const InputFile &file : run->parsed.inputs) summary.files.push_back({file.option, file.path, file.content});
+  summary.checkpoint = run->noted = run->checkpoints.newest();
+  summary.wall_seconds = run->position.wall_seconds;
+  summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+  run->summary_failed = true;
+  PetscCall(run->outputs.write_summary(summary));
+  run->summary_failed = false;
+  PetscFunctionReturn(0);
+}
+
+// A run may be killed at any moment: until it ends, summary.json tells of its first step or its last checkpoint.
+PetscErrorCode note(Run *run) {
+  PetscFunctionBeginUser;
+  if (run->accepted && run->checkpoints.newest() == run->noted) PetscFunctionReturn(0);
+  PetscCall(write_summary("unfinished", run));
+  run->accepted = true;
+  PetscFunctionReturn(0);
+}
+
+// The run has passed its first step: what is in its directory may give way to it. Whether a run goes on must not depend
+// on what its directory held, so guards look when they would have looked anyway.
+PetscErrorCode accept(Run *run) {
+  PetscFunctionBeginUser;
+  if (!run->directory.pending()) PetscFunctionReturn(0);
+  PetscCall(run->guards.check_finite(run->solver, &run->stop));
+  if (run->stop) PetscFunctionReturn(0);
+  PetscCall(run->directory.accept(run->solver.domain().comm()));
+  run->checkpoints.accept(run->directory.path());
+  if (run->in_place)
+    PetscCall(open_outputs(run));
+  else
+    run->outputs.moved_to(run->directory.path());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progress *progress, Run *run) {
+  PetscFunctionBeginUser;
+  Solver &solver = run->solver;
+  const State &state = solver.state();
+  const double loop_begin = MPI_Wtime();
+  while (!run->stop && run->exit_reason.empty() && !finished(state, config.time, &run->exit_reason)) {
+    double step_begin = MPI_Wtime(), dt = 0;
+    std::string warning;
+    {
+      StageScope stage(Stage::step);
+      PetscCall(control->choose(&solver, run->guards, &dt, &run->stop, &warning));
+    }
+    if (run->stop) {
+      print_warning(solver.domain().comm(), warning);
+      break;
+    }
+    run->position.dt = control->dt();
+    run->position.wall_seconds += MPI_Wtime() - step_begin;
+    // A shortened step is no part of a longer run.
+    if (control->ends()) PetscCall(run->checkpoints.before_end(run->position, &run->stop));
+    if (run->stop) break;
+    step_begin = MPI_Wtime();
+    double looked = 0;
+    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Solver::Look {
+      if (!run->outputs.row_waits()) return {};
+      return [&, see] {
+        const double begin = MPI_Wtime();
+        PetscFunctionBeginUser;
+        PetscCall((run->outputs.*see)(dt));
+        looked += MPI_Wtime() - begin;
+        PetscFunctionReturn(0);
+      };
+    };
+    {
+      StageScope stage(Stage::step);
+      PetscCall(control->forget_unresolved(&solver, &warning));
+      PetscCall(solver.step(dt, timed(&Outputs::see_middle), timed(&Outputs::see_pressure)));
+    }
+    print_warning(solver.domain().comm(), warning);
+    run->position.wall_seconds += MPI_Wtime() - step_begin - looked;
+    run->position.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+    PetscCall(accept(run));
+    if (run->stop) break;
+    PetscCall(run->outputs.write_due(false));
+    PetscCall(check_measured(run));
+    if (run->stop) break;
+    if (!control->ends()) PetscCall(run->checkpoints.after_step(run->position, &run->exit_reason, &run->stop));
+    if (run->exit_reason.empty() && !run->stop) PetscCall(note(run));
+    progress->update(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
+  }
+  if (!run->stop) PetscCall(accept(run));  // there was no step to take
+  if (run->exit_reason == "steps") PetscCall(run->checkpoints.before_end(run->position, &run->stop));
+  const bool whole = run->exit_reason == "steps" || run->exit_reason == "time_end";
+  if (!run->stop && whole) PetscCall(check_state(run));
+  if (!run->stop && whole) PetscCall(run->outputs.write_due(true));
+  if (!run->stop) PetscCall(check_measured(run));
+  if (run->stop) run->exit_reason = run->stop.reason;
+  if (!run->directory.pending()) PetscCall(run->outputs.write_waiting());
+  progress->finish(state.time, static_cast<long>(state.step), state.dt, MPI_Wtime() - loop_begin);
+  PetscFunctionReturn(0);
+}
+
+// -balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
+PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *run, std::string *line,
+                       std::string *refusal) {
+  PetscFunctionBeginUser;
+  ParseResult parsed = run->parsed;
+  Config &config = parsed.config;
+  std::string too_large;
+  PetscCall(balance_ranks(run->solver, &config.grid, line));
+  if (config.grid.starts[0].empty()) PetscFunctionReturn(0);
+  PetscCall(check_sizes(domain->comm(), config, &too_large));
+  if (!too_large.empty()) {
+    *line += "; the even split stays: " + too_large;
+    PetscFunctionReturn(0);
+  }
+  run->solver = {};
+  run->position = {};
+  PetscCall(domain->create(domain->comm(), config.grid));
+  PetscCall(build_scene(config, *domain, &run->solver, refusal));
+  if (!refusal->empty() || restarted_from.empty()) PetscFunctionReturn(0);
+  std::string again;
+  config.checkpoint.restart = restarted_from;
+  PetscCall(restart(parsed, &run->solver, &run->position, &again, refusal));
+  PetscFunctionReturn(0);
+}
+
+// The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
+PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
+  PetscFunctionBeginUser;
+  const ParseResult &parsed = run->parsed;
+  const Config &config = parsed.config;
+  const Domain &domain = *made;
+  const std::string &path = config.output.directory, &source = config.checkpoint.restart;
+  using Earlier = RunDirectory::Earlier;
+  std::string restarted_from, balanced, overlap;
+  double thrown_away = 0;
+  PetscCall(build_scene(config, domain, &run->solver, refusal));
+  if (refusal->empty() && source.empty()) PetscCall(find_overlap(domain.comm(), config, &overlap, refusal));
+  if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
+  if (refusal->empty() && run->in_place)
+    PetscCall(run->directory.open(domain.comm(), path, Earlier::continued, refusal));
+  if (refusal->empty() && !source.empty())
+    PetscCall(restart(parsed, &run->solver, &run->position, &restarted_from, refusal));
+  if (refusal->empty() && run->in_place) {
+    const double now = run->solver.state().time;
+    PetscCall(time_thrown_away(domain.comm(), path, now, &thrown_away));
+    if (thrown_away > 0 && !config.output.overwrite) *refusal = shorter_end(config, now + thrown_away);
+  }
+  if (refusal->empty() && config.balance) PetscCall(balance(restarted_from, made, run, &balanced, refusal));
+  if (refusal->empty() && !run->in_place)
+    PetscCall(run->directory.open(domain.comm(), path, config.output.overwrite ? Earlier::replaced : Earlier::refused,
+                                  refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  for (const std::string &warning : parsed.warnings) print_warning(domain.comm(), warning);
+  PetscCall(PetscPrintf(domain.comm(), "%s\n", first_word(config, domain.ranks()).c_str()));
+  for (const auto &lines : {red_cell_lines(config), side_lines(config)})
+    for (const std::string &line : lines) PetscCall(PetscPrintf(domain.comm(), "%s\n", line.c_str()));
+  if (!balanced.empty()) PetscCall(PetscPrintf(domain.comm(), "%s\n", balanced.c_str()));
+  (void)std::fflush(stdout);
+  run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
+  run->outputs.start(config, domain, &run->solver, run->position.outputs);
+  if (!run->in_place) PetscCall(open_outputs(run));
+  PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
+  (void)run->outputs.take_row();
+  PetscCall(run->outputs.measure());
+  PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
+  if (source.empty()) PetscCall(print_warnings(config, overlap, *run));
+  if (source.empty()) PetscFunctionReturn(0);
+  PetscCall(PetscPrintf(domain.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
+                        run->solver.state().time, static_cast<long long>(run->solver.state().step)));
+  if (thrown_away > 0)
+    PetscCall(
+        PetscPrintf(domain.comm(),
+                    "what the directory holds after that, %.3g of simulated time, is thrown away and computed again\n",
+                    thrown_away));
+  PetscFunctionReturn(0);
+}
+
+// The last lines of a run that was accepted.
+PetscErrorCode say_last_word(const Run &run) {
+  PetscFunctionBeginUser;
+  const State &state = run.solver.state();
+  const MPI_Comm comm = run.solver.domain().comm();
+  const std::string line = last_word(
+      run.parsed, {run.exit_reason, state.time, state.step, run.solver.domain().ranks(), run.checkpoints.newest()});
+  for (const Summary::Verdict &verdict : run.outputs.verdicts())
+    PetscCall(PetscPrintf(comm, "eulastic: %s\n", verdict_line(verdict).c_str()));
+  PetscCall(PetscPrintf(comm, "%s\n", line.c_str()));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
+  PetscFunctionBeginUser;
+  const Config &config = parsed.config;
+  const double begin = MPI_Wtime();
+  *code = exit_usage;
+  catch_signals();
+  PetscCall(check_sizes(run_communicator(), config, refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  set_threads(config.threads);
+  print_warning(run_communicator(), thread_warning(config.threads));
+  Domain domain;
+  PetscCall(domain.create(run_communicator(), config.grid));
+  const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
+  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
+  PetscCall(begin_run(&domain, &run, refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  const State &state = run.solver.state();
+  run.total_before = run.position.wall_seconds_total;
+  TimeStepControl control(config.time);
+  if (!config.checkpoint.restart.empty()) control.resume(run.position.dt);
+  Progress progress(stdout, Progress::style_of(stdout, domain.rank()),
+                    {state.time, config.time.end, static_cast<long>(state.step),
+                     config.time.steps_max > 0 ? config.time.steps_max : -1, domain.domain_cell_count()});
+  PetscCall(catch_together([&] { return time_loop(config, &control, &progress, &run); }, refusal));
+  if (!refusal->empty()) {
+    // A full disk may have room for the few bytes that say so.
+    std::string ignored;
+    run.exit_reason = "output_failed";
+    *code = exit_failed;
+    if (run.directory.pending()) PetscFunctionReturn(0);
+    if (!run.summary_failed) PetscCall(catch_together([&] { return write_summary(run.exit_reason, &run); }, &ignored));
+    PetscCall(say_last_word(run));
+    PetscFunctionReturn(0);
+  }
+  *code = exit_failed;
+  *refusal = run.stop.message;
+  if (run.directory.pending()) {
+    *refusal += "; the earlier run in -output_dir " + config.output.directory + " is untouched";
+  } else {
+    PetscCall(write_summary(run.exit_reason, &run));
+    PetscCall(say_last_word(run));
+  }
+  *code = run.stop ? exit_wrong_numbers : exit_fine;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,171 @@
+#include "scene/balance.hpp"
+
+#include "boxes/share_out.hpp"
+#include "grid/domain.hpp"
+#include "scene/cuts.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+constexpr double worth = 0.97;    // of the heaviest rank's cost, before the even split is given up
+constexpr int rounds = 8;         // of cuts that are tried
+constexpr int most_units = 4096;  // along a direction: a sum over all ranks for each
+
+class Balance {
+public:
+  explicit Balance(const Solver &solver)
+      : domain_(solver.domain()), split_(domain_.split()), cost_(domain_.rows().size(), 0) {
+    for (double &cost : cost_) cost = flow_work * domain_.cells()[0];
+    for (const Phase &phase : solver.state().phases) add(phase);
+    for (const double cost : cost_) own_ += cost;
+    for (int d = 0; d < 3; ++d) {
+      const int cells = domain_.domain_cells()[d], parts = domain_.processors(d);
+      unit_[d] = cut_unit(cells, parts);
+      while (cells > most_units * unit_[d]) unit_[d] *= 2;
+      least_[d] = (Box::stencil_width + unit_[d] - 1) / unit_[d];
+      movable_[d] = d > 0 && parts > 1 && cells / unit_[d] >= parts * least_[d];
+    }
+  }
+
+  PetscErrorCode find(GridSpec *spec, double *before, double *after) {
+    PetscFunctionBeginUser;
+    double total = own_, heaviest = own_;
+    std::array<std::vector<double>, 3> sums, weights;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_DOUBLE, MPI_SUM, domain_.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &heaviest, 1, MPI_DOUBLE, MPI_MAX, domain_.comm()));
+    *before = heaviest * domain_.ranks() / total;
+    const double even = heaviest;
+    for (int d = 1; d < 3; ++d) PetscCall(sum_planes(d, &sums[d]));
+    weights = sums;
+    Split best = split_;
+    for (int round = 0; round < rounds; ++round) {
+      for (int d = 1; d < 3; ++d)
+        if (movable_[d] && (round == 0 || round % 2 == d - 1)) cut(d, weights[d]);
+      std::array<std::vector<double>, 3> most;
+      PetscCall(heaviest_boxes(&most));
+      const double here = *std::max_element(most[1].begin(), most[1].end());
+      if (here < heaviest) heaviest = here, best = split_;
+      for (int d = 1; d < 3; ++d)
+        if (movable_[d]) weigh(d, sums[d], most[d], &weights[d]);
+    }
+    *after = heaviest * domain_.ranks() / total;
+    if (heaviest < worth * even) spec->starts = best.starts;
+    PetscFunctionReturn(0);
+  }
+
+private:
+  double &cost(int j, int k) { return cost_[j + std::size_t(domain_.cells()[1]) * k]; }
+
+  void add(const Phase &phase) {
+    const double factor = phase_work(phase.material, false);
+    if (factor == 0) return;
+    const Int3 &n = domain_.cells();
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        const OccupiedRows::Span span = phase.rows.span(j, k);
+        cost(j, k) += factor * std::max(0, std::min(span.end, n[0]) - std::max(span.begin, 0));
+      }
+  }
+
+  // Over the planes of each unit along d.
+  PetscErrorCode sum_planes(int d, std::vector<double> *sums) {
+    PetscFunctionBeginUser;
+    const Int3 &n = domain_.cells();
+    const int units = domain_.domain_cells()[d] / unit_[d];  // the last one may have more cells
+    sums->assign(units, 0);
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j) {
+        const int plane = domain_.layout().begin[d] + (d == 1 ? j : k);
+        (*sums)[std::min(plane / unit_[d], units - 1)] += cost(j, k);
+      }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, domain_.comm()));
+    PetscFunctionReturn(0);
+  }
+
+  void cut(int d, const std::vector<double> &weights) {
+    const int parts = domain_.processors(d);
+    const std::vector<int> first = equal_cuts(weights, parts, least_[d]);
+    for (int p = 1; p < parts; ++p) split_.starts[d][p] = first[p] * unit_[d];
+  }
+
+  // The planes of a rank weigh together what the heaviest of the boxes that they go through does.
+  void weigh(int d, const std::vector<double> &sums, const std::vector<double> &most, std::vector<double> *weights) {
+    const int units = static_cast<int>(sums.size());
+    for (int p = 0; p < domain_.processors(d); ++p) {
+      const int begin = split_.starts[d][p] / unit_[d],
+                end = p + 1 < domain_.processors(d) ? split_.starts[d][p + 1] / unit_[d] : units;
+      double sum = 0;
+      for (int u = begin; u < end; ++u) sum += sums[u];
+      for (int u = begin; u < end; ++u) (*weights)[u] = sums[u] * most[p] / sum;
+    }
+  }
+
+  // The heaviest box at every position along y and z, if ranks had the cells of split_.
+  PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
+    PetscFunctionBeginUser;
+    const Int3 &begin = domain_.layout().begin, &n = domain_.cells();
+    const Int3 me = split_.position_of(domain_.rank());
+    std::vector<PetscSFNode> owners;
+    std::vector<double> parts;
+    const int y0 = split_.position_along(1, begin[1]), y1 = split_.position_along(1, begin[1] + n[1] - 1);
+    const int z0 = split_.position_along(2, begin[2]), z1 = split_.position_along(2, begin[2] + n[2] - 1);
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y) {
+        double sum = 0;
+        for (int k = std::max(split_.starts[2][z], begin[2]); k < std::min(split_.starts[2][z + 1], begin[2] + n[2]);
+             ++k)
+          for (int j = std::max(split_.starts[1][y], begin[1]); j < std::min(split_.starts[1][y + 1], begin[1] + n[1]);
+               ++j)
+            sum += cost(j - begin[1], k - begin[2]);
+        owners.push_back({split_.rank_at({me[0], y, z}), 0});
+        parts.push_back(sum);
+      }
+    SfHandle boxes;
+    double box = 0;
+    PetscCall(PetscSFCreate(domain_.comm(), boxes.put()));
+    PetscCall(PetscSFSetGraph(boxes.get(), 1, static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,
+                              owners.data(), PETSC_COPY_VALUES));
+    PetscCall(PetscSFReduceBegin(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
+    PetscCall(PetscSFReduceEnd(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
+    for (int d = 1; d < 3; ++d) {
+      std::vector<double> &heaviest = (*most)[d];
+      heaviest.assign(domain_.processors(d), 0);
+      heaviest[me[d]] = box;
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, heaviest.data(), domain_.processors(d), MPI_DOUBLE, MPI_MAX, domain_.comm()));
+    }
+    PetscFunctionReturn(0);
+  }
+
+  const Domain &domain_;
+  Split split_;               ///< the best cuts so far
+  std::vector<double> cost_;  ///< of owned rows
+  double own_ = 0;            ///< their sum
+  Int3 unit_{}, least_{};     ///< cells that cuts are multiples of; units of a rank
+  std::array<bool, 3> movable_{};
+};
+
+}  // namespace
+
+PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *line) {
+  PetscFunctionBeginUser;
+  double before = 1, after = 1;
+  char text[120];
+  Balance balance(solver);
+  PetscCall(balance.find(spec, &before, &after));
+  if (solver.domain().ranks() == 1)
+    std::snprintf(text, sizeof text, "balance: one rank has all cells");
+  else if (spec->starts[0].empty())
+    std::snprintf(text, sizeof text,
+                  "balance: the even split stays, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+                  after);
+  else
+    std::snprintf(text, sizeof text, "balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
+  *line = text;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

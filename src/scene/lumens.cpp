@@ -1,0 +1,126 @@
+#include "scene/lumens.hpp"
+
+#include "bodies/shapes.hpp"
+#include "scene/inflow_balance.hpp"
+#include "scene/open_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace eulastic {
+namespace {
+
+constexpr double least_cells = 8, most_reynolds = 1e4, round_off = 1e-9;
+
+bool flat(const Config &config) { return config.grid.cells[2] == 1; }
+std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
+
+std::string number(double value, int digits = 4) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+// Volume per time that is given on an inflow side: least and largest.
+std::array<double, 2> given_flow(const Config &config, int d, int high) {
+  const bool mean_of_open = !config.openings[d][high].velocity.empty();
+  const double area = area_of_side(config, d) * (mean_of_open ? config.open_parts[d][high].share : 1);
+  auto range = config.sides[d][high].given.range();
+  for (double &value : range) value *= area;
+  return range;
+}
+
+// What comes in through all inflow sides leaves through the only open side; nothing is known of several ones.
+bool flow_through(const Config &config, int d, int high, std::array<double, 2> *range) {
+  if (config.sides[d][high].kind == SideKind::inflow) {
+    *range = given_flow(config, d, high);
+    return true;
+  }
+  int inlets = 0, outlets = 0;
+  *range = {};
+  for_crossed_sides(config, [&](int e, int end) {
+    const bool inlet = config.sides[e][end].kind == SideKind::inflow;
+    (inlet ? inlets : outlets) += config.open_parts[e][end].share > 0;
+    if (!inlet) return;
+    const auto flow = given_flow(config, e, end);
+    *range = {(*range)[0] - flow[1], (*range)[1] - flow[0]};
+  });
+  return inlets > 0 && outlets == 1;
+}
+
+double largest(const std::array<double, 2> &range) { return std::max(std::fabs(range[0]), std::fabs(range[1])); }
+
+double reynolds_number(const Config &config, int d, int high) {
+  const OpenPart &part = config.open_parts[d][high];
+  const double nu = config.fluid.kinematic_viscosity();
+  std::array<double, 2> flow;
+  if (nu == 0 || !std::isfinite(part.width) || !flow_through(config, d, high, &flow)) return 0;
+  return largest(flow) / part.area * part.width / nu;
+}
+
+std::string side_line(const Config &config, int d, int high) {
+  const OpenPart &part = config.open_parts[d][high];
+  const SideKind kind = config.sides[d][high].kind;
+  const char *what = kind == SideKind::inflow ? "inflow" : kind == SideKind::pressure ? "pressure" : "outflow";
+  std::string line = "side " + name_of(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
+                     number(part.area) + " of " + number(area_of_side(config, d));
+  if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";
+  if (std::isfinite(part.width))
+    line += std::string(part.lumens > 1 ? " " : ", lumen ") + number(part.width, 3) + " wide, " +
+            number(part.cells, 3) + (part.lumens > 1 ? " cells across the narrowest" : " cells across");
+  else
+    line += part.lumens > 1 ? " without walls" : ", no walls";
+  std::array<double, 2> flow;
+  if (!flow_through(config, d, high, &flow)) return line + "; the flow through it is unknown";
+  const std::string up_to = flow[0] == flow[1] ? "" : "up to ";
+  const auto value = [&](double per) { return up_to + number((flow[0] == flow[1] ? flow[0] : largest(flow)) * per); };
+  line += "; mean velocity " + value(1 / part.area) + ", flow rate " + value(1) + " into the box";
+  if (const double reynolds = reynolds_number(config, d, high); reynolds > 0)
+    line += ", Reynolds number of the lumen " + up_to + number(reynolds, 3);
+  return line;
+}
+
+}  // namespace
+
+double largest_inflow(const Config &config, int d, int high) {
+  return largest(given_flow(config, d, high)) / (config.open_parts[d][high].share * area_of_side(config, d));
+}
+
+std::vector<std::string> side_lines(const Config &config) {
+  std::vector<std::string> lines;
+  for_crossed_sides(config, [&](int d, int high) {
+    if (config.open_parts[d][high].lumens > 0) lines.push_back(side_line(config, d, high));
+  });
+  return lines;
+}
+
+std::vector<std::string> lumen_warnings(const Config &config) {
+  std::vector<std::string> warnings;
+  for_crossed_sides(config, [&](int d, int high) {
+    const OpenPart &part = config.open_parts[d][high];
+    const std::string side = "-boundary_" + name_of(d, high) + ": ";
+    if (part.lumens == 0 && part.share < 1)
+      warnings.push_back(side + "rigid bodies cover all of this open side, nothing passes it");
+    if (part.lumens > 0 && part.cells < least_cells * (1 - round_off))
+      warnings.push_back(side + "only " + number(part.cells, 3) +
+                         " cells across the lumen: with less than 8 its flow is wrong by more than some per cent, 16 "
+                         "give it within 1 %");
+    if (const double reynolds = reynolds_number(config, d, high); reynolds > most_reynolds)
+      warnings.push_back(side + "Reynolds number " + number(reynolds, 3) +
+                         " of the lumen: above 1e4 a flow is turbulent, of which there is no model");
+  });
+  double box = 1;
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) box *= config.grid.length[d];
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
+    const std::string option = "-" + spec.name;
+    if (spec.shape == Shape::voxels && config.solid_volumes[s] > box * (1 - round_off))
+      warnings.push_back(option + "_voxels: fills all of the box and leaves no fluid");
+    if (is_tube(spec.shape) && volume_in_box(spec, config.grid) < round_off * box)
+      warnings.push_back(option + "_radius: the lumen is as wide as the box, so that the tube fills nothing of it");
+  }
+  return warnings;
+}
+
+}  // namespace eulastic

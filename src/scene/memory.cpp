@@ -1,0 +1,157 @@
+#include "scene/memory.hpp"
+
+#include "bodies/shapes.hpp"
+#include "field/open_sides.hpp"
+#include "grid/domain.hpp"
+#include "io/fail_together.hpp"
+#include "solver/solver.hpp"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
+int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
+
+/// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
+/// the output.
+double phase_fields(const Config &config, bool carries_tensor) {
+  return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
+}
+
+/// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity.
+double boxed_values(const Config &config) {
+  const int dimension = dimension_of(config);
+  double sum = 0;
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    if (!config.lies_in_boxes(s)) continue;
+    const int tensor = config.species[s].material().carries_tensor() ? tensor_fields(config) : 0;
+    const Surface surface(config.species[s], dimension);
+    double reach = 0, cells = 1, around = 1;
+    for (int d = 0; d < dimension; ++d) {
+      Real3 along{};
+      along[d] = 1;
+      reach = std::max(reach, surface.support(along));
+    }
+    for (int d = 0; d < dimension; ++d) {
+      const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] +
+                         2 * FreeBodies::margin(config.species[s].material());
+      cells *= own;
+      around *= own + 2 * config.grid.ghosts;
+    }
+    sum += config.places[s].count * (around * (2 * (1 + tensor) + dimension) + cells * dimension);
+  }
+  return sum;
+}
+
+/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
+/// add; the phases.
+double fields(const Config &config) {
+  const Method &method = config.method;
+  const int dimension = dimension_of(config);
+  bool tension = false, membranes = false;  // on the grid
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    if (config.lies_in_boxes(s)) continue;
+    tension = tension || config.species[s].surface_tension > 0;
+    membranes = membranes || config.species[s].is_membrane();
+  }
+  const bool rigid = std::any_of(config.species.begin(), config.species.end(),
+                                 [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
+  const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, parts);
+  if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
+  if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
+  if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
+    sum += method.acm_memory;
+    if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
+  }
+  const bool travels = std::any_of(config.species.begin(), config.species.end(),
+                                   [&](const SpeciesSpec &spec) { return spec.travels(dimension); });
+  if (travels) sum += dimension;            // which faces are inside; twice that beside bodies of a file
+  if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
+    sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
+  for (const auto &pair : config.sides)
+    for (const Side &side : pair) sum += side.kind == SideKind::pressure && side.load.exists();  // its response
+  if (method.staggered() && config.fluid.inertia) sum += dimension;                              // of the step before
+  if (config.species.empty()) return sum;
+  double tensor = 0;
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const bool carries = config.species[s].material().carries_tensor();
+    if (carries) tensor = tensor_fields(config);
+    // Of bodies in boxes what is shown on the grid at the output, fraction, label and B, and of those with a viscosity
+    // or a force of their own the fraction of the step and at its end.
+    const SpeciesSpec &spec = config.species[s];
+    const bool felt = spec.material().viscosity > 0 || spec.material().body_force.acts();
+    sum += config.lies_in_boxes(s) ? 2 + 2 * felt + tensor_fields(config) : phase_fields(config, carries);
+  }
+  if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
+  if (!method.staggered()) sum += tensor;
+  if (membranes) sum += dimension;  // their force
+  if (method.interface == InterfaceScheme::weno5) sum += 1;
+  ViscosityContrast contrast(config.fluid);
+  for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
+  if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
+  if (Solver::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
+  return sum;
+}
+
+double ghosted_cells(const Config &config, const Int3 &parts) {
+  const Int3 box = Domain::largest_box(config.grid, parts);
+  double cells = 1;
+  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
+  return cells;
+}
+
+std::string too_little(int ranks, double needed, double limit, double share) {
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
+                "cells, more nodes, or another -guard_memory (%g now, 0 = off)",
+                1e-9 * needed, ranks, 1e-9 * limit, share);
+  return text;
+}
+
+}  // namespace
+
+double bytes_per_rank(const Config &config, const Int3 &parts) {
+  const double ranks = double(parts[0]) * parts[1] * parts[2];
+  return sizeof(double) * (fields(config) * ghosted_cells(config, parts) + boxed_values(config) / ranks);
+}
+
+double bytes_in_boxes(const Config &config) { return sizeof(double) * boxed_values(config); }
+
+double memory_limit() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
+
+PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *refusal) {
+  MPI_Comm node;
+  int ranks, node_ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node));
+  PetscCallMPI(MPI_Comm_size(node, &node_ranks));
+  PetscCallMPI(MPI_Comm_free(&node));
+  const Int3 parts = Domain::decompose(config.grid, ranks);
+  const double share = config.guard.memory, limit = memory_limit();
+  const double needed = bytes_per_rank(config, parts) * node_ranks;
+  const double values = ghosted_cells(config, parts) * tensor_fields(config);
+  std::string problem;
+  if (share > 0 && needed > share * limit) {
+    problem = too_little(node_ranks, needed, limit, share);
+  } else if (values > std::numeric_limits<PetscInt>::max()) {
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: "
+                  "at most %.0f, so more ranks or a PETSc of 64-bit indices",
+                  values, double(std::numeric_limits<PetscInt>::max()));
+    problem = text;
+  }
+  PetscCall(catch_together([&] { return fail_together(comm, problem); }, refusal));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

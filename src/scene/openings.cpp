@@ -1,0 +1,360 @@
+#include "scene/openings.hpp"
+
+#include "base/exact_sum.hpp"
+#include "base/number_rows.hpp"
+#include "base/petsc.hpp"
+#include "base/rank_zero.hpp"
+#include "field/open_sides.hpp"
+#include "grid/domain.hpp"
+#include "io/hdf5_input.hpp"
+#include "io/option_values.hpp"
+#include "io/profile_file.hpp"
+#include "scene/inflow_balance.hpp"
+#include "scene/time_tables.hpp"
+
+#include <petscksp.h>
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+namespace {
+
+std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
+
+std::size_t cells_of_side(const Config &config, int d) {
+  std::size_t cells = 1;
+  for (int e = 0; e < 3; ++e)
+    if (e != d) cells *= std::size_t(config.grid.cells[e]);
+  return cells;
+}
+
+// Makes the mean 1; returns what it was.
+double make_mean_one(SideProfile *profile) {
+  double sum = 0;
+  for (const double value : *profile) sum += value;
+  const double mean = sum / double(profile->size());
+  for (double &value : *profile) value /= mean;
+  return mean;
+}
+
+std::string read_profile(const Config &config, int d, int high, SideProfile *profile, double *mean) {
+  const OpeningSpec &spec = config.openings[d][high];
+  static const RowFormat format{"uniform, developed, or a file of numbers", {}, {}};
+  std::string text, wrong, file, dataset;
+  const bool hdf5 = on_rank_0([&] {
+    split_dataset(spec.profile, &file, &dataset);
+    return is_hdf5(file);
+  });
+  if (hdf5) {
+    const Int3 &n = config.grid.cells;
+    wrong = on_rank_0([&] {
+      return read_profile_file(file, dataset, d == 2 ? n[1] : n[2], d == 0 ? n[1] : n[0], d, high ? -1 : 1, profile);
+    });
+    share(profile);
+  } else if (read_file(spec.profile, &text)) {
+    wrong = read_rows(spec.profile, text, format, [&](const std::vector<double> &row) {
+      profile->insert(profile->end(), row.begin(), row.end());
+      return std::string();
+    });
+  } else {
+    wrong = "cannot read " + spec.profile + "; accepted: " + format.expected;
+  }
+  if (!wrong.empty()) return wrong;
+  const std::size_t cells = cells_of_side(config, d);
+  if (profile->size() != cells)
+    return spec.profile + " has " + std::to_string(profile->size()) + " numbers; accepted: one per cell of the side, " +
+           std::to_string(cells);
+  *mean = make_mean_one(profile);
+  if (!std::isfinite(1 / *mean)) return spec.profile + ": its mean is 0; accepted: a flow into the box";
+  return {};
+}
+
+std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
+  const OpeningSpec &spec = config.openings[d][high];
+  const std::string name = "-inflow_" + name_of(d, high);
+  if (!spec.velocity.empty() && !spec.flow_rate.empty())
+    return name + "_flow_rate: given beside " + name + "_velocity; accepted: one of them";
+  SideProfile profile;
+  double mean = 1;
+  if (spec.from_file())
+    if (std::string wrong = read_profile(config, d, high, &profile, &mean); !wrong.empty())
+      return name + "_profile: " + wrong;
+  side->profile = std::make_shared<const SideProfile>(std::move(profile));
+  const bool flow = !spec.flow_rate.empty();
+  if (!flow && spec.velocity.empty() && !spec.from_file())
+    return name + "_velocity: must be given, or " + name + "_flow_rate; accepted: a number, or a table";
+  TimeCourse &course = side->given;
+  course = {mean, spec.frequency, spec.phase, {}};
+  const std::string option = name + (flow ? "_flow_rate" : "_velocity");
+  const std::string &text = flow ? spec.flow_rate : spec.velocity;
+  if (!text.empty())
+    if (std::string wrong = read_course(text, &course); !wrong.empty()) return option + ": " + wrong;
+  if (!course.table.empty() && (spec.frequency != 0 || spec.phase != 0))
+    return name + "_frequency: has no meaning beside a table; accepted: 0, and phase 0";
+  if (std::string wrong = extend_table(spec, name, option, text, config.time.end, &course); !wrong.empty())
+    return wrong;
+  if (flow) {
+    const double area = area_of_side(config, d);
+    course.value /= area;
+    for (auto &row : course.table) row[1] /= area;
+  }
+  return {};
+}
+
+std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
+  const double length = config.openings[d][high].feeder, h = config.grid.length[d] / config.grid.cells[d];
+  constexpr int least = 8, left = 8;  // cells
+  if (length == 0) return {};
+  const std::string name = "-inflow_" + name_of(d, high) + "_feeder: ";
+  const double cells = std::round(length / h), most = config.grid.cells[d] - left;
+  if (cells < least || cells > most)
+    return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: from " + to_text(least) + " to " +
+           to_text(most) + " of the " + to_text(config.grid.cells[d]) + " along the box";
+  if (std::fabs(length / h - cells) > 1e-6 * cells)
+    return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: a whole number, such as " +
+           to_text(cells * h);
+  if (!config.species.empty() && !config.body_series)
+    return name + "bodies that come in need names; accepted: -body_series true";
+  side->feeder = static_cast<int>(cells);
+  return {};
+}
+
+// A capacity that is 0, or drained by nothing, holds no pressure of its own: the limits of small ones.
+std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
+  const auto &[first, capacity, second] = spec.windkessel;
+  const bool holds = capacity > 0 && second > 0;
+  if (!holds && spec.windkessel_start != 0)
+    return name + "_windkessel_start: there is no capacity that a resistance drains; accepted: 0, or with both in " +
+           name + "_windkessel";
+  if (spec.resistance > 0 && spec.windkessel != Real3{})
+    return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
+  *load = {spec.resistance + first, 0, 0, 0};
+  if (holds) *load = {first, capacity, second, spec.windkessel_start};
+  if (capacity == 0) load->resistance += second;
+  return {};
+}
+
+}  // namespace
+
+std::string resolve_openings(Config *config) {
+  for (int d = 0; d < 3; ++d)
+    for (int high = 0; high < 2; ++high) {
+      Side &side = config->sides[d][high];
+      const bool bounded = config->boundary.bounded(d);
+      side.kind = bounded ? config->boundary.kind(d, high) : SideKind::wall;
+      config->grid.open[d][high] = bounded && is_open(side.kind);
+      if (side.kind == SideKind::inflow)
+        for (const auto resolve : {resolve_inflow, resolve_feeder})
+          if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
+      if (side.kind != SideKind::pressure) continue;
+      const OpeningSpec &spec = config->openings[d][high];
+      side.given = {spec.value, 0, 0, {}};
+      const std::string name = "-pressure_" + name_of(d, high);
+      if (std::string wrong = resolve_load(spec, name, &side.load); !wrong.empty()) return wrong;
+      if (!spec.table.empty())
+        if (std::string wrong = read_table(spec.table, &side.given); !wrong.empty()) return name + "_table: " + wrong;
+      if (std::string wrong = extend_table(spec, name, name + "_table", spec.table, config->time.end, &side.given);
+          !wrong.empty())
+        return wrong;
+    }
+  return opens(config->sides) ? std::string() : check_inflow_balance(*config);
+}
+
+// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of
+// that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
+
+namespace {
+
+using MatHandle = Handle<Mat, MatDestroy>;
+using KspHandle = Handle<KSP, KSPDestroy>;
+
+// The two directions of a side of direction d, x before y before z.
+struct SidePlane {
+  int a, b;
+  explicit SidePlane(int d) : a(d == 0 ? 1 : 0), b(d == 2 ? 1 : 2) {}
+};
+
+// What cell (i, j) sees beyond its side `high` in direction e: another cell, or a wall, where u is odd, or neither.
+struct Beyond {
+  bool cell = false, wall = false;
+  int index = 0;
+};
+
+Beyond beyond(const Config &config, int e, int i, bool high) {
+  const int n = config.grid.cells[e], next = high ? i + 1 : i - 1;
+  if (n == 1 && config.grid.boundary[e] == Boundary::periodic) return {};
+  if (config.grid.boundary[e] == Boundary::periodic) return {true, false, (next + n) % n};
+  if (next >= 0 && next < n) return {true, false, next};
+  const SideKind kind = config.sides[e][high].kind;
+  return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
+}
+
+// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular
+// one.
+struct OpenCells {
+  static constexpr int values = 5;
+  std::vector<double> all;
+  bool open(std::size_t cell) const { return all[values * cell] > 0; }
+  double link(std::size_t cell, int which, bool high) const { return all[values * cell + 1 + 2 * which + high]; }
+};
+
+// Collective.
+PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const RigidFaces *rigid, int d, bool high,
+                               OpenCells *cells) {
+  const SidePlane plane(d);
+  const int na = config.grid.cells[plane.a], nb = config.grid.cells[plane.b];
+  const Int3 &n = domain.cells(), &begin = domain.layout().begin;
+  PetscFunctionBeginUser;
+  cells->all.assign(std::size_t(OpenCells::values) * na * nb, 0);
+  if (!rigid) {
+    for (std::size_t v = 0; v < cells->all.size(); v += OpenCells::values) cells->all[v] = 1;
+    PetscFunctionReturn(0);
+  }
+  const auto values = [&](const Int3 &local) {
+    const std::size_t cell = (begin[plane.a] + local[plane.a]) + std::size_t(na) * (begin[plane.b] + local[plane.b]);
+    return cells->all.data() + OpenCells::values * cell;
+  };
+  Int3 first{}, last = n;
+  if (!domain.touches(d, high)) last = {};
+  first[d] = high ? n[d] : 0;
+  last[d] = last[d] > 0 ? first[d] + 1 : 0;
+  for (int k = first[2]; k < last[2]; ++k)
+    for (int j = first[1]; j < last[1]; ++j) {
+      const RigidFaces::Row row = rigid->row(d, j, k);
+      for (int i = first[0]; i < last[0]; ++i) {
+        double *cell = values({i, j, k});
+        cell[0] = 1;
+        for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+          if (i >= run->begin && i < run->end) cell[0] = 0;
+        for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+          for (const int which : {0, 1})
+            for (const bool up : {false, true})
+              if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut->i == i && (cut->walls >> link & 1U))
+                cell[1 + 2 * which + up] = cut->link[link];
+      }
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cells->all.data(), static_cast<int>(cells->all.size()), MPI_DOUBLE, MPI_SUM,
+                             domain.comm()));
+  PetscFunctionReturn(0);
+}
+
+// The part of a side that no rigid body covers, from the solid fractions of the cells beside it. Collective.
+PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> &phases, int d, bool high,
+                                 double *part) {
+  PetscFunctionBeginUser;
+  ExactSums covered(1);
+  for_points(domain.cells_at(d, high, 1), [&](int i, int j, int k) {
+    double solid = 0;
+    for (const Phase &phase : phases)
+      if (phase.material.is_rigid()) solid += phase.fraction[0](i, j, k);
+    covered.add(0, std::min(1.0, solid));
+  });
+  double sum, faces = 1;
+  PetscCall(covered.reduce(domain.comm(), &sum));
+  for (int e = 0; e < 3; ++e)
+    if (e != d) faces *= domain.domain_cells()[e];
+  *part = 1 - sum / faces;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode assemble(const Config &config, int d, const OpenCells &cells, Mat matrix, bool *held) {
+  const SidePlane plane(d);
+  const int n[2] = {config.grid.cells[plane.a], config.grid.cells[plane.b]};
+  PetscFunctionBeginUser;
+  *held = false;
+  for (int j = 0; j < n[1]; ++j)
+    for (int i = 0; i < n[0]; ++i) {
+      const PetscInt row = i + PetscInt(n[0]) * j;
+      if (!cells.open(row)) {
+        PetscCall(MatSetValue(matrix, row, row, 1, ADD_VALUES));
+        continue;
+      }
+      for (const int which : {0, 1}) {
+        const int e = which == 0 ? plane.a : plane.b;
+        const double h = config.grid.length[e] / config.grid.cells[e], coupling = 1 / (h * h);
+        for (const bool high : {false, true}) {
+          const Beyond other = beyond(config, e, which == 0 ? i : j, high);
+          const PetscInt column = which == 0 ? other.index + PetscInt(n[0]) * j : i + PetscInt(n[0]) * other.index;
+          if (const double link = cells.link(row, which, high); link > 0) {
+            PetscCall(MatSetValue(matrix, row, row, link, ADD_VALUES));
+            *held = true;
+          } else if (other.cell) {
+            PetscCall(MatSetValue(matrix, row, column, -coupling, ADD_VALUES));
+            PetscCall(MatSetValue(matrix, row, row, coupling, ADD_VALUES));
+          } else if (other.wall) {
+            PetscCall(MatSetValue(matrix, row, row, 2 * coupling, ADD_VALUES));
+            *held = true;
+          } else {
+            PetscCall(MatSetValue(matrix, row, row, 0, ADD_VALUES));
+          }
+        }
+      }
+    }
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideProfile *profile) {
+  const SidePlane plane(d);
+  const PetscInt cells = PetscInt(config.grid.cells[plane.a]) * config.grid.cells[plane.b];
+  MatHandle matrix;
+  KspHandle solver;
+  VecHandle one, flow;
+  PC pc;
+  bool held;
+  const double *values;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, cells, cells, 5, nullptr, matrix.put()));
+  PetscCall(MatSetOption(matrix.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(assemble(config, d, open, matrix.get(), &held));
+  if (!held) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(matrix.get(), flow.put(), one.put()));
+  for (PetscInt cell = 0; cell < cells; ++cell) PetscCall(VecSetValue(one.get(), cell, open.open(cell), INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(one.get()));
+  PetscCall(VecAssemblyEnd(one.get()));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, solver.put()));
+  PetscCall(KSPSetOperators(solver.get(), matrix.get(), matrix.get()));
+  PetscCall(KSPSetType(solver.get(), KSPPREONLY));
+  PetscCall(KSPGetPC(solver.get(), &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(KSPSolve(solver.get(), one.get(), flow.get()));
+  PetscCall(VecGetArrayRead(flow.get(), &values));
+  profile->assign(values, values + cells);
+  PetscCall(VecRestoreArrayRead(flow.get(), &values));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
+                              const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong) {
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; ++d)
+    for (const bool high : {false, true}) {
+      Side &side = (*sides)[d][high];
+      const bool developed = config.openings[d][high].profile == "developed";
+      if (side.kind != SideKind::inflow || !(developed || rigid)) continue;
+      OpenCells open;
+      PetscCall(find_open_cells(config, domain, rigid, d, high, &open));
+      SideProfile profile;
+      if (developed) PetscCall(develop(config, d, open, &profile));
+      if (profile.empty() && side.profile) profile = *side.profile;
+      if (profile.empty()) profile.assign(open.all.size() / OpenCells::values, 1);
+      double sum = 0;
+      for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
+      if (!(std::fabs(sum) > 0)) {
+        *wrong = std::string("-boundary_") + "xyz"[d] + (high ? "max" : "min") +
+                 ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+        PetscFunctionReturn(0);
+      }
+      // A flow rate is that of the whole side, a velocity the mean over its open part.
+      double part = 1;
+      if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
+      for (double &value : profile) value *= part * double(profile.size()) / sum;
+      side.profile = std::make_shared<const SideProfile>(std::move(profile));
+    }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

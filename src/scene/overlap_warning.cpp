@@ -1,0 +1,183 @@
+#include "scene/overlap_warning.hpp"
+
+#include "base/deliver.hpp"
+#include "bodies/near_places.hpp"
+#include "bodies/overlap.hpp"
+#include "bodies/shapes.hpp"
+#include "grid/domain.hpp"
+#include "io/fail_together.hpp"
+#include "scene/voxels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace eulastic {
+namespace {
+
+const SpeciesSpec &species_of(const Config &config, int label) {
+  const std::vector<int> first = first_labels(config.species, config.places);
+  std::size_t s = 0;
+  while (label >= first[s + 1]) ++s;
+  return config.species[s];
+}
+
+bool is_before(const Overlap &one, const Overlap &two) {
+  return two.body == 0 || std::make_pair(one.body, one.other) < std::make_pair(two.body, two.other);
+}
+
+// The option that says where the bodies of a species are.
+std::string remedy(const SpeciesSpec &spec) {
+  const std::string option = "-" + spec.name + "_";
+  if (spec.placement == Placement::list)
+    return "correct " + option + "positions, or use " + option + "placement random";
+  if (spec.placement == Placement::lattice)
+    return "fewer of them (" + option + "count), or " + option + "placement random";
+  return "correct " + option + (spec.shape == Shape::slab ? "interval" : "centre");
+}
+
+std::string describe(const Config &config, const Overlap &first, long count) {
+  const SpeciesSpec &one = species_of(config, first.body), &two = species_of(config, first.other);
+  const auto volume = [&](const SpeciesSpec &spec) {
+    return spec.shape == Shape::voxels ? std::numeric_limits<double>::infinity() : volume_in_box(spec, config.grid);
+  };
+  const bool moves_two = !two.material().attached && two.shape != Shape::voxels, of_one = volume(one) < volume(two);
+  char text[512];
+  std::snprintf(text, sizeof text,
+                "%ld bodies overlap as placed; first body %d (%s) and body %d (%s), which share %s of at least %.3g, "
+                "%.3g %% of body %d; ",
+                count, first.body, one.name.c_str(), first.other, two.name.c_str(),
+                config.grid.cells[2] == 1 ? "an area" : "a volume", first.volume,
+                100 * first.volume / std::min(volume(one), volume(two)), of_one ? first.body : first.other);
+  return text + remedy(moves_two ? two : one);
+}
+
+// Bodies near this rank and those of a species from a file. `overlaps`: labels, in any order.
+PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const CellWindow &cells,
+                                 const std::vector<Places> &near, std::size_t file, std::vector<int> *overlaps,
+                                 Overlap *first) {
+  PetscFunctionBeginUser;
+  struct Record {
+    int label;
+    SharedVolume shared;
+  };
+  const SpeciesSpec &solid = config.species[file];
+  const std::vector<int> label = first_labels(config.species, config.places);
+  int ranks;
+  std::vector<std::map<int, SharedVolume>> shared(config.species.size());
+  std::vector<Record> records;
+  std::vector<int> owners;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  const auto add = [&](const CellWindow &window, ConstView fraction) {
+    for (std::size_t s = 0; s < config.species.size(); ++s) {
+      const SpeciesSpec &spec = config.species[s];
+      if (spec.shape == Shape::voxels || spec.placement == Placement::random) continue;
+      if (spec.material().attached && solid.material().attached) continue;
+      add_shared(spec, near[s], config.grid, window, fraction, &shared[s]);
+    }
+  };
+  PetscCall(fail_together(comm, read_voxels(solid, config.grid, cells, add)));
+  for (std::size_t s = 0; s < config.species.size(); ++s)
+    for (const auto &[body, with] : shared[s]) {
+      records.push_back({label[s] + body, with});
+      owners.push_back(BodyRange::owner(label[s] + body - 1, label.back() - 1, ranks));
+    }
+  PetscCall(deliver(comm, owners, &records));
+  double cell = std::ldexp(1.0, -30);
+  for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d) cell *= config.grid.length[d] / config.grid.cells[d];
+  std::map<int, SharedVolume> sums;
+  for (const Record &record : records) {
+    SharedVolume &sum = sums[record.label];
+    sum.volume += record.shared.volume;
+    sum.overlaps = sum.overlaps || record.shared.overlaps;
+  }
+  for (const auto &[body, sum] : sums) {
+    if (!sum.overlaps) continue;
+    overlaps->insert(overlaps->end(), {body, label[file]});
+    const auto [one, two] = std::minmax({body, label[file]});
+    const Overlap pair{one, two, cell * double(sum.volume)};
+    if (is_before(pair, *first)) *first = pair;
+  }
+  PetscFunctionReturn(0);
+}
+
+std::string describe_same_place(const Config &config, const Overlap &pair) {
+  const SpeciesSpec &one = species_of(config, pair.body), &two = species_of(config, pair.other);
+  return "-species " + two.name + ": body " + std::to_string(pair.other) + " is at the same place as body " +
+         std::to_string(pair.body) + " (" + one.name +
+         "), periodic images included; accepted: bodies apart from each other: " + remedy(two);
+}
+
+// How many bodies ranks have named, each once.
+PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels, long *count) {
+  int ranks;
+  std::vector<int> owners;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  for (const int label : *labels) owners.push_back(BodyRange::owner(label - 1, bodies, ranks));
+  PetscCall(deliver(comm, owners, labels));
+  *count = static_cast<long>(std::set<int>(labels->begin(), labels->end()).size());
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 1, MPI_LONG, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
+// The first of the pairs that ranks have found.
+PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
+  PetscFunctionBeginUser;
+  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t later = std::int64_t{!first->same_place} << 62;  // than those at the same place
+  const std::int64_t mine = first->body > 0 ? later + (std::int64_t{first->body} << 32) + first->other : none;
+  std::int64_t pair = mine;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pair, 1, MPI_INT64_T, MPI_MIN, comm));
+  double volume = mine == pair ? first->volume : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
+  if (pair == none) PetscFunctionReturn(0);
+  const bool same_place = (pair >> 62) == 0;
+  pair &= (std::int64_t{1} << 62) - 1;
+  *first = {static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), volume, same_place};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *warning, std::string *refusal) {
+  PetscFunctionBeginUser;
+  warning->clear();
+  refusal->clear();
+  if (!config.initial_state.empty()) PetscFunctionReturn(0);
+  const auto is_file = [](const SpeciesSpec &spec) { return spec.shape == Shape::voxels; };
+  const bool files = std::any_of(config.species.begin(), config.species.end(), is_file);
+  if (!files && !may_overlap(config.species, config.places)) PetscFunctionReturn(0);
+  int rank, ranks;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  // Any split does, also where there are more ranks than the cells of -check_only are for.
+  GridSpec spec = config.grid;
+  spec.processors = {};
+  spec.starts = {};
+  const bool share = Domain::why_not(spec, ranks).empty();
+  const Domain domain = Domain::planned(spec, share ? ranks : 1);
+  const Layout box = share || rank == 0 ? domain.split().box_of(rank, spec, 0).layout() : Layout{};
+  std::vector<Places> near(config.species.size());
+  for (std::size_t s = 0; s < near.size(); ++s)
+    PetscCall(bring_near(comm, domain, config.species[s], config.places[s], &near[s]));
+  Overlap first;
+  std::vector<int> overlaps;
+  if (may_overlap(config.species, config.places)) overlaps = find_overlaps(config.species, near, config.grid, &first);
+  for (std::size_t s = 0; s < near.size(); ++s)
+    if (is_file(config.species[s]))
+      PetscCall(compare_with_file(comm, config, {config.grid, box.begin, box.cells}, near, s, &overlaps, &first));
+  PetscCall(agree(comm, &first));
+  long count;
+  PetscCall(count_bodies(comm, first_labels(config.species, config.places).back() - 1, &overlaps, &count));
+  if (first.same_place)
+    *refusal = describe_same_place(config, first);
+  else if (first.body > 0)
+    *warning = describe(config, first, count);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,75 @@
+#include "scene/scene_warnings.hpp"
+
+#include "flow/viscosity.hpp"
+#include "scene/lumens.hpp"
+#include "scene/red_cell.hpp"
+#include "solids/exterior.hpp"
+
+#include <cstdio>
+
+namespace eulastic {
+
+namespace {
+
+void add_attachment_warnings(const Config &config, std::vector<std::string> *warnings) {
+  if (config.method.exterior != SolidExterior::extrapolate) return;
+  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
+  Real3 spacing;
+  for (int d = 0; d < 3; ++d) spacing[d] = config.grid.length[d] / config.grid.cells[d];
+  for (const SpeciesSpec &spec : config.species) {
+    const Material material = spec.material();
+    if (!material.attached || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
+                  "viscosity %g, so that its strain at the surface is first order, as of a free body; a spacing of at "
+                  "most %.3g would do",
+                  spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
+                  damping_spacing(config.fluid, material));
+    warnings->emplace_back(text);
+  }
+}
+
+// Of a drop: docs/method.md, section 16, "Pressure".
+void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) {
+  if (!config.method.staggered() || config.method.viscous != ViscousScheme::rkl) return;
+  ViscosityContrast all(config.fluid);
+  for (const SpeciesSpec &spec : config.species) all.add(spec.material(), 0);
+  for (const SpeciesSpec &spec : config.species) {
+    ViscosityContrast alone(config.fluid);
+    alone.add(spec.material(), 0);
+    if (!alone.exists() || alone.settles()) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity is late by some %.0f "
+                  "steps; shorter ones, -time_step, are late by less",
+                  spec.name.c_str(), viscosity_of(spec.material(), config.fluid) / config.fluid.viscosity,
+                  4 * all.most / all.least);
+    warnings->emplace_back(text);
+  }
+}
+
+// Where the interface stays sharp one expects that bodies stay separate.
+void add_merging_warnings(const Config &config, std::vector<std::string> *warnings) {
+  for (std::size_t s = 0; s < config.species.size(); ++s) {
+    const SpeciesSpec &spec = config.species[s];
+    const std::string needed = config.why_no_boxes(spec);
+    if (needed.empty() || spec.contact || config.method.interface != InterfaceScheme::plic) continue;
+    if (spec.law == Law::rigid || spec.material().attached || config.places[s].count < 2) continue;
+    warnings->push_back("bodies of " + spec.name + " merge where they meet: boxes of their own, in which they stay " +
+                        "separate, need " + needed + "; -" + spec.name + "_contact merge says that they may");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Config &config) {
+  std::vector<std::string> warnings = coarse_surface_warnings(config);
+  add_attachment_warnings(config, &warnings);
+  add_lag_warnings(config, &warnings);
+  add_merging_warnings(config, &warnings);
+  for (std::string &warning : lumen_warnings(config)) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+}  // namespace eulastic

@@ -1,0 +1,347 @@
+#include "scene/validate.hpp"
+
+#include "base/rank_zero.hpp"
+#include "bodies/seeding.hpp"
+#include "field/open_sides.hpp"
+#include "grid/domain.hpp"
+#include "io/option_values.hpp"
+#include "openings/leaving.hpp"
+#include "pressure/smac.hpp"
+#include "scene/open_parts.hpp"
+#include "scene/rigid_paths.hpp"
+#include "scene/voxels.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+namespace eulastic {
+namespace {
+
+constexpr double most_unequal = 1000;  // spacings
+
+bool flat(const Config &config) { return config.grid.cells[2] == 1; }
+
+std::string check_grid(const Config &config) {
+  if (config.ranks > 0 && !config.check_only)
+    return "-ranks: " + std::to_string(config.ranks) +
+           " without -check_only; accepted: 0, as mpiexec -n says how many "
+           "ranks a run has";
+  GridSpec serial = config.grid;
+  serial.processors = {0, 0, 0};
+  if (const std::string reason = Domain::why_not(serial, 1); !reason.empty()) return reason;
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("-boundary_") + "xyz"[d];
+    for (int high = 0; high < 2; ++high)
+      if (!config.boundary.bounded(d) && config.boundary.side[d][high] != SideChoice::same)
+        return name + (high ? "max" : "min") + ": one side alone cannot be periodic; accepted: same, or with " + name +
+               (high ? "min" : "max") + " or " + name;
+  }
+  if (flat(config) && config.grid.boundary[2] == Boundary::wall)
+    return "-boundary_z: a side needs more than one cell in z; accepted in 2-D: periodic";
+  double cells = 1;
+  for (int n : config.grid.cells) cells *= n;
+  if (!config.check_only && cells > std::numeric_limits<PetscInt>::max())
+    return "-grid_cells: more cells than this PETSc can number; accepted: at most " +
+           std::to_string(std::numeric_limits<PetscInt>::max()) +
+           ", or a build with a PETSc of 64-bit indices (Debian: libpetsc64-real-dev)";
+  return {};
+}
+
+std::string check_spacings(const Config &config) {
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) {
+    shortest = std::min(shortest, config.grid.length[d] / config.grid.cells[d]);
+    longest = std::max(longest, config.grid.length[d] / config.grid.cells[d]);
+  }
+  if (longest <= most_unequal * shortest) return {};
+  return "-grid_length: one spacing is " + to_text(longest / shortest) + " times another; accepted: at most " +
+         to_text(most_unequal) + " times";
+}
+
+std::string check_vector(const Config &config, const std::string &name, const Real3 &value) {
+  if (flat(config) && value[2] != 0) return "-" + name + ": the z component must be 0 in 2-D (one cell in z)";
+  return {};
+}
+
+std::string check_walls(const Config &config) {
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const Real3 &velocity = config.sides[d][side].motion.velocity;
+      const std::string name = std::string("wall_") + "xyz"[d] + (side ? "max" : "min") + "_velocity";
+      if (velocity[d] != 0) return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall and must be 0";
+      if (const std::string wrong = check_vector(config, name, velocity); !wrong.empty()) return wrong;
+    }
+  return {};
+}
+
+// Whether volume crosses a side.
+bool crossed(const Config &config, int d, int high) {
+  return config.grid.open[d][high] || config.boundary.is(SideKind::inflow, d, high);
+}
+
+std::string check_flow(const Config &config) {
+  if (const std::string wrong = check_vector(config, "body_force", config.fluid.body_force.force); !wrong.empty())
+    return wrong;
+  if (!config.initial_state.empty() && !is_file(config.initial_state))
+    return "-initial_state: " + config.initial_state + " is not a file";
+  const InitialFlow &initial = config.initial;
+  if (const std::string wrong = check_vector(config, "initial_velocity_mean", initial.mean); !wrong.empty())
+    return wrong;
+  for (int d = 0; d < 3; ++d)
+    if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0 &&
+        !(crossed(config, d, 0) && crossed(config, d, 1)))
+      return std::string("-initial_velocity_mean: the ") + "xyz"[d] +
+             " component must be 0 between sides of which one is closed";
+  const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
+  const bool between_walls = initial.kind == InitialVelocity::couette || initial.kind == InitialVelocity::poiseuille;
+  if (between_walls && !(config.boundary.is_wall(1, 0) && config.boundary.is_wall(1, 1)))
+    return "-initial_velocity: " + name + " needs -boundary_y wall";
+  const auto [component, along] = shear_wave_directions(initial.kind);
+  if (flat(config) && (component == 2 || along == 2 || initial.kind == InitialVelocity::taylor_green_3d))
+    return "-initial_velocity: " + name + " needs more than one cell in z";
+  return {};
+}
+
+std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
+  if (!spec.is_membrane()) return {};
+  const std::string name = spec.law == Law::red_cell ? "red_cell" : "membrane",
+                    law = "-" + spec.name + "_law: " + name + " needs ";
+  if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
+    return law +
+           "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
+  if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
+    return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
+  if (!config.initial_state.empty() || spec.shape == Shape::state)
+    return law + "a shape to start from, and cannot be read from -initial_state";
+  if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
+    return "-" + spec.name + "_spontaneous_curvature: nothing bends back to it; accepted: 0, or -" + spec.name +
+           "_bending_modulus > 0";
+  if (spec.stretch_force.force > 0 && !config.body_series)
+    return "-" + spec.name + "_stretch_force: must know one body from the other; accepted: -body_series true, or 0";
+  return {};
+}
+
+// A slab that goes along its axis leaves the fluid on both sides of it where that is, or is carried round.
+bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
+  const DomainShape &grid = config.grid;
+  for (int e = 0; e < 3; ++e)
+    if (e != slab.axis && (grid.open[e][0] || grid.open[e][1])) return true;
+  const auto across = [&](const SpeciesSpec &other) { return other.shape == Shape::slab && other.axis == slab.axis; };
+  if (std::count_if(config.species.begin(), config.species.end(), across) > 1) return false;
+  return grid.boundary[slab.axis] == Boundary::periodic || (grid.open[slab.axis][0] && grid.open[slab.axis][1]);
+}
+
+// Fluid must be able to pass around it; where it goes: check_paths().
+std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
+  if (spec.law != Law::rigid) return {};
+  const std::string name = "-" + spec.name + "_";
+  const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
+  const RigidMotion &motion = spec.motion;
+  const bool closed = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid || spec.shape == Shape::biconcave ||
+                      spec.shape == Shape::voxels;
+  for (int d = 0; d < 3; ++d) {
+    const bool about_axis = spec.shape == Shape::cylinder && d == spec.axis;
+    if (motion.angular_velocity[d] != 0 && ((flat(config) && d != 2) || !(closed || about_axis)))
+      return no("angular_velocity",
+                "would turn the body out of the box; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
+                "that of a cylinder, z alone in 2-D, else 0,0,0");
+    if (motion.velocity[d] == 0) continue;
+    if (flat(config) && d == 2 && spec.shape != Shape::slab)
+      return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
+    const bool fluid_around = closed || (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
+    if (spec.shape == Shape::slab && d == spec.axis) {
+      if (!piston_has_way_out(config, spec))
+        return no("velocity",
+                  "the slab would press fluid that has no way out; accepted: no other slab across its way, and a "
+                  "pressure or outflow side on both ends of it, or a periodic one; or such a side along all of it");
+    } else if (!spec.slides(d) && !fluid_around)
+      return no("velocity",
+                "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
+                "a tube, any of a slab, sphere, ellipsoid, biconcave, voxels or cylinder, else 0,0,0");
+    if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
+      return no("velocity",
+                "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
+                "periodic");
+  }
+  return {};
+}
+
+std::string check_species(const Config &config, const SpeciesSpec &spec) {
+  if (spec.shape == Shape::state && config.initial_state.empty())
+    return "-" + spec.name + "_shape: state needs -initial_state";
+  if ((spec.shape == Shape::voxels || spec.shape == Shape::state) && spec.placement != Placement::one)
+    return "-" + spec.name + "_placement: has no meaning with -" + spec.name + "_shape " +
+           (spec.shape == Shape::state ? "state" : "voxels") + "; accepted: one";
+  if (spec.shape == Shape::slab) {
+    const auto [low, high] = spec.interval;
+    if (!(low < high)) return "-" + spec.name + "_interval: the low side must be below the high side";
+    if (high <= 0 || low >= config.grid.length[spec.axis])
+      return "-" + spec.name + "_interval: the slab is outside the box; accepted: a part of 0," +
+             to_text(config.grid.length[spec.axis]);
+  }
+  if (spec.viscosity && config.fluid.viscosity == 0)
+    return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
+    return wrong;
+  for (const auto check : {check_membrane, check_rigid})
+    if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
+  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())
+    return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
+           spec.name + "_shear_modulus > 0";
+  if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
+    return "-" + spec.name + "_surface_tension: needs a sharp interface; accepted: -interface_scheme plic, or 0";
+  if (flat(config) && spec.initial_stretch[2] != 1)
+    return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
+  const bool random = spec.placement == Placement::random;
+  if (spec.placement == Placement::lattice && spec.number >= 0)
+    return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
+  if (random && spec.count != Int3{1, 1, 1})
+    return "-" + spec.name + "_count: with random placement accepted: an integer >= 0";
+  if (flat(config) && spec.count[2] != 1) return "-" + spec.name + "_count: must be 1 along z in 2-D";
+  const Int3 &n = config.grid.cells;
+  const double bodies = double(spec.count[0]) * spec.count[1] * spec.count[2];
+  const double most = std::min(double(most_bodies), double(n[0]) * n[1] * n[2]);
+  if (bodies > most)
+    return "-" + spec.name + "_count: " + to_text(bodies) + " bodies; accepted: at most " + to_text(most) +
+           (most < most_bodies ? ", one per cell" : "");
+  if (random && (spec.number >= 0) == (spec.hematocrit >= 0))
+    return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
+           "_hematocrit";
+  if (random && (spec.shape == Shape::cylinder || is_attached(spec.shape)))
+    return "-" + spec.name + "_placement: random needs bodies with ends; accepted: sphere, biconcave, ellipsoid";
+  if (spec.placement == Placement::list && !is_file(spec.positions_file))
+    return "-" + spec.name + "_positions: " + spec.positions_file + " is not a file";
+  return {};
+}
+
+std::string check_contact(const Config &config, const SpeciesSpec &spec) {
+  if (spec.contact != Contact::separate || spec.placement == Placement::one) return {};
+  const std::string needed = config.why_no_boxes(spec);
+  return needed.empty() ? needed : "-" + spec.name + "_contact: separate needs " + needed + "; accepted here: merge";
+}
+
+bool is_random(const SpeciesSpec &spec) { return spec.placement == Placement::random; }
+
+// Walls and posts, which others are compared with wherever they are, and whose loads every rank knows.
+bool is_known_everywhere(const SpeciesSpec &spec) {
+  return spec.bears_load() || spec.material().attached || spec.shape == Shape::cylinder;
+}
+
+std::string place_species(std::size_t which, const SolidBodies &solids, const KeptBodies &kept, Config *config) {
+  const SpeciesSpec &spec = config->species[which];
+  Places places;
+  if (is_random(spec)) {
+    std::vector<BodyPlace> all;
+    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &all);
+        !wrong.empty())
+      return wrong;
+    places = Places(all);
+  } else if (const std::string wrong = place_bodies(spec, config->grid, &places, kept); !wrong.empty()) {
+    return (spec.placement == Placement::list ? "-" + spec.name + "_positions: " : "-species " + spec.name + ": ") +
+           wrong;
+  }
+  config->places.push_back(std::move(places));
+  return {};
+}
+
+// Bodies at random keep clear of all that come before them, which every rank knows until they are placed; then it keeps
+// its share.
+std::string place_all(const SolidBodies &solids, Config *config) {
+  const std::vector<SpeciesSpec> &species = config->species;
+  int rank, ranks;
+  (void)MPI_Comm_rank(run_communicator(), &rank);
+  (void)MPI_Comm_size(run_communicator(), &ranks);
+  config->places.clear();
+  for (std::size_t s = 0; s < species.size(); ++s) {
+    const bool all = is_known_everywhere(species[s]) || std::any_of(species.begin() + s, species.end(), is_random);
+    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks};
+    if (std::string wrong = place_species(s, solids, kept, config); !wrong.empty()) return wrong;
+  }
+  for (std::size_t s = 0; s < species.size(); ++s)
+    if (!is_known_everywhere(species[s])) config->places[s].share_among(rank, ranks);
+  return {};
+}
+
+std::string check_point(const Config &config, const std::string &option, const Real3 &point) {
+  for (int d = 0; d < (flat(config) ? 2 : 3); ++d)
+    if (!(point[d] >= 0 && point[d] <= config.grid.length[d]))
+      return "-" + option + ": " + "xyz"[d] + " = " + to_text(point[d]) + " is outside the box; accepted: 0 ... " +
+             to_text(config.grid.length[d]);
+  return {};
+}
+
+std::string check_samples(const Config &config) {
+  for (const Real3 &point : config.samples.probes)
+    if (const std::string wrong = check_point(config, "probe_points", point); !wrong.empty()) return wrong;
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("profile_") + "xyz"[d];
+    const ProfileSpec &profile = config.samples.profile[d];
+    if (const std::string wrong = check_point(config, name, profile.line); !wrong.empty()) return wrong;
+    if (d == 2 && flat(config) && profile.kind != ProfileSpec::Kind::none)
+      return "-profile_z: needs more than one cell in z";
+  }
+  return {};
+}
+
+std::string check_method(const Config &config) {
+  if (config.method.pressure == PressureKind::smac && !SmacSolver::available())
+    return "-pressure_solver: smac needs FFTW, which this build has not; accepted: acm, ksp";
+  return {};
+}
+
+std::string check_time(const Config &config) {
+  const double resolution = std::numeric_limits<double>::epsilon() / 2 * config.time.end;
+  if (config.time.step == 0 || config.time.step > resolution) return {};
+  return "-time_step: " + to_text(config.time.step) + " cannot be added to times near -time_end " +
+         to_text(config.time.end) + "; accepted: 0 or a number > " + to_text(resolution);
+}
+
+std::string check_snapshots(const Config &config) {
+  const OutputControl &output = config.output;
+  if (!output.snapshot_exact) return {};
+  if (!config.method.staggered())
+    return "-snapshot_times: exact needs -time_integrator staggered; accepted here: steps";
+  constexpr double most = 1e5, most_in_step = 100;
+  const double least = std::max(config.time.end / most, config.time.step / most_in_step);
+  if (output.snapshot_interval == 0 || output.snapshot_interval >= least) return {};
+  return "-snapshot_interval: " + to_text(output.snapshot_interval) + " with -snapshot_times exact makes more than " +
+         to_text(most) + " snapshots until -time_end, or " + to_text(most_in_step) +
+         " in a -time_step; accepted: at least " + to_text(least) + ", or -snapshot_times steps";
+}
+
+std::string check_restart(const Config &config) {
+  const std::string &path = config.checkpoint.restart;
+  const auto is_there = [&] {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  };
+  if (!path.empty() && !on_rank_0(is_there)) return "-restart: there is no file or directory " + path;
+  return {};
+}
+
+}  // namespace
+
+std::string validate(Config *whole) {
+  const Config &config = *whole;
+  for (const auto check : {check_grid, check_spacings, check_walls, check_flow, check_method, check_time, check_samples,
+                           check_snapshots, check_restart})
+    if (const std::string wrong = check(config); !wrong.empty()) return wrong;
+  for (const SpeciesSpec &spec : config.species)
+    for (const auto check : {check_species, check_contact})
+      if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
+  SolidBodies solids;
+  for (int d = 0; d < 3; ++d)
+    for (const int high : {0, 1})
+      if (crossed(config, d, high))
+        solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
+  const bool random = std::any_of(config.species.begin(), config.species.end(), is_random);
+  if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
+      !wrong.empty())
+    return wrong;
+  if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
+  if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
+  return check_paths(config);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,27 @@
+// What is measured of vessels: the flow through their lumen, and what it does to those that are elastic.
+#pragma once
+
+#include "base/petsc.hpp"
+#include "diagnostics/side_flows.hpp"
+#include "diagnostics/surface_loads.hpp"
+#include "scene/config.hpp"
+#include "solver/solver.hpp"
+
+namespace eulastic {
+
+/// The flow through the lumen of a tube.
+struct VesselFlow {
+  std::string species;
+  double flow_rate = 0;           ///< volume along its axis per time; 2-D: per depth
+  double apparent_viscosity = 0;  ///< dynamic, by Poiseuille's law for what drives the flow; 0 where nothing flows
+};
+
+/// Those of all tubes, constricted ones too, whose axis lies in the box; `bulk`: mean velocity of the box; `sides`: as
+/// measured.
+std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
+                                     const std::vector<SideFlow> &sides);
+
+/// Of all elastic bodies that bear loads, in the order of the bodies. Collective.
+PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads);
+
+}  // namespace eulastic

@@ -1,0 +1,291 @@
+#include "solids/exterior.hpp"
+
+#include "base/events.hpp"
+#include "field/fluid.hpp"
+#include "grid/row_scratch.hpp"
+#include "grid/threads.hpp"
+#include "kernels/stencils.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace eulastic {
+namespace {
+
+constexpr unsigned char outside = 255;
+
+// The owned points of a field and `reach` layers of those around them.
+struct Reach {
+  Int3 begin{}, end{};
+  Reach(const Box &box, const Staggering &at, int reach) {
+    for (int d = 0; d < 3; ++d) {
+      const Box::Range near = box.points_near(d, at[d], reach);
+      begin[d] = near.begin;
+      end[d] = near.end;
+    }
+  }
+  bool contains(const Int3 &p) const {
+    return p[0] >= begin[0] && p[0] < end[0] && p[1] >= begin[1] && p[1] < end[1] && p[2] >= begin[2] && p[2] < end[2];
+  }
+};
+
+// Whether the way from mask[0] leads towards the body for two points beyond the neighbour.
+bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
+  const auto inwards = [](unsigned char here, unsigned char next) { return next == 0 || next < here; };
+  return inwards(mask[step], mask[2 * step]) && inwards(mask[2 * step], mask[3 * step]);
+}
+
+// 0 where B evolves, `outside` elsewhere, on the first `n` points of a row; phi at their centres or low edges.
+template <bool Edge>
+EULASTIC_INLINE void flag_points(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
+                                 unsigned char *row) {
+  const std::ptrdiff_t a = -step[0], b = -step[1];
+#pragma omp simd
+  for (int i = 0; i < n; ++i) row[i] = (Edge ? kernels::average4(phi + i, a, b) : phi[i]) >= threshold ? 0 : outside;
+}
+
+EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
+                              unsigned char *row) {
+  if (step[0] != 0)
+    flag_points<true>(n, phi, step, threshold, row);
+  else
+    flag_points<false>(n, phi, step, threshold, row);
+}
+
+// 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere; whole vectors.
+EULASTIC_CLONES void find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz, unsigned char L,
+                                unsigned char *found) {
+  const auto least = [](unsigned char a, unsigned char b) EULASTIC_BODY { return a < b ? a : b; };
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const unsigned char near =
+        least(least(least(row[i - 1], row[i + 1]), least(row[i - sy], row[i + sy])), least(row[i - sz], row[i + sz]));
+    found[i] = row[i] == outside && near < L;
+  }
+}
+
+// The first point from i on that is found, or n.
+int next_found(const unsigned char *found, int i, int n) {
+  const void *at = std::memchr(found + i, 1, n - i);
+  return at ? static_cast<int>(static_cast<const unsigned char *>(at) - found) : n;
+}
+
+// Whether all edges around the centre phi[0] evolve.
+bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimension, double least) {
+  for (int a = 0; a < dimension; ++a)
+    for (int b = a + 1; b < dimension; ++b)
+      for (const std::ptrdiff_t x : {-stride[a], stride[a]})
+        for (const std::ptrdiff_t y : {-stride[b], stride[b]})
+          if (!(kernels::average4(phi, x, y) >= least)) return false;
+  return true;
+}
+
+// What the neighbour at `step` says of b[0]: its own value, or a line whose slope is the smaller one of the two behind
+// it, none if they differ in sign.
+double extended(const double *b, std::ptrdiff_t step, bool linear) {
+  if (!linear) return b[step];
+  const double near = b[step] - b[2 * step], far = b[2 * step] - b[3 * step];
+  return b[step] + (near * far > 0 ? (std::fabs(near) < std::fabs(far) ? near : far) : 0);
+}
+
+// Components on the same points, `size` doubles apart: the mean over the neighbours that count. Returns the flops: of
+// n values one each, seven more of a line.
+template <int Fields, class Entries>
+double extend_fields(const Entries &entries, Piece piece, int dimension, const std::ptrdiff_t *stride,
+                     std::ptrdiff_t size, double *B) {
+  std::int64_t flops = 0;
+  const std::ptrdiff_t slice = stride[dimension - 1];
+  for (std::size_t n = piece.begin; n < piece.end; ++n) {
+    const auto &entry = entries[n];
+    const double *later = B + entries[std::min(n + 32, piece.end - 1)].offset;
+    for (int f = 0; f < Fields; ++f)  // not foreseen by processors
+      for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
+    double *b = B + entry.offset;
+    double sum[Fields] = {};
+    for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
+      const unsigned pair = entry.neighbours >> (2 * d), linear = entry.lines >> (2 * d);
+      double both[Fields] = {};
+      if (pair & 1)
+        for (int f = 0; f < Fields; ++f) both[f] = extended(b + f * size, -stride[d], linear & 1);
+      if (pair & 2)
+        for (int f = 0; f < Fields; ++f) both[f] += extended(b + f * size, stride[d], linear >> 1 & 1);
+      for (int f = 0; f < Fields; ++f) sum[f] += both[f];
+    }
+    const int count = __builtin_popcount(entry.neighbours);
+    flops += count;
+    if (entry.lines) flops += 7 * __builtin_popcount(entry.lines);
+    for (int f = 0; f < Fields; ++f) b[f * size] = sum[f] / count;
+  }
+  return Fields * static_cast<double>(flops);
+}
+
+// What of a row in a box a body is near to: of owned rows that is known.
+OccupiedRows::Span near_part(const Phase &phase, const Reach &extent, int j, int k) {
+  const ActiveSegments &strained = phase.tensor.strained;
+  if (j >= 0 && k >= 0 && j < strained.rows_y() && k < strained.rows_z()) {
+    const ActiveSegments::Range range = strained.row(j, k);
+    if (range.first == range.last) return {0, 0};
+  }
+  const OccupiedRows::Span span = phase.rows.span(j, k);
+  return {std::max(span.begin, extent.begin[0]), std::min(span.end, extent.end[0])};
+}
+
+// 0 in `mask` where points at `at` evolve.
+void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
+                   const Reach &all, unsigned char *mask) {
+  const ConstView fraction = phase.fraction[0];
+  const EvolveRule &rule = phase.tensor.rule;
+  std::ptrdiff_t step[2] = {0, 0};
+  int steps = 0;
+  for (int d = 0; d < 3; ++d)
+    if (at[d]) step[steps++] = fraction.stride(d);
+  for (int k = all.begin[2]; k < all.end[2]; ++k)
+    for (int j = all.begin[1]; j < all.end[1]; ++j) {
+      const auto [begin, end] = near_part(phase, all, j, k);
+      if (begin >= end) continue;
+      const double *phi = fraction.row(j, k) + begin;
+      unsigned char *row = mask + box.layout().offset(begin, j, k);
+      flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
+      if (rule.linear && steps == 0)
+        for (int i = 0; i < end - begin; ++i)
+          if (row[i] == 0 && !is_surrounded(phi + i, stride, box.dimension(), rule.edge)) row[i] = outside;
+    }
+}
+
+double kinematic_viscosity(const Fluid &fluid, const Material &material) {
+  return viscosity_of(material, fluid) / fluid.density;
+}
+
+}  // namespace
+
+double damping_spacing(const Fluid &fluid, const Material &material) {
+  return kinematic_viscosity(fluid, material) / std::sqrt(material.shear_modulus / fluid.density);
+}
+
+bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material) {
+  const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
+  return std::sqrt(material.shear_modulus / fluid.density) * shortest <= kinematic_viscosity(fluid, material);
+}
+
+PetscErrorCode ExteriorLayers::build(const Box &box, const Phase &phase) {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exterior);
+  if (locations_.empty()) {
+    locations_.emplace_back();
+    for (const TensorComponent &c : tensor_components(box.dimension()))
+      if (c.a != c.b) {
+        locations_.emplace_back();
+        locations_.back().staggering = c.at;
+      }
+  }
+  linear_ = phase.tensor.rule.linear;
+  const int team = row_parts(box);
+  masks_.resize(team > 1 ? locations_.size() : 1);
+  in_parallel(team, static_cast<int>(locations_.size()),
+              [&](int l) { build_location(box, phase, &masks_[team > 1 ? l : 0], &locations_[l]); });
+  PetscFunctionReturn(0);
+}
+
+void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const {
+  const Layout &layout = box.layout();
+  const Staggering &at = location->staggering;
+  layer_of->assign(layout.size + whole_vectors(1), outside);
+  unsigned char *mask = layer_of->data();
+  const std::ptrdiff_t stride[3] = {1, layout.sy, box.dimension() == 3 ? layout.sz : 0};
+  // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
+  const Reach all(box, at, layers);
+  flag_evolving(box, phase, at, stride, all, mask);
+  const Reach owned(box, at, 0);
+  // A row is marked once the next one has been looked at, which would wait for the marks.
+  struct Row {
+    int begin, n = 0, j, k;
+    unsigned char *mask;
+    std::vector<unsigned char> found;
+  } rows[2];
+  for (Row &row : rows) row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
+  for (int L = 1; L <= layers; ++L) {
+    std::vector<Entry> &entries = location->layer[L - 1];
+    entries.clear();
+    const auto mark = [&](Row &row) {
+      for (int i = next_found(row.found.data(), 0, row.n); i < row.n; i = next_found(row.found.data(), i + 1, row.n)) {
+        unsigned char *here = row.mask + i;
+        *here = static_cast<unsigned char>(L);
+        if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
+        unsigned neighbours = 0, lines = 0;
+        for (int d = 0; d < box.dimension(); ++d) {
+          const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
+          if (here[-stride[d]] < L) neighbours |= low;
+          if (here[stride[d]] < L) neighbours |= high;
+          if (!linear_) continue;
+          if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
+          if (neighbours & high && leads_in(here, stride[d])) lines |= high;
+        }
+        entries.emplace_back(here - mask, neighbours, lines);
+      }
+      row.n = 0;
+    };
+    const Reach extent(box, at, layers - L);
+    int turn = 0;
+    for (int k = extent.begin[2]; k < extent.end[2]; ++k)
+      for (int j = extent.begin[1]; j < extent.end[1]; ++j) {
+        const auto [begin, end] = near_part(phase, extent, j, k);
+        if (begin >= end) continue;
+        Row &row = rows[turn];
+        row.begin = begin;
+        row.n = end - begin;
+        row.j = j;
+        row.k = k;
+        row.mask = mask + layout.offset(begin, j, k);
+        find_layer(whole_vectors(row.n), row.mask, stride[1], stride[2], static_cast<unsigned char>(L),
+                   row.found.data());
+        turn = 1 - turn;
+        mark(rows[turn]);  // the one before
+      }
+    mark(rows[1 - turn]);
+  }
+}
+
+// Part `part` of what a layer holds. Returns the flops.
+double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int layer, int part, int parts,
+                                    double *B) const {
+  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+  double flops = 0;
+  for (const Location &location : locations_) {  // the diagonals, which share their points, then the others
+    const std::vector<Entry> &entries = location.layer[layer - 1];
+    const Piece piece(entries.size(), part, parts);
+    const int fields = &location == &locations_[0] ? dimension : 1;
+    if (fields == 1) flops += extend_fields<1>(entries, piece, dimension, stride, layout.size, B);
+    if (fields == 2) flops += extend_fields<2>(entries, piece, dimension, stride, layout.size, B);
+    if (fields == 3) flops += extend_fields<3>(entries, piece, dimension, stride, layout.size, B);
+    B += fields * layout.size;
+  }
+  return flops;
+}
+
+PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange *exchange,
+                                      Field &tensor) const {
+  PetscFunctionBeginUser;
+  VerbScope scope(Verb::exterior);
+  const int parts = row_parts(box);
+  std::vector<double> flops(parts);
+  for (int L = 1; L <= layers; ++L) {
+    in_parallel(parts, parts, [&](int part) {
+      flops[part] = extend_layer(box.dimension(), box.layout(), L, part, parts, tensor.data());
+    });
+    for (const double some : flops) scope.flops(some);
+    clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
+    if (linear_ && exchange && L < layers) PetscCall(exchange->update_ghosts(tensor, 3));
+  }
+  PetscFunctionReturn(0);
+}
+
+double ExteriorLayers::points() const noexcept {
+  double sum = 0;
+  for (const Location &location : locations_)
+    for (const auto &entries : location.layer) sum += double(entries.size());
+  return sum;
+}
+
+}  // namespace eulastic
