@@ -10,6 +10,7 @@
 #include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
+#include <petscblaslapack.h>
 #include <algorithm>
 #include <cmath>
 
@@ -65,39 +66,21 @@ PetscErrorCode sum_bodies(const Box &box, const BodyOwners &owners, const Add &a
   PetscFunctionReturn(0);
 }
 
-// Eigenvalues of the symmetric matrix xx, yy, zz, yz, xz, xy, descending, by cyclic Jacobi rotations.
-Real3 eigenvalues(const std::array<double, 6> &m) {
-  double a[3][3] = {{m[0], m[5], m[4]}, {m[5], m[1], m[3]}, {m[4], m[3], m[2]}};
-  for (int sweep = 0; sweep < 30; ++sweep)
-    for (int p = 0; p < 2; ++p)
-      for (int q = p + 1; q < 3; ++q) {
-        if (a[p][q] == 0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c, apq = a[p][q];
-        const int r = 3 - p - q;
-        const double arp = a[r][p], arq = a[r][q];
-        a[p][p] -= t * apq;
-        a[q][q] += t * apq;
-        a[p][q] = a[q][p] = 0;
-        a[r][p] = a[p][r] = c * arp - s * arq;
-        a[r][q] = a[q][r] = s * arp + c * arq;
-      }
-  Real3 values{a[0][0], a[1][1], a[2][2]};
-  std::sort(values.begin(), values.end(), [](double x, double y) { return x > y; });
-  return values;
-}
-
-// Of the ellipsoid (ellipse) with these central second moments per volume, longest first.
-Real3 semi_axes(const std::array<double, 6> &moments, int dimension) {
-  Real3 squares = eigenvalues(moments);
-  if (dimension == 2) {  // the xy block alone
-    const double mean = (moments[0] + moments[1]) / 2, half = (moments[0] - moments[1]) / 2;
-    const double radius = std::sqrt(half * half + moments[5] * moments[5]);
-    squares = {mean + radius, mean - radius, 0};
+// Semi-axes of the ellipsoid (ellipse) with central second moments M per volume after the stretch B = V V of the mean
+// is undone, longest first. V^-1 M V^-1 has the eigenvalues of M x = lambda B x. Both are xx, yy, zz, yz, xz, xy.
+Real3 semi_axes(const std::array<double, 6> &M, const std::array<double, 6> &B, int dimension) {
+  double m[9], b[9], squares[3] = {}, work[9];  // columns of the lower triangles; squares ascend
+  for (int c = 0; c < 6; ++c) {
+    const auto [p, q] = pairs[c];
+    m[3 * p + q] = M[c];
+    b[3 * p + q] = B[c];
   }
-  Real3 axes{};
-  for (int d = 0; d < dimension; ++d) axes[d] = std::sqrt((dimension + 2) * std::max(squares[d], 0.0));
+  const PetscBLASInt type = 1, n = dimension, stride = 3, size = 9;
+  PetscBLASInt info;
+  LAPACKsygv_(&type, "N", "L", &n, m, &stride, b, &stride, squares, work, &size, &info);
+  Real3 axes{};  // stays 0 where B is not positive definite
+  for (int d = 0; d < dimension && info == 0; ++d)
+    axes[d] = std::sqrt((dimension + 2) * std::max(squares[dimension - 1 - d], 0.0));
   return axes;
 }
 
@@ -106,38 +89,12 @@ double taylor_deformation(const Real3 &axes, int dimension) {
   return a + c > 0 ? (a - c) / (a + c) : 0;
 }
 
-// What stretch B = V V makes of moments M, undone: V^-1 M V^-1 has the eigenvalues of K^-1 M K^-T, B = K K^T
-// (Cholesky).
-std::array<double, 6> undo_stretch(const std::array<double, 6> &moments, const std::array<double, 6> &B) {
-  double K[3][3] = {}, M[3][3];
-  for (int c = 0; c < 6; ++c) {
-    const auto [p, q] = pairs[c];
-    M[p][q] = M[q][p] = moments[c];
-    K[q][p] = B[c];  // below the diagonal
-  }
-  for (int p = 0; p < 3; ++p)
-    for (int q = p; q < 3; ++q) {
-      for (int m = 0; m < p; ++m) K[q][p] -= K[q][m] * K[p][m];
-      K[q][p] = p == q ? std::sqrt(K[p][p]) : K[q][p] / K[p][p];
-    }
-  for (const bool rows : {true, false})  // K^-1 from the left, then from the right
-    for (int q = 0; q < 3; ++q)
-      for (int p = 0; p < 3; ++p) {
-        const auto at = [&](int n) -> double & { return rows ? M[n][q] : M[q][n]; };
-        for (int m = 0; m < p; ++m) at(p) -= K[p][m] * at(m);
-        at(p) /= K[p][p];
-      }
-  std::array<double, 6> undone;
-  for (int c = 0; c < 6; ++c) undone[c] = M[pairs[c][0]][pairs[c][1]];
-  return undone;
-}
-
 // Lengths, deformations and inclination from central second moments per volume and the mean of B.
 void set_lengths(const std::array<double, 6> &moments, const std::array<double, 6> &B, int dimension,
                  BodyMeasure *body) {
-  body->semi_axes = semi_axes(moments, dimension);
+  body->semi_axes = semi_axes(moments, {1, 1, 1, 0, 0, 0}, dimension);
   body->taylor_deformation = taylor_deformation(body->semi_axes, dimension);
-  body->rest_deformation = taylor_deformation(semi_axes(undo_stretch(moments, B), dimension), dimension);
+  body->rest_deformation = taylor_deformation(semi_axes(moments, B, dimension), dimension);
   const double angle = std::atan2(2 * moments[5], moments[0] - moments[1]) / 2 * degrees;
   body->inclination = angle > -90 ? angle : 90;
 }

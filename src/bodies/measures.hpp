@@ -30,8 +30,8 @@ struct BodyMeasure {
   double inclination = 0;         ///< of the long axis in the xy plane (of the xy moments) from x; (-90, 90] degrees
   double elastic_energy = 0;      ///< sum of phi W over the label's cells
   /// As taylor_deformation, of the shape that is left when the mean of B over full cells (all at rest: I) is undone.
-  /// Where shape and B agree and the strain is uniform it is that of the body at rest, whatever it went through. Not a
-  /// number if B is not positive definite.
+  /// Where shape and B agree and the strain is uniform it is that of the body at rest, whatever it went through. 0 if B
+  /// is not positive definite.
   double rest_deformation = 0;
   double trace_max = 0;  ///< largest tr B (with B_zz = 1 in 2-D) at centres with phi >= 1/2, and at least 3
 };

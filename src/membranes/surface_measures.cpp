@@ -7,6 +7,7 @@
 #include "grid/domain.hpp"
 #include "kernels/plane_area.hpp"
 
+#include <petscblaslapack.h>
 #include <algorithm>
 #include <cmath>
 
@@ -20,22 +21,15 @@ constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 using Matrix = std::array<Real3, 3>;
 
-// x M = C by elimination with the largest pivots on the diagonal; M is symmetric and not negative.
+// x M = C by Cholesky's decomposition; M is symmetric and not negative. False where it is singular.
 bool divide(Matrix C, Matrix M, int dimension, Matrix *quotient) {
-  for (int p = 0; p < dimension; ++p) {
-    if (!(M[p][p] > 1e-9)) return false;
-    for (int q = p + 1; q < dimension; ++q) {
-      const double factor = M[p][q] / M[p][p];  // of column p, off column q
-      for (int r = 0; r < dimension; ++r) M[r][q] -= factor * M[r][p];
-      for (int r = 0; r < dimension; ++r) C[r][q] -= factor * C[r][p];
-    }
-  }
-  for (int p = dimension - 1; p >= 0; --p)
-    for (int r = 0; r < dimension; ++r) {
-      double sum = C[r][p];
-      for (int q = p + 1; q < dimension; ++q) sum -= (*quotient)[r][q] * M[q][p];
-      (*quotient)[r][p] = sum / M[p][p];
-    }
+  const PetscBLASInt n = dimension, stride = 3;  // LAPACK's columns are rows here
+  PetscBLASInt info;
+  LAPACKpotrf_("L", &n, M[0].data(), &stride, &info);
+  for (int p = 0; p < dimension; ++p)
+    if (info != 0 || !(M[p][p] * M[p][p] > 1e-9)) return false;
+  LAPACKpotrs_("L", &n, &n, M[0].data(), &stride, C[0].data(), &stride, &info);
+  *quotient = C;
   return true;
 }
 

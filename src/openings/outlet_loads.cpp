@@ -1,5 +1,6 @@
 #include "openings/outlet_loads.hpp"
 
+#include <petscblaslapack.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -61,27 +62,20 @@ void OutletLoads::begin(const BoxSides &sides, double middle, double dt, const s
   }
 }
 
-// Gaussian elimination; the matrix has a dominant diagonal, as a pressure pushes back most where it is.
+// The matrix has a dominant diagonal, as a pressure pushes back most where it is: it is never singular.
 std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &flow) {
   const std::size_t count = loads_.size();
-  std::vector<std::vector<double>> a(count, std::vector<double>(count + 1));
+  std::vector<double> a(count * count), changes(count);  // columns
   for (std::size_t s = 0; s < count; ++s) {
     const Load &load = loads_[s];
-    for (std::size_t t = 0; t < count; ++t) a[s][t] = (s == t ? 1 : 0) - load.share * dt * loads_[t].flow[s];
-    a[s][count] = load.base + load.share * flow[s] - load.pressure;
+    for (std::size_t t = 0; t < count; ++t) a[s + t * count] = (s == t ? 1 : 0) - load.share * dt * loads_[t].flow[s];
+    changes[s] = load.base + load.share * flow[s] - load.pressure;
   }
-  for (std::size_t p = 0; p < count; ++p)
-    for (std::size_t s = p + 1; s < count; ++s) {
-      const double factor = a[s][p] / a[p][p];
-      for (std::size_t t = p; t <= count; ++t) a[s][t] -= factor * a[p][t];
-    }
-  std::vector<double> changes(count);
-  for (std::size_t s = count; s-- > 0;) {
-    double sum = a[s][count];
-    for (std::size_t t = s + 1; t < count; ++t) sum -= a[s][t] * changes[t];
-    changes[s] = sum / a[s][s];
-    loads_[s].pressure += changes[s];
-  }
+  const PetscBLASInt n = static_cast<PetscBLASInt>(count), one = 1;
+  std::vector<PetscBLASInt> pivots(count);
+  PetscBLASInt info;
+  LAPACKgesv_(&n, &one, a.data(), &n, pivots.data(), changes.data(), &n, &info);
+  for (std::size_t s = 0; s < count; ++s) loads_[s].pressure += changes[s];
   for (std::size_t s = 0; s < count; ++s) {
     double end = flow[s];
     for (std::size_t t = 0; t < count; ++t) end += dt * changes[t] * loads_[t].flow[s];
