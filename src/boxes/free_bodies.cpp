@@ -26,9 +26,9 @@ bool has_markers(const Material &material) {
   return material.is_membrane() && material.membrane.scheme == kernels::MembraneScheme::markers;
 }
 
-// Copies what two boxes share in memory, points on high sides of the domain and `layers` of the first one's ghosts
-// included.
-void copy_shared(const Box &box, const Field &from, int layers, Field *to) {
+}  // namespace
+
+void FreeBodies::copy_shared(const Box &box, const Field &from, int layers, Field *to) {
   const Layout &a = from.layout(), &b = to->layout();
   Int3 begin, end, shift;
   for (int d = 0; d < 3; ++d) {
@@ -44,8 +44,7 @@ void copy_shared(const Box &box, const Field &from, int layers, Field *to) {
                     (*to)[f].row(j + shift[1], k + shift[2]) + begin[0] + shift[0]);
 }
 
-// No body yet, with the material and the rule of a phase.
-Phase empty_like(const Phase &phase, const Box &box) {
+Phase FreeBodies::empty_like(const Phase &phase, const Box &box) {
   Phase fresh;
   fresh.species = phase.species;
   fresh.material = phase.material;
@@ -59,8 +58,6 @@ Phase empty_like(const Phase &phase, const Box &box) {
   fresh.tensor.rule = phase.tensor.rule;
   return fresh;
 }
-
-}  // namespace
 
 FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides)
     : domain_(&domain),

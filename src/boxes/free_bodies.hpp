@@ -128,6 +128,11 @@ private:
   static int stage_fields(const Phase &phase);
   template <class PhaseOrConst, class Visit>
   static void for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit);
+  /// Copies what two boxes share in memory, points on high sides of the domain and `layers` of the first one's ghosts
+  /// included.
+  static void copy_shared(const Box &box, const Field &from, int layers, Field *to);
+  /// No body yet, with the material and the rule of a phase.
+  static Phase empty_like(const Phase &phase, const Box &box);
   PetscErrorCode extend(Body *body);
   bool is_near_an_end(const Body &body) const;
   PetscErrorCode fit(Body *body, int layers) const;
@@ -159,8 +164,10 @@ private:
   Real3 mean_force_{};
   std::vector<Tools> tools_;  ///< of all threads
   std::vector<Body> bodies_;  ///< by their numbers
-  /// What look() has made of a body.
+  /// What look() has made of a body. Where that is measured from its cells alone, the box has nothing but these and
+  /// what B is extended to.
   struct Seen {
+    Box box;
     Phase moved;
     Field velocity;
   };

@@ -1,31 +1,58 @@
 // FreeBodies: what others see of the bodies.
 #include "boxes/free_bodies.hpp"
+
+#include "field/sides.hpp"
 #include "membranes/stretched_body.hpp"
+#include "solids/transport.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace eulastic {
 
+// A copy of the body is moved in scratch memory; kept of it is what others see.
 PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {
   PetscFunctionBeginUser;
   const Body &body = bodies_[b];
+  const Material &material = body.phase.material;
+  const int dimension = body.box.dimension(), tensors = body.phase.tensor.field.count();
+  const int working = material.is_membrane() ? MembraneMechanics::work_fields : stage_fields(body.phase);
+  Field memory = scratch(body.box, dimension + 1 + tensors + working), flow = memory.part(0, dimension),
+        work = memory.part(dimension + 1 + tensors, working);
   Seen &own = seen_[b];
-  own.velocity = Field(body.box, body.box.dimension());
-  bring_velocity(b, step, velocity, &own.velocity);
-  seen->velocity = &own.velocity;
-  if (step.dt == 0) PetscFunctionReturn(0);
-  own.moved.copy_from(body.phase);
-  const bool is_membrane = body.phase.material.is_membrane();
-  Field work = scratch(body.box, is_membrane ? MembraneMechanics::work_fields : stage_fields(body.phase));
-  PetscCall(move(body.box, step, own.velocity, work, &own.moved));
-  if (is_membrane) {
+  bring_velocity(b, step, velocity, &flow);
+  if (step.dt == 0) {
+    own.velocity.copy_from(flow);
+    seen->velocity = &own.velocity;
+    PetscFunctionReturn(0);
+  }
+  Phase moved;
+  moved.fraction = memory.part(dimension, 1);
+  if (material.carries_tensor()) moved.tensor.field = memory.part(dimension + 1, tensors);
+  moved.copy_from(body.phase);
+  PetscCall(move(body.box, step, flow, work, &moved));
+  if (material.is_membrane()) {
     MembraneMechanics membrane({&body.box, sides_, nullptr});
     long unresolved = 0;
-    PetscCall(membrane.find(own.moved, work));
-    PetscCall(membrane.move(step.dt, own.velocity, {}, &own.moved, &unresolved));
+    PetscCall(membrane.find(moved, work));
+    PetscCall(membrane.move(step.dt, flow, {}, &moved, &unresolved));
   }
+  const bool has_surface = material.is_membrane() || material.surface_tension > 0;
+  constexpr int around = ExteriorLayers::layers;
+  const Box block = has_surface ? body.box : moved.block(body.box, around, around + 1);
+  const int ghosts = has_surface ? domain_->spec().ghosts : 1;
+  own.box = Box(block.domain_shape(), block.layout().begin, block.cells(), ghosts);
+  own.moved = empty_like(moved, own.box);
+  copy_shared(body.box, moved.fraction, 0, &own.moved.fraction);
+  if (material.carries_tensor()) copy_shared(body.box, moved.tensor.field, ghosts, &own.moved.tensor.field);
+  own.moved.rows.find_in_box(own.box, std::as_const(own.moved).fraction[0], rows_reach(material, ghosts));
+  fill_wall_ghosts_even(own.box, at_centre, own.moved.fraction[0], ghosts, &own.moved.rows);
+  if (has_surface) PetscCall(find_solid(own.box, own.moved));
+  own.velocity = Field(own.box, dimension);
+  copy_shared(body.box, flow, ghosts, &own.velocity);
+  seen->box = &own.box;
   seen->phase = &own.moved;
+  seen->velocity = &own.velocity;
   PetscFunctionReturn(0);
 }
 

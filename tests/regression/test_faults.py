@@ -21,8 +21,8 @@ VERBS = re.findall(r'"(Eul[A-Z]\w+)"', (ROOT / "src/base/events.cpp").read_text(
 # What a verb needs besides a fluid with bodies and the fast method.
 NEEDS = {"EulSMAC": ["-pressure_solver", "smac"], "EulTension": ["-cell_surface_tension", "0.5"],
          "EulMembrane": ["-cell_law", "membrane", "-cell_surface_shear_modulus", "1"],
-         "EulRigid": ["-cell_law", "rigid"]}
-WITHOUT = {"EulMembrane": "-cell_shear_modulus", "EulRigid": "-cell_shear_modulus"}
+         "EulRigid": ["-cell_law", "rigid"], "EulBoxes": "-threads 2 -cell_placement lattice -cell_count 2,2,1".split()}
+WITHOUT = {"EulMembrane": "-cell_shear_modulus", "EulRigid": "-cell_shear_modulus", "EulBoxes": "-cell_centre"}
 SECONDS = 300  # far more than it takes on a busy machine, far less than for ever
 
 
