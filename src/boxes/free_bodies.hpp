@@ -5,8 +5,8 @@
 
 #include "base/events.hpp"
 #include "base/petsc.hpp"
+#include "boxes/box_exchange.hpp"
 #include "drops/surface_tension.hpp"
-#include "field/box_exchange.hpp"
 #include "field/net_force.hpp"
 #include "field/phase.hpp"
 #include "membranes/membrane.hpp"
@@ -76,7 +76,7 @@ public:
   /// `unresolved`: of all ranks, MembraneMechanics::move(). Collective.
   PetscErrorCode advance(const Step &step, const Field &velocity, long *unresolved);
   /// Adds so many times the force per mass to fields of the grid. Collective.
-  PetscErrorCode add_forces(const std::vector<BoxExchange::Target> &targets);
+  PetscErrorCode add_forces(const std::vector<ForceTarget> &targets);
   /// The mean over the domain of the force per mass, of bending and surface tension where it would drive all of the
   /// fluid: that of the discretisation alone.
   const Real3 &mean_force() const noexcept { return mean_force_; }

@@ -16,7 +16,7 @@ bool SurfaceTension::exists(const std::vector<Phase> &phases) {
 }
 
 PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                                         const ForceSlope &slope) {
+                                         const ForceTarget &slope) {
   PetscFunctionBeginUser;
   NetForce net(*domain_, balanced && drifts_);
   WorkSpace::Lease lease;

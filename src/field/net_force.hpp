@@ -10,9 +10,9 @@
 
 namespace eulastic {
 
-/// Where a force per mass goes beside the rate of momentum, to say how it changes in time.
-struct ForceSlope {
-  Field *field = nullptr;  ///< factor times that force is added; null: nowhere
+/// A velocity field to which a force is added `factor` times: a rate of momentum, or its change in time. Null: nowhere.
+struct ForceTarget {
+  Field *field = nullptr;
   double factor = 0;
 };
 

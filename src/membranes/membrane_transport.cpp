@@ -140,7 +140,7 @@ PetscErrorCode MembraneTransport::end_force(NetForce *net) {
 }
 
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                                            const ForceSlope &slope) {
+                                            const ForceTarget &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
     NetForce net(*domain_, drives_all(phases));

@@ -1,5 +1,5 @@
 // BoxExchange: boxes anywhere, across periodic sides and cut at walls, owned by any rank.
-#include "field/box_exchange.hpp"
+#include "boxes/box_exchange.hpp"
 #include "base/rank_zero.hpp"
 #include "support/all_segments.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "base/petsc.hpp"
 #include "field/field.hpp"
+#include "field/net_force.hpp"
 #include "grid/active_segments.hpp"
 #include "grid/domain.hpp"
 
@@ -41,11 +42,6 @@ public:
     const SegmentValues *values = nullptr;
     const ActiveSegments *segments = nullptr;
   };
-  /// A field of the grid that it is added to, and how many times.
-  struct Target {
-    Field *field;
-    double factor;
-  };
 
   /// For fields of `components` components.
   BoxExchange(const Domain &domain, int components) : domain_(&domain), components_(components) {}
@@ -60,7 +56,7 @@ public:
   void copy_to_box(std::size_t b, const Field &grid, Field &to) const;
   /// Adds values of every box to the owned values of fields of the grid. Where boxes overlap their values are added in
   /// the order of the numbers, so that the sum does not depend on who owns the boxes. Collective.
-  PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<Target> &targets);
+  PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<ForceTarget> &targets);
   /// Calls visit(number, offset, values) for all points of this rank's grid that lie in boxes, box after box in the
   /// order of the numbers: `offset` in a component of the grid's fields, `values`: the components of the box's field
   /// there. One field of every box of this rank. Collective.
