@@ -10,7 +10,7 @@ namespace eulastic {
 
 /// Work of a step in a cell of the grid, whatever it holds: the unit of all loads.
 inline constexpr double flow_work = 1;
-/// What a phase of this material adds in a cell of the rows that it occupies, on the grid or in the box of a body. From
+/// What a phase of this material adds in a cell of the rows that it occupies on the grid, or of the box of a body. From
 /// times of steps of the fast method with and without bodies (docs/scaling.md, "Work of ranks"); rigid bodies are not
 /// transported. Whole numbers, so that sums of them have no rounding.
 double phase_work(const Material &material, bool in_box);

@@ -25,92 +25,21 @@ struct Work {
   double cost;
 };
 
-using Span = PlacedBody::Range;
-
-void join(const Span &other, Span *span) {
-  if (other.begin >= other.end) return;
-  if (span->begin >= span->end) *span = {other.begin, other.end, 0};
-  span->begin = std::min(span->begin, other.begin);
-  span->end = std::max(span->end, other.end);
+// The block of cells that ends `margin` cells around a body, or at sides of the domain.
+Box block_around(const DomainShape &domain, const PlacedBody &body, int margin) {
+  Int3 begin{}, cells{1, 1, 1};
+  for (int d = 0; d < domain.dimension(); ++d) {
+    const PlacedBody::Range extent = body.extent(d);  // with a cell at each end that the body does not reach
+    begin[d] = extent.begin + 1 - margin;
+    int end = extent.end - 1 + margin;
+    if (domain.is_wall(d)) {
+      begin[d] = std::max(begin[d], 0);
+      end = std::min(end, domain.cells[d]);
+    }
+    cells[d] = end - begin[d];
+  }
+  return Box(domain, begin, cells, 0);
 }
-
-// Rows of cells that a body and what it needs around it occupy, as FreeBodies and OccupiedRows find them from phi.
-class BodyRows {
-public:
-  /// A box that ends `margin` cells around the body, or at sides of the domain; rows that hold all within `reach` cells
-  /// of it.
-  BodyRows(const DomainShape &grid, const PlacedBody &body, int margin, int reach) {
-    for (int d = 0; d < 3; ++d) {
-      const bool wall = grid.boundary[d] == Boundary::wall;
-      flat_[d] = grid.cells[d] == 1;
-      touched_[d] = body.extent(d);
-      if (wall || flat_[d]) {
-        touched_[d].begin = std::max(touched_[d].begin, 0);
-        touched_[d].end = std::min(touched_[d].end, grid.cells[d]);
-      }
-      held_[d] = {touched_[d].end, touched_[d].begin, 0};
-    }
-    find_spans(body);
-    for (int d = 0; d < 3; ++d) {
-      box_[d] = held_[d];
-      if (flat_[d]) continue;
-      box_[d] = {held_[d].begin - margin, held_[d].end + margin, 0};
-      if (grid.boundary[d] == Boundary::wall)
-        box_[d] = {std::max(box_[d].begin, 0), std::min(box_[d].end, grid.cells[d]), 0};
-    }
-    count(reach);
-  }
-
-  /// Cells of these rows.
-  double cells() const { return cells_; }
-  /// The cell in the middle of the box along d, not wrapped.
-  int middle(int d) const { return box_[d].begin + (box_[d].end - box_[d].begin) / 2; }
-
-private:
-  int size(int d) const { return std::max(0, touched_[d].end - touched_[d].begin); }
-
-  // What is solid of every row that the body may touch.
-  void find_spans(const PlacedBody &body) {
-    spans_.assign(std::size_t(size(1)) * size(2), {0, 0, 0});
-    for (int k = touched_[2].begin; k < touched_[2].end; ++k)
-      for (int j = touched_[1].begin; j < touched_[1].end; ++j) {
-        const auto holds = [&](int i) { return !body.is_clear_of({i, j, k}) && body.fraction({i, j, k}) > 0; };
-        int first = touched_[0].begin, end = touched_[0].end;
-        while (first < end && !holds(first)) ++first;
-        while (first < end && !holds(end - 1)) --end;
-        if (first >= end) continue;
-        spans_[(j - touched_[1].begin) + std::size_t(size(1)) * (k - touched_[2].begin)] = {first, end, 0};
-        const Span found[3] = {{first, end, 0}, {j, j + 1, 0}, {k, k + 1, 0}};
-        for (int d = 0; d < 3; ++d) join(found[d], &held_[d]);
-      }
-  }
-
-  // The least span that has all rows within reach, first along y, then along z.
-  void count(int reach) {
-    const int rows = size(1), planes = size(2), wide = box_[1].end - box_[1].begin;
-    std::vector<Span> along_y(std::size_t(std::max(0, wide)) * planes, {0, 0, 0});
-    for (int k = 0; k < planes; ++k)
-      for (int j = 0; j < rows; ++j)
-        for (int y = -reach; y <= reach; ++y) {
-          const int to = j + touched_[1].begin + (flat_[1] ? 0 : y) - box_[1].begin;
-          if (to >= 0 && to < wide) join(spans_[j + std::size_t(rows) * k], &along_y[to + std::size_t(wide) * k]);
-        }
-    for (int z = box_[2].begin; z < box_[2].end; ++z)
-      for (int y = 0; y < wide; ++y) {
-        Span all{0, 0, 0};
-        const int around = flat_[2] ? 0 : reach;
-        for (int k = std::max(z - around, touched_[2].begin); k <= std::min(z + around, touched_[2].end - 1); ++k)
-          join(along_y[y + std::size_t(wide) * (k - touched_[2].begin)], &all);
-        if (all.begin < all.end)
-          cells_ += std::min(all.end + reach, box_[0].end) - std::max(all.begin - reach, box_[0].begin);
-      }
-  }
-
-  std::array<bool, 3> flat_{};
-  std::array<Span, 3> touched_{}, held_{}, box_{};
-  std::vector<Span> spans_;  ///< of touched rows, y first
-  double cells_ = 0;
-};
 
 class Estimate {
 public:
@@ -158,41 +87,24 @@ public:
   }
 
 private:
-  static constexpr double examined = 1e6;  // cells of boxes; further bodies are as large as the mean
-  static constexpr double samples = 1e6;   // points that are looked at for walls
+  static constexpr double samples = 1e6;  // points that are looked at for walls
 
   void add_bodies(std::size_t s, const Surface &surface) {
     const SpeciesSpec &spec = config_.species[s];
     const bool in_box = config_.lies_in_boxes(s);
-    const int reach = in_box ? FreeBodies::rows_reach(spec.material(), config_.grid.ghosts)
-                             : config_.grid.ghosts + OccupiedRows::beyond_ghosts;
-    const int margin = in_box ? FreeBodies::margin(spec.material()) : reach;
-    const double per_cell = phase_work(spec.material(), in_box);
-    double looked_at = 0, sum = 0, count = 0;
+    const int margin = in_box ? FreeBodies::margin(spec.material()) : config_.grid.ghosts + OccupiedRows::beyond_ghosts;
     for (const NumberedPlace &place : config_.places[s].known) {
-      Int3 home{};
-      double cells = count > 0 ? std::round(sum / count) : 0;
-      for (int d = 0; d < domain_.dimension(); ++d)
-        home[d] = static_cast<int>(std::floor(place.centre[d] / domain_.spacing()[d]));
-      if (looked_at <= examined) {
-        const PlacedBody body(surface, config_.grid, place);
-        const BodyRows rows(config_.grid, body, margin, reach);
-        cells = rows.cells();
-        double box = 1;
-        for (int d = 0; d < domain_.dimension(); ++d) {
-          home[d] = rows.middle(d);
-          box *= body.extent(d).end - body.extent(d).begin;
-        }
-        looked_at += box, sum += cells, count += 1;
-      }
+      const Box block = block_around(domain_.domain_shape(), PlacedBody(surface, config_.grid, place), margin);
+      const double cost = phase_work(spec.material(), in_box) * block.cell_count();
       const int number = first_[s] + place.index;
       if (in_box) {
-        for (int d = 0; d < 3; ++d) home[d] = domain_.image(d, home[d]);
-        list_.push_back({domain_.owner(home[0], home[1], home[2]), number, true, per_cell * cells});
+        Int3 home{};
+        for (int d = 0; d < 3; ++d) home[d] = domain_.image(d, block.layout().begin[d] + block.cells()[d] / 2);
+        list_.push_back({domain_.owner(home[0], home[1], home[2]), number, true, cost});
         continue;
       }
       const std::vector<int> near = ranks_near(domain_, surface, place);
-      for (const int rank : near) list_.push_back({rank, number, false, per_cell * cells / double(near.size())});
+      for (const int rank : near) list_.push_back({rank, number, false, cost / double(near.size())});
     }
   }
 

@@ -41,7 +41,7 @@ PetscErrorCode Solver::share_bodies() {
     const Layout &layout = body.box->layout();
     Int3 middle{};
     for (int d = 0; d < 3; ++d) middle[d] = domain_->image(d, layout.begin[d] + layout.cells[d] / 2);
-    const double cost = phase_work(body.phase->material, true) * double(body.phase->rows.cells());
+    const double cost = phase_work(body.phase->material, true) * body.box->cell_count();
     bodies.push_back({body.number, domain_->owner(middle[0], middle[1], middle[2]), cost});
   }
   PetscCall(share_out(domain_->comm(), load, bodies, &ranks));

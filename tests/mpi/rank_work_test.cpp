@@ -32,7 +32,7 @@ RankWork work_of(Solver &solver) {
     if (!phase.boxed) work.sum += phase_work(phase.material, false) * double(phase.rows.cells());
   EXPECT_EQ(solver.bodies_now(&bodies), 0);
   for (const BodyInBox &body : bodies) {
-    const double own = phase_work(body.phase->material, true) * double(body.phase->rows.cells());
+    const double own = phase_work(body.phase->material, true) * body.box->cell_count();
     work.sum += own;
     work.largest = std::max(work.largest, own);
   }
