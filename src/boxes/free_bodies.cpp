@@ -59,14 +59,15 @@ Phase FreeBodies::empty_like(const Phase &phase, const Box &box) {
   return fresh;
 }
 
-FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides)
+FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides, bool extends)
     : domain_(&domain),
       fluid_(fluid),
       sides_(&sides),
       exchange_(domain, domain.dimension()),
       fractions_(domain, 1),
+      extends_(extends),
       net_force_(domain, false),
-      tools_(threads()) {}
+      tools_(threads(), Tools{{}, SolidTransport(extends), {}}) {}
 
 void FreeBodies::set_surroundings(bool drifts, const std::vector<const Phase *> &rigid) {
   drifts_ = drifts;
@@ -241,6 +242,7 @@ PetscErrorCode FreeBodies::extend(Body *body) {
     PetscFunctionReturn(0);
   }
   if (!phase.material.elastic()) PetscFunctionReturn(0);
+  if (!extends_) PetscCall(reset_exterior(body->box, phase.rows, phase));
   PetscCall(tools().solids.find_layers(body->box, phase));
   PetscCall(tools().solids.extend(place, phase, phase.tensor.field, &phase.rows));
   PetscCall(place.update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));

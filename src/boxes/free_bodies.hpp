@@ -35,8 +35,8 @@ public:
     }
   };
 
-  /// `sides` must outlive this.
-  FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides);
+  /// `sides` must outlive this. `extends`: B is extended outside bodies; else it is I there.
+  FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides, bool extends = true);
 
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
   /// block that holds the body.
@@ -119,7 +119,7 @@ private:
   /// What a thread needs to work on a body.
   struct Tools {
     InterfaceTransport interface;
-    SolidTransport solids{true};
+    SolidTransport solids;
     std::vector<double> memory;
   };
   /// Cells between the body and the ends of its box that a step needs: the body moves by less than one, and beyond that
@@ -158,6 +158,7 @@ private:
   const BoxSides *sides_;
   BoxExchange exchange_, fractions_;  ///< of velocities and forces, of single fields
   bool fractions_are_connected_ = false;
+  bool extends_;
   bool drifts_ = false;
   Field walls_;  ///< of the grid, solid fraction of rigid bodies that stay; none: null
   NetForce net_force_;

@@ -123,10 +123,16 @@ PetscErrorCode FreeBodies::show_fractions(const std::vector<BodyInBox> &seen, co
   std::vector<SegmentValues> values(seen.size());
   for (std::size_t b = 0; b < seen.size(); ++b) {
     constexpr double least = 1e-300;
-    const Phase &phase = *seen[b].phase;
     if (phases.count(seen[b].species) == 0) continue;
-    filled[b].build(*seen[b].box, phase.fraction[0], phase.rows, least, 0, 0);
-    values[b].take(phase.fraction, filled[b]);
+    // In the boxes that the exchange knows.
+    const Box &box = bodies_[b].box;
+    Field phi = scratch(box, 1);
+    phi.fill(0, 0);
+    copy_shared(*seen[b].box, seen[b].phase->fraction, 0, &phi);
+    OccupiedRows rows;
+    rows.find_in_box(box, std::as_const(phi)[0], 1);
+    filled[b].build(box, std::as_const(phi)[0], rows, least, 0, 0);
+    values[b].take(phi, filled[b]);
   }
   for (const auto &[species, phase] : phases) {
     std::vector<BoxExchange::Contribution> of_species;

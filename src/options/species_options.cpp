@@ -138,8 +138,8 @@ void add_contact(Rows &rows, SpeciesSpec &spec) {
                          "merge as drops do");
   row.accepted = "one of separate, merge";
   row.default_note =
-      "separate; merge where bodies have no boxes: with -method classic, -body_series false, of cylinders, of bodies "
-      "attached to walls";
+      "separate; merge where bodies have no boxes: with -interface_scheme weno5, cylinders, bodies attached to walls, "
+      "-body_series false";
   row.read = [&spec](const std::string &value) {
     int index = 0;
     std::string wrong = read_choice(value, contact_names, &index);

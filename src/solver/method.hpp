@@ -30,9 +30,7 @@ struct Method {
   /// v* = v + dt dv/dt, without more stages.
   bool explicit_predictor() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
   /// Whether free bodies may lie in boxes of their own (boxes/free_bodies.hpp).
-  bool boxes_bodies() const {
-    return staggered() && interface == InterfaceScheme::plic && exterior == SolidExterior::extrapolate;
-  }
+  bool boxes_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
   /// One step of (11)-(13) and nothing else.
   bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };

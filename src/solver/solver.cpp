@@ -36,7 +36,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   solids_ = SolidTransport(spec.exterior == SolidExterior::extrapolate);
   const int dim = domain.dimension();
   exchange_ = std::make_unique<GhostExchange>(domain);
-  boxed_ = std::make_unique<FreeBodies>(domain, spec_.fluid, spec_.sides);
+  boxed_ = std::make_unique<FreeBodies>(domain, spec_.fluid, spec_.sides, spec.exterior == SolidExterior::extrapolate);
   work_ = std::make_unique<WorkSpace>(domain);
   if (spec.pressure == PressureKind::smac) {
     PetscCall(SmacSolver::create(domain, *exchange_, &pressure_solver_));

@@ -88,6 +88,7 @@ class Boxes(SceneCase):
         for name, kind in (("membranes", MEMBRANE), ("solids", ["-cell_viscosity", ".5"]),
                            ("drops", "-cell_law neo_hookean -cell_shear_modulus 0 -cell_surface_tension .2 -cell_viscosity .5".split()),
                            ("drawn", "-cell_law neo_hookean -cell_shear_modulus .5 -cell_surface_tension .2".split()),
+                           ("reset", ["-solid_exterior", "identity"]),
                            ("stretched", [*MEMBRANE, "-cell_stretch_force", ".05"])):
             boxes, grid = (self.same_on_ranks([(.5, .6, .6), (1.5, .6, .6)], *scene, *STIRRED, *kind, *contact, ranks=(1,), restart=False,
                                               prefix=f"{name}_{where}_")
