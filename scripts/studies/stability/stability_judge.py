@@ -13,7 +13,7 @@ DETERMINANT = (0.5, 4.0)  # of B at the centres in free bodies, as long as no st
 STRETCH = 3.0
 MEMBRANES = ("membrane", "red_cell")  # B_s has the determinant 0
 # WENO5 bounds neither phi nor the volume: of classic this is reported, not judged.
-# Bodies of one species that touch have phases of their own; a snapshot holds the sum of their phi. Each is between 0 and 1
+# Bodies of one species lie in boxes of their own; a snapshot holds the sum of their phi. Each is between 0 and 1
 # (planes), the sum need not be: where it is not, they overlap.
 REPORTED = {"fast": ("overlap",), "classic": ("volume", "phi", "det B", "overlap")}
 
