@@ -129,11 +129,12 @@ PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const P
   PetscFunctionReturn(0);
 }
 
-Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int ghosts) {
+Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int around, int ghosts) {
   const PlacedBody body(surface, domain, place);
   Int3 begin{}, cells{1, 1, 1};
   for (int d = 0; d < domain.dimension(); ++d) {
     PlacedBody::Range extent = body.extent(d);
+    extent = {extent.begin - around, extent.end + around, 0};
     if (domain.is_wall(d)) extent = {std::max(extent.begin, 0), std::min(extent.end, domain.cells[d]), 0};
     begin[d] = extent.begin;
     cells[d] = extent.end - extent.begin;

@@ -17,8 +17,9 @@ namespace eulastic {
 PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase);
 
-/// The box of a placed body, cut at sides of the domain: cells that it may touch, not wrapped around periodic sides.
-Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int ghosts);
+/// The box of a placed body, cut at sides of the domain: cells that it may touch, the last of which it does not reach,
+/// and `around` more at each end, not wrapped around periodic sides.
+Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int around, int ghosts);
 /// Allocates a phase on the box of a body, with that body alone, as fill_phase() does; no label.
 Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place);
 

@@ -186,7 +186,7 @@ void BoxExchange::copy_to_box(std::size_t b, const Field &grid, Field &to) const
 }
 
 PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
-                                const std::vector<ForceTarget> &targets) {
+                                const std::vector<WeightedTarget> &targets) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
   const std::ptrdiff_t size = domain_->layout().size;
@@ -205,12 +205,12 @@ PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].own)
         for_pieces(run, contributions[b], f, [&](int first, const double *values, int count) {
-          for (const ForceTarget &target : targets)
+          for (const WeightedTarget &target : targets)
             add_values(values, count, target.factor, target.field->data() + f * size + run.elsewhere + (first - run.i));
         });
   };
   in_order(add_own, [&](int, const Parcel &parcel) {
-    for (const ForceTarget &target : targets)
+    for (const WeightedTarget &target : targets)
       for (std::size_t n = 0; n < parcel.slots.size(); ++n)
         add_values(&received_[parcel.slots[n]], 1, target.factor, target.field->data() + parcel.offsets[n]);
   });

@@ -56,7 +56,7 @@ public:
   void copy_to_box(std::size_t b, const Field &grid, Field &to) const;
   /// Adds values of every box to the owned values of fields of the grid. Where boxes overlap their values are added in
   /// the order of the numbers, so that the sum does not depend on who owns the boxes. Collective.
-  PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<ForceTarget> &targets);
+  PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<WeightedTarget> &targets);
   /// Calls visit(number, offset, values) for all points of this rank's grid that lie in boxes, box after box in the
   /// order of the numbers: `offset` in a component of the grid's fields, `values`: the components of the box's field
   /// there. One field of every box of this rank. Collective.

@@ -558,7 +558,7 @@ PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, l
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::add_forces(const std::vector<ForceTarget> &targets) {
+PetscErrorCode FreeBodies::add_forces(const std::vector<WeightedTarget> &targets) {
   PetscFunctionBeginUser;
   std::vector<BoxExchange::Contribution> forces;
   for (const Body &body : bodies_) forces.push_back({&body.force, &body.forced()});

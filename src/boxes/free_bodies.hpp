@@ -76,7 +76,7 @@ public:
   /// `unresolved`: of all ranks, MembraneMechanics::move(). Collective.
   PetscErrorCode advance(const Step &step, const Field &velocity, long *unresolved);
   /// Adds so many times the force per mass to fields of the grid. Collective.
-  PetscErrorCode add_forces(const std::vector<ForceTarget> &targets);
+  PetscErrorCode add_forces(const std::vector<WeightedTarget> &targets);
   /// The mean over the domain of the force per mass, of bending and surface tension where it would drive all of the
   /// fluid: that of the discretisation alone.
   const Real3 &mean_force() const noexcept { return mean_force_; }

@@ -3,32 +3,34 @@
 
 #include "field/sides.hpp"
 #include "membranes/stretched_body.hpp"
-#include "solids/transport.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace eulastic {
 
-// A copy of the body is moved in scratch memory; kept of it is what others see.
+// What has a surface is measured in the box of the body. Of other bodies a copy is moved in scratch memory, and its
+// cells are kept.
 PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {
   PetscFunctionBeginUser;
   const Body &body = bodies_[b];
   const Material &material = body.phase.material;
   const int dimension = body.box.dimension(), tensors = body.phase.tensor.field.count();
-  const int working = material.is_membrane() ? MembraneMechanics::work_fields : stage_fields(body.phase);
-  Field memory = scratch(body.box, dimension + 1 + tensors + working), flow = memory.part(0, dimension),
-        work = memory.part(dimension + 1 + tensors, working);
+  const bool has_surface = material.is_membrane() || material.surface_tension > 0;
   Seen &own = seen_[b];
-  bring_velocity(b, step, velocity, &flow);
   if (step.dt == 0) {
-    own.velocity.copy_from(flow);
+    own.velocity = Field(body.box, dimension);
+    bring_velocity(b, step, velocity, &own.velocity);
     seen->velocity = &own.velocity;
     PetscFunctionReturn(0);
   }
+  const int working = material.is_membrane() ? MembraneMechanics::work_fields : stage_fields(body.phase);
+  Field memory = scratch(body.box, dimension + 1 + tensors + working), flow = memory.part(0, dimension),
+        work = memory.part(dimension + 1 + tensors, working);
+  bring_velocity(b, step, velocity, &flow);
   Phase moved;
-  moved.fraction = memory.part(dimension, 1);
-  if (material.carries_tensor()) moved.tensor.field = memory.part(dimension + 1, tensors);
+  if (!has_surface) moved.fraction = memory.part(dimension, 1);
+  if (!has_surface && material.carries_tensor()) moved.tensor.field = memory.part(dimension + 1, tensors);
   moved.copy_from(body.phase);
   PetscCall(move(body.box, step, flow, work, &moved));
   if (material.is_membrane()) {
@@ -37,19 +39,22 @@ PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field 
     PetscCall(membrane.find(moved, work));
     PetscCall(membrane.move(step.dt, flow, {}, &moved, &unresolved));
   }
-  const bool has_surface = material.is_membrane() || material.surface_tension > 0;
-  constexpr int around = ExteriorLayers::layers;
-  const Box block = has_surface ? body.box : moved.block(body.box, around, around + 1);
-  const int ghosts = has_surface ? domain_->spec().ghosts : 1;
-  own.box = Box(block.domain_shape(), block.layout().begin, block.cells(), ghosts);
-  own.moved = empty_like(moved, own.box);
-  copy_shared(body.box, moved.fraction, 0, &own.moved.fraction);
-  if (material.carries_tensor()) copy_shared(body.box, moved.tensor.field, ghosts, &own.moved.tensor.field);
-  own.moved.rows.find_in_box(own.box, std::as_const(own.moved).fraction[0], rows_reach(material, ghosts));
-  fill_wall_ghosts_even(own.box, at_centre, own.moved.fraction[0], ghosts, &own.moved.rows);
-  if (has_surface) PetscCall(find_solid(own.box, own.moved));
-  own.velocity = Field(own.box, dimension);
-  copy_shared(body.box, flow, ghosts, &own.velocity);
+  if (has_surface) {
+    own.box = body.box;
+    own.moved = std::move(moved);
+    own.velocity.copy_from(flow);
+  } else {
+    constexpr int around = ExteriorLayers::layers, ghosts = 1;
+    const Box block = moved.block(body.box, around, around + 1);
+    own.box = Box(block.domain_shape(), block.layout().begin, block.cells(), ghosts);
+    own.moved = empty_like(moved, own.box);
+    copy_shared(body.box, moved.fraction, 0, &own.moved.fraction);
+    if (material.carries_tensor()) copy_shared(body.box, moved.tensor.field, ghosts, &own.moved.tensor.field);
+    own.moved.rows.find_in_box(own.box, std::as_const(own.moved).fraction[0], rows_reach(material, ghosts));
+    fill_wall_ghosts_even(own.box, at_centre, own.moved.fraction[0], ghosts, &own.moved.rows);
+    own.velocity = Field(own.box, dimension);
+    copy_shared(body.box, flow, ghosts, &own.velocity);
+  }
   seen->box = &own.box;
   seen->phase = &own.moved;
   seen->velocity = &own.velocity;
@@ -124,15 +129,21 @@ PetscErrorCode FreeBodies::show_fractions(const std::vector<BodyInBox> &seen, co
   for (std::size_t b = 0; b < seen.size(); ++b) {
     constexpr double least = 1e-300;
     if (phases.count(seen[b].species) == 0) continue;
-    // In the boxes that the exchange knows.
-    const Box &box = bodies_[b].box;
+    const Box &box = bodies_[b].box;  // that the exchange knows
+    const auto take = [&](const Field &phi, const OccupiedRows &rows) {
+      filled[b].build(box, phi[0], rows, least, 0, 0);
+      values[b].take(phi, filled[b]);
+    };
+    if (seen[b].phase == &bodies_[b].phase) {
+      take(bodies_[b].phase.fraction, bodies_[b].phase.rows);
+      continue;
+    }
     Field phi = scratch(box, 1);
     phi.fill(0, 0);
     copy_shared(*seen[b].box, seen[b].phase->fraction, 0, &phi);
     OccupiedRows rows;
     rows.find_in_box(box, std::as_const(phi)[0], 1);
-    filled[b].build(box, std::as_const(phi)[0], rows, least, 0, 0);
-    values[b].take(phi, filled[b]);
+    take(phi, rows);
   }
   for (const auto &[species, phase] : phases) {
     std::vector<BoxExchange::Contribution> of_species;

@@ -215,7 +215,7 @@ void CapillaryForce::clear_work() {
   });
 }
 
-void CapillaryForce::add_force(double scale, Field &force, const ForceTarget &slope, NetForce *net) {
+void CapillaryForce::add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net) {
   VerbScope scope(Verb::surface_tension);
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0];

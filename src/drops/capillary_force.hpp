@@ -33,7 +33,7 @@ public:
   const ActiveSegments &faces() const { return band_; }
   /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Adds to `net` what is added to
   /// `force`.
-  void add_force(double scale, Field &force, const ForceTarget &slope, NetForce *net);
+  void add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net);
   /// The power that the flow gives to the surface over the volume of a cell, and the area of the planes that transport
   /// cuts cells with (2-D: the length), of which sigma times is the energy.
   enum Sum { power, area, sums };

@@ -16,7 +16,7 @@ bool SurfaceTension::exists(const std::vector<Phase> &phases) {
 }
 
 PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                                         const ForceTarget &slope) {
+                                         const WeightedTarget &slope) {
   PetscFunctionBeginUser;
   NetForce net(*domain_, balanced && drifts_);
   WorkSpace::Lease lease;

@@ -22,7 +22,7 @@ public:
   /// `balanced`: less the mean over the box of what is added to `force`, in periodic directions where all drifts:
   /// surfaces exert no net force, their discretisation does.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                           const ForceTarget &slope = {});
+                           const WeightedTarget &slope = {});
   /// Adds energy and power.
   PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured);
 

@@ -10,8 +10,9 @@
 
 namespace eulastic {
 
-/// A velocity field to which a force is added `factor` times: a rate of momentum, or its change in time. Null: nowhere.
-struct ForceTarget {
+/// A field to which something is added `factor` times, as a force to the rate of momentum or to its change in time.
+/// Null: nowhere.
+struct WeightedTarget {
   Field *field = nullptr;
   double factor = 0;
 };

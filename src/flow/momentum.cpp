@@ -17,7 +17,7 @@ struct RateTerms {
   const Field &velocity, &pressure;
   const std::vector<Phase> &phases;
   Field *advection;  // null: not kept
-  ForceTarget slope;
+  WeightedTarget slope;
   bool inertia;
   double density, epsilon;
   AdvectionWeights weights;
@@ -169,7 +169,7 @@ void advance_by_rate(const Box &box, const BlockRows &block, double dt, const Fi
 
 PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
                              const Field &pressure, const std::vector<Phase> &phases, Field &advection, Field &rate,
-                             const ForceTarget &slope) {
+                             const WeightedTarget &slope) {
   PetscFunctionBeginUser;
   RateTerms terms = rate_terms(box, fluid, step, velocity, pressure, phases);
   terms.advection = advection ? &advection : nullptr;

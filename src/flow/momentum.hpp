@@ -29,7 +29,7 @@ struct MomentumStep {
 /// one; it may be empty when the weight is 0. Faces of open sides are owned ones.
 PetscErrorCode momentum_rate(const Box &box, const Fluid &fluid, const MomentumStep &step, const Field &velocity,
                              const Field &pressure, const std::vector<Phase> &phases, Field &advection, Field &rate,
-                             const ForceTarget &slope = {});
+                             const WeightedTarget &slope = {});
 
 /// v* = v + dt dv/dt, (7). Faces on walls come out unset: fill the wall ghosts. Rows are wrapped by one around a
 /// periodic x.

@@ -140,7 +140,7 @@ PetscErrorCode MembraneTransport::end_force(NetForce *net) {
 }
 
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                                            const ForceTarget &slope) {
+                                            const WeightedTarget &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
     NetForce net(*domain_, drives_all(phases));

@@ -55,7 +55,7 @@ public:
   /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
   /// divergence of a stress adds up to nothing.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
-                           const ForceTarget &slope = {});
+                           const WeightedTarget &slope = {});
   /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
   PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured,
                          std::vector<SurfaceSample> *samples = nullptr);

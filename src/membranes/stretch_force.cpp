@@ -58,7 +58,7 @@ PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase
 }
 
 PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
-                                  const std::vector<ForceTarget> &targets) const {
+                                  const std::vector<WeightedTarget> &targets) const {
   PetscFunctionBeginUser;
   scratch.fill(0, 0);
   const View force = scratch[0];

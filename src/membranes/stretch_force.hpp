@@ -22,7 +22,7 @@ public:
                       const std::vector<Int3> &references);
   /// Adds the force per volume at owned faces, to each target as many times as it says. `scratch`: a field.
   PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
-                     const std::vector<ForceTarget> &targets) const;
+                     const std::vector<WeightedTarget> &targets) const;
   /// What they do on the flow; one ghost of the velocity. Collective.
   PetscErrorCode power(const std::vector<Phase> &phases, const Field &velocity, double *power) const;
 

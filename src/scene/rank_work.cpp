@@ -1,6 +1,7 @@
 #include "scene/rank_work.hpp"
 
 #include "base/deliver.hpp"
+#include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
 #include "bodies/volume_fraction.hpp"
@@ -24,22 +25,6 @@ struct Work {
   bool in_box;
   double cost;
 };
-
-// The block of cells that ends `margin` cells around a body, or at sides of the domain.
-Box block_around(const DomainShape &domain, const PlacedBody &body, int margin) {
-  Int3 begin{}, cells{1, 1, 1};
-  for (int d = 0; d < domain.dimension(); ++d) {
-    const PlacedBody::Range extent = body.extent(d);  // with a cell at each end that the body does not reach
-    begin[d] = extent.begin + 1 - margin;
-    int end = extent.end - 1 + margin;
-    if (domain.is_wall(d)) {
-      begin[d] = std::max(begin[d], 0);
-      end = std::min(end, domain.cells[d]);
-    }
-    cells[d] = end - begin[d];
-  }
-  return Box(domain, begin, cells, 0);
-}
 
 class Estimate {
 public:
@@ -94,7 +79,7 @@ private:
     const bool in_box = config_.lies_in_boxes(s);
     const int margin = in_box ? FreeBodies::margin(spec.material()) : config_.grid.ghosts + OccupiedRows::beyond_ghosts;
     for (const NumberedPlace &place : config_.places[s].known) {
-      const Box block = block_around(domain_.domain_shape(), PlacedBody(surface, config_.grid, place), margin);
+      const Box block = box_of_body(domain_.domain_shape(), surface, place, margin - 1, 0);
       const double cost = phase_work(spec.material(), in_box) * block.cell_count();
       const int number = first_[s] + place.index;
       if (in_box) {

@@ -45,7 +45,7 @@ PetscErrorCode box_places(const Domain &domain, const SpeciesSpec &species, cons
       cell[d] = std::clamp(at, 0, domain.domain_cells()[d] - 1);
     }
     if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
-    const Box box = box_of_body(domain.domain_shape(), surface, place, domain.spec().ghosts);
+    const Box box = box_of_body(domain.domain_shape(), surface, place, 0, domain.spec().ghosts);
     PetscCall(solver->add_body(numbering.first_label + place.index, numbering.species, box,
                                fill_body(box, species, surface, place)));
   }

@@ -31,7 +31,7 @@ void prefetch_beside(const Phase &phase, const Segment &s) {
 
 template <int Dim, bool WithSlope, class Law, class Viscosity>
 EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &law, const Viscosity &viscosity,
-                               const Rows &rows, Field &force, const ForceTarget &slope) {
+                               const Rows &rows, Field &force, const WeightedTarget &slope) {
   const ConstView phi = phase.fraction[0];
   const Real3 &h = box.spacing();
   const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]};
@@ -65,7 +65,7 @@ EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &la
 
 template <int Dim>
 EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
-                                      const ForceTarget &slope) {
+                                      const WeightedTarget &slope) {
   with_law(phase.material, [&](const auto &law) EULASTIC_BODY {
     with_viscosity(phase.tensor.rule, [&](const auto &viscosity) EULASTIC_BODY {
       if (slope.field)
@@ -77,33 +77,33 @@ EULASTIC_INLINE void add_force_of_law(const Box &box, const Phase &phase, double
 }
 
 EULASTIC_CLONES void add_force_2d(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
-                                  const ForceTarget &slope) {
+                                  const WeightedTarget &slope) {
   add_force_of_law<2>(box, phase, scale, rows, force, slope);
 }
 EULASTIC_CLONES void add_force_3d(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
-                                  const ForceTarget &slope) {
+                                  const WeightedTarget &slope) {
   add_force_of_law<3>(box, phase, scale, rows, force, slope);
 }
 
 void add_on_rows(const Box &box, const Phase &phase, double scale, const Rows &rows, Field &force,
-                 const ForceTarget &slope) {
+                 const WeightedTarget &slope) {
   if (phase.material.elastic() && !phase.tensor.stressed.idle_rows(rows.j_begin, rows.j_end, rows.k))
     (box.dimension() == 2 ? add_force_2d : add_force_3d)(box, phase, scale, rows, force, slope);
 }
 void add_on_rows(const Box &box, const std::vector<Phase> &phases, double scale, const Rows &rows, Field &force,
-                 const ForceTarget &slope) {
+                 const WeightedTarget &slope) {
   for (const Phase &phase : phases) add_on_rows(box, phase, scale, rows, force, slope);
 }
 
 }  // namespace
 
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
-                       Field &force, const ForceTarget &slope) {
+                       Field &force, const WeightedTarget &slope) {
   add_on_rows(box, phases, scale, {0, box.cells()[0], j_begin, j_end, k, 0, box.dimension()}, force, slope);
 }
 
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
-                       Field &force, const ForceTarget &slope) {
+                       Field &force, const WeightedTarget &slope) {
   add_on_rows(box, phases, scale, {faces.i_begin, faces.i_end, faces.j, faces.j + 1, faces.k, a, a + 1}, force, slope);
 }
 

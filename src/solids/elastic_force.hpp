@@ -12,10 +12,10 @@ namespace eulastic {
 /// force += scale div(sigma) on rows j_begin <= j < j_end of plane k, where they feel any; with a factor also to
 /// `slope`. One ghost of phi and B.
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, int j_begin, int j_end, int k,
-                       Field &force, const ForceTarget &slope = {});
+                       Field &force, const WeightedTarget &slope = {});
 /// The same on faces of component a beyond the rows, those of open sides.
 void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double scale, const Segment &faces, int a,
-                       Field &force, const ForceTarget &slope = {});
+                       Field &force, const WeightedTarget &slope = {});
 
 /// force = scale div(sigma), 0 at owned faces that feel none.
 PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, Field &force);

@@ -63,7 +63,7 @@ PetscErrorCode Solver::predict_explicitly(const Fluid &fluid, const MomentumStep
 PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep &step) {
   PetscFunctionBeginUser;
   const double dt = step.dt, nu = spec_.fluid.kinematic_viscosity();
-  ForceTarget slope;
+  WeightedTarget slope;
   if (!now_.phases.empty() && spec_.linear_force()) slope = {&slope_, 1 / (0.5 * (now_.dt + dt))};
   const int dim = domain_->dimension();
   WorkSpace::Lease rate, before;
@@ -72,7 +72,7 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
   PetscCall(momentum_rate(*domain_, fluid, step, now_.velocity, now_.pressure, now_.phases, now_.advection,
                           rate.fields(), slope));
   if (has_boxed()) {
-    std::vector<ForceTarget> targets{{&rate.fields(), 1}};
+    std::vector<WeightedTarget> targets{{&rate.fields(), 1}};
     if (slope.field) targets.push_back({slope.field, slope.factor});
     PetscCall(boxed_->add_forces(targets));
     take_off_mean(*domain_, boxed_->mean_force(), rate.fields());
@@ -84,7 +84,7 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
     PetscCall(surface_tension_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   if (membranes_) PetscCall(membranes_->add_force(now_.phases, 1 / fluid.density, true, rate.fields(), slope));
   add_species_forces(*domain_, now_.phases, step.force_time, 1, rate.fields());
-  std::vector<ForceTarget> pulled{{&rate.fields(), 1 / fluid.density}};
+  std::vector<WeightedTarget> pulled{{&rate.fields(), 1 / fluid.density}};
   if (slope.field) pulled.push_back({slope.field, slope.factor / fluid.density});
   PetscCall(add_stretch_forces(before.part(0, 1), pulled));
   if (rigid_)
@@ -114,7 +114,7 @@ PetscErrorCode Solver::predict_in_stages(const Fluid &fluid, const MomentumStep 
 // Forces that pull the ends of bodies apart.
 
 // On the phases as they are, with labels and references of the last step.
-PetscErrorCode Solver::add_stretch_forces(Field &&scratch, const std::vector<ForceTarget> &targets) {
+PetscErrorCode Solver::add_stretch_forces(Field &&scratch, const std::vector<WeightedTarget> &targets) {
   PetscFunctionBeginUser;
   if (!StretchForces::exist(now_.phases)) PetscFunctionReturn(0);
   BodyOwners owners;

@@ -178,7 +178,7 @@ private:
   PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step);
   PetscErrorCode add_local_viscous_force(double scale, Field &to);
   /// Forces per volume on bodies of the grid, to each target as many times as it says.
-  PetscErrorCode add_stretch_forces(Field &&scratch, const std::vector<ForceTarget> &targets);
+  PetscErrorCode add_stretch_forces(Field &&scratch, const std::vector<WeightedTarget> &targets);
   PetscErrorCode project(double dt);
   /// Those that travel go to where they are at the end of a step of dt to `time`; their surfaces are those of its
   /// middle.

@@ -116,7 +116,6 @@ TEST_F(Threads, ATeamDoesEveryTaskWhole) {
   const double flops = in_team(50, [&](int n) {
     ++done[n];
     members |= 1 << TeamMember::number();
-    const VerbScope ended_by_the_member(Verb::boxes);
     VerbScope(Verb::bodies).flops(n);
     EXPECT_EQ(row_parts(domain), 1);
     in_parallel(3, 3, [&](int) { EXPECT_TRUE(TeamMember::is_here()); });

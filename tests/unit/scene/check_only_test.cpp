@@ -84,6 +84,27 @@ TEST(CheckOnly, FlowThroughOpenSides) {
     EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
 }
 
+TEST(CheckOnly, WarnsOfBodiesThatMergeWhereTheInterfaceIsSharp) {
+  const std::string line =
+      "-time_end 1 -grid_cells 32,32,1 -species cell -cell_shear_modulus 1 -cell_radius .1 -cell_placement lattice ";
+  const auto warnings = [&](const std::string &options) {
+    const ParseResult result = parse_line(line + options);
+    EXPECT_EQ(result.error, "");
+    std::string text;
+    for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
+    return text;
+  };
+  const std::string merging =
+      "bodies of cell merge where they meet: boxes of their own, in which they stay separate, need ";
+  const std::string plain_euler = "-cell_shape sphere -time_integrator euler -cell_count 2,1,1";
+  EXPECT_NE(warnings(plain_euler).find(merging + "-time_integrator staggered"), std::string::npos);
+  EXPECT_NE(warnings("-cell_shape cylinder -cell_count 2,1,1").find(merging + "-cell_shape sphere"), std::string::npos);
+  for (const std::string &fine :
+       {plain_euler + " -cell_contact merge", plain_euler + " -interface_scheme weno5",
+        std::string("-cell_shape sphere -cell_count 2,1,1"), std::string("-cell_shape cylinder -cell_count 1,1,1")})
+    EXPECT_EQ(warnings(fine).find("merge where they meet"), std::string::npos) << fine;
+}
+
 // A tube of diameter 1.6: pi .64 = 2.0106 of 5.76, .3 of it, .3 1.6/1. Two channels of .5 and .2 at 16 cells per
 // length.
 TEST(CheckOnly, LumensOfSides) {
