@@ -39,6 +39,9 @@ struct EvolveRule {
   double viscosity_excess = 0;  ///< mu_s/mu_f - 1, where the edge stress goes with the viscosity; docs/method.md, (29b)
 };
 
+/// Of membranes: nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
+inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
+
 /// use(viscosity) with what the kernels of the elastic stress ask of the viscosities of solid and fluid.
 template <class Use>
 EULASTIC_INLINE auto with_viscosity(const EvolveRule &rule, const Use &use) {

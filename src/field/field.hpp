@@ -72,4 +72,11 @@ private:
   Memory data_;
 };
 
+/// A field to which something is added `factor` times, as a force to the rate of momentum or to its change in time.
+/// Null: nowhere.
+struct WeightedTarget {
+  Field *field = nullptr;
+  double factor = 0;
+};
+
 }  // namespace eulastic

@@ -10,13 +10,6 @@
 
 namespace eulastic {
 
-/// A field to which something is added `factor` times, as a force to the rate of momentum or to its change in time.
-/// Null: nowhere.
-struct WeightedTarget {
-  Field *field = nullptr;
-  double factor = 0;
-};
-
 /// n values to a force, and `factor` times them to its change in time, where there is one.
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 

@@ -11,6 +11,11 @@ void Phase::empty(const Box &box, bool labels) {
   label = labels ? Field::at_rest(box, 1) : Field();
 }
 
+std::size_t Phase::bytes() const {
+  if (boxed) return 0;
+  return fraction.bytes() + label.bytes() + (material.carries_tensor() ? tensor.field.bytes() : 0);
+}
+
 Segment Phase::filled(const Segment &row) const {
   Segment filled = rows.within(row);
   const double *phi = fraction[0].row(row.j, row.k);
@@ -54,6 +59,7 @@ void Phase::copy_from(const Phase &other) {
   species = other.species;
   material = other.material;
   boxed = other.boxed;
+  travels = other.travels;
   fraction.copy_from(other.fraction);
   tensor.field.copy_from(other.tensor.field);
   tensor.centred = other.tensor.centred;

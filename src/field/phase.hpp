@@ -25,11 +25,14 @@ struct Phase {
   std::string species;  ///< name of the species it belongs to
   Material material;
   bool boxed = false;    ///< its bodies lie in boxes of their own
+  bool travels = false;  ///< its bodies are rigid, and go through the grid or turn in it
   Field fraction;        ///< phi, one centred field, 0 ... 1
   OccupiedRows rows;     ///< of phi; once they are known the tensor is I in all others
   CarriedTensor tensor;  ///< B
   Field label;           ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
 
+  /// Of what it has on this rank; nobody writes to the grid for bodies in boxes, nor to B that is not carried.
+  std::size_t bytes() const;
   /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (Field::at_rest).
   void empty(const Box &box, bool labels);
   /// The least block of cells that has all in which phi is not 0; `box`: whole on this rank.

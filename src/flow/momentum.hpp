@@ -4,25 +4,10 @@
 #include "base/petsc.hpp"
 #include "field/fluid.hpp"
 #include "field/phase.hpp"
+#include "parts/flow_part.hpp"
 #include "solids/elastic_force.hpp"
 
 namespace eulastic {
-
-/// WENO5's epsilon for a field of the given scale.
-inline double weno_epsilon(double scale) { return 1e-6 * scale * scale; }
-
-/// How the advection term of this and the last step enter: 1, 0 is Euler, 1 + r/2, -r/2 Adams-Bashforth 2.
-struct AdvectionWeights {
-  double now = 1, before = 0;
-};
-
-/// What the momentum equation needs to know of a step.
-struct MomentumStep {
-  double force_time;  ///< when the body force is taken
-  double dt;
-  double speed_scale;  ///< typical |v|, for WENO5
-  AdvectionWeights weights;
-};
 
 /// dv/dt = -v.grad v + nu lap v - grad p/rho + div(sigma)/rho + f at all owned faces. Needs three ghosts of v, one of
 /// p, phi and B. `advection` holds -v.grad v of the last step (read when its weight is not 0) and gets that of this

@@ -15,9 +15,6 @@
 
 namespace eulastic {
 
-/// Nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
-inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
-
 class MembraneMechanics {
 public:
   /// Ghosts of the velocity that move() reads.

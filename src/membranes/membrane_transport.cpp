@@ -25,7 +25,7 @@ bool MembraneTransport::marks(const std::vector<Phase> &phases) {
 
 PetscErrorCode MembraneTransport::find(const Phase &phase, WorkSpace::Lease *work) {
   PetscFunctionBeginUser;
-  PetscCall(work_->take("membrane", work_fields, work));
+  PetscCall(flow_.work.take("membrane", fields, work));
   PetscCall(membrane_.find(phase, work->fields()));
   PetscFunctionReturn(0);
 }
@@ -35,22 +35,36 @@ PetscErrorCode MembraneTransport::find_walls(const std::vector<const Phase *> &r
   PetscFunctionBeginUser;
   for (const Phase *phase : rigid) fractions.push_back(phase->fraction[0]);
   WorkSpace::Lease scratch;
-  PetscCall(work_->take("walls beside membranes", WallFilm::work_fields, &scratch));
-  film_.find(*domain_, *sides_, fractions, scratch.fields());
+  PetscCall(flow_.work.take("walls beside membranes", WallFilm::work_fields, &scratch));
+  film_.find(flow_.domain, flow_.spec.sides, fractions, scratch.fields());
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::start(Phase *phase) {
+PetscErrorCode MembraneTransport::start() {
+  std::vector<const Phase *> rigid;
   PetscFunctionBeginUser;
+  for (Phase &phase : flow_.now.phases) {
+    if (phase.material.is_rigid() && !phase.travels) rigid.push_back(&phase);
+    if (!is_on_grid(phase)) continue;
+    WorkSpace::Lease work;
+    PetscCall(find(phase, &work));
+    PetscCall(membrane_.start(&phase));
+  }
   force_known_ = false;
-  WorkSpace::Lease work;
-  PetscCall(find(*phase, &work));
-  PetscCall(membrane_.start(phase));
+  PetscCall(find_walls(rigid));
+  PetscCall(place_markers());
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::extend(Phase *phase) {
+PetscErrorCode MembraneTransport::resume() {
   PetscFunctionBeginUser;
+  for (Phase &phase : flow_.now.phases) PetscCall(settle(&phase));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::settle(Phase *phase) {
+  PetscFunctionBeginUser;
+  if (!is_on_grid(*phase)) PetscFunctionReturn(0);
   force_known_ = false;
   WorkSpace::Lease work;
   PetscCall(find(*phase, &work));
@@ -58,11 +72,20 @@ PetscErrorCode MembraneTransport::extend(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MembraneTransport::move(double dt, std::vector<Phase> *phases) {
+  Memory memory{&flow_.now.markers};
+  PetscFunctionBeginUser;
+  PetscCall(flow_.update_velocity_ghosts(flow_.now.velocity, flow_.now.time, MembraneMechanics::velocity_ghosts));
+  PetscCall(advance(dt, flow_.now.velocity, phases == &flow_.now.phases ? &memory : nullptr, phases));
+  flow_.now.forgotten += memory.unresolved;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MembraneTransport::advance(double dt, const Field &velocity, Memory *memory,
                                           std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   long unresolved = 0;
-  NetForce net(*domain_, memory && drives_all(*phases));
+  NetForce net(flow_.domain, memory && drives_all(*phases));
   if (memory) begin_force();
   if (memory && marks(*phases)) PetscCall(markers_.move(dt, velocity, memory->markers));
   for (std::size_t p = 0; p < phases->size(); ++p) {
@@ -79,7 +102,23 @@ PetscErrorCode MembraneTransport::advance(double dt, const Field &velocity, Memo
   }
   if (!memory) PetscFunctionReturn(0);
   PetscCall(end_force(&net));
-  PetscCallMPI(MPI_Allreduce(&unresolved, &memory->unresolved, 1, MPI_LONG, MPI_SUM, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(&unresolved, &memory->unresolved, 1, MPI_LONG, MPI_SUM, flow_.domain.comm()));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::place_markers() {
+  std::vector<Phase> &phases = flow_.now.phases;
+  PetscFunctionBeginUser;
+  flow_.now.markers.clear();
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    if (is_on_grid(phases[p])) PetscCall(place_markers(phases[p], static_cast<int>(p), 0, &flow_.now.markers));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembraneTransport::set_markers(const std::vector<SurfaceMarker> &markers) {
+  PetscFunctionBeginUser;
+  flow_.now.markers = markers;
+  if (marks(flow_.now.phases)) PetscCall(markers_.send_home(&flow_.now.markers));
   PetscFunctionReturn(0);
 }
 
@@ -94,27 +133,29 @@ PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers) {
+// Each marker to the phase that its body is in now; those of bodies that are gone away.
+PetscErrorCode MembraneTransport::follow() {
+  std::vector<Phase> &phases = flow_.now.phases;
   std::vector<WantedGhosts> labels;
   PetscFunctionBeginUser;
-  if (!marks(*phases)) PetscFunctionReturn(0);
-  for (Phase &phase : *phases)
+  if (!marks(phases)) PetscFunctionReturn(0);
+  for (Phase &phase : phases)
     if (is_on_grid(phase) && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
   if (labels.empty()) PetscFunctionReturn(0);
-  PetscCall(exchange_->update_ghosts(labels));
-  markers_.follow(*phases, markers);
+  PetscCall(flow_.exchange.update_ghosts(labels));
+  markers_.follow(phases, &flow_.now.markers);
   PetscFunctionReturn(0);
 }
 
 bool MembraneTransport::drives_all(const std::vector<Phase> &phases) const {
-  return drifts_ && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
+  return flow_.drifts() && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
            return is_on_grid(phase) && phase.material.membrane.bending_modulus > 0;
          });
 }
 
 void MembraneTransport::begin_force() {
-  const int n = domain_->cells()[0];
-  in_row_parts(*domain_, [&](const RowPart &part) {
+  const int n = flow_.domain.cells()[0];
+  in_row_parts(flow_.domain, [&](const RowPart &part) {
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j)
         for (int a = 0; a < force_.count(); ++a) std::fill_n(force_[a].row(j, k), n, 0.0);
@@ -123,10 +164,10 @@ void MembraneTransport::begin_force() {
 
 PetscErrorCode MembraneTransport::gather_force(const Phase &phase, NetForce *net) {
   PetscFunctionBeginUser;
-  const int n = domain_->cells()[0];
+  const int n = flow_.domain.cells()[0];
   PetscCall(membrane_.for_force_rows(phase, [&](int part, bool bending, int a, int j, int k, const double *added) {
     add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
-    if (bending) net->add_row(*domain_, part, a, added);
+    if (bending) net->add_row(flow_.domain, part, a, added);
   }));
   film_.add_force(phase, force_);
   PetscFunctionReturn(0);
@@ -139,11 +180,19 @@ PetscErrorCode MembraneTransport::end_force(NetForce *net) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MembraneTransport::begin_slope(double dt, Field &slope) {
+  return add_force(flow_.now.phases, -1 / (dt * flow_.fluid.density), false, slope);
+}
+
+PetscErrorCode MembraneTransport::add_rate(const MomentumRate &rate) {
+  return add_force(flow_.now.phases, rate.scale / flow_.fluid.density, true, rate.field, rate.slope);
+}
+
 PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                                             const WeightedTarget &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
-    NetForce net(*domain_, drives_all(phases));
+    NetForce net(flow_.domain, drives_all(phases));
     begin_force();
     for (const Phase &phase : phases) {
       if (!is_on_grid(phase)) continue;
@@ -153,9 +202,9 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
     }
     PetscCall(end_force(&net));
   }
-  const int n = domain_->cells()[0];
-  in_row_parts(*domain_, [&](const RowPart &part) {
-    RowScratch scratch(*domain_, 1);
+  const int n = flow_.domain.cells()[0];
+  in_row_parts(flow_.domain, [&](const RowPart &part) {
+    RowScratch scratch(flow_.domain, 1);
     double *added = scratch.row(0);
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j) {
@@ -170,22 +219,22 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
       }
   });
   const Real3 &mean = net_force_;
-  if (balanced) take_off_mean(*domain_, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
+  if (balanced) take_off_mean(flow_.domain, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::measure(const std::vector<Phase> &phases, const Field &velocity,
-                                          SurfaceEnergy *measured, std::vector<SurfaceSample> *samples) {
+PetscErrorCode MembraneTransport::add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+                                                     std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
-  const double volume = domain_->cell_volume();
-  for (const Phase &phase : phases) {
+  const double volume = flow_.domain.cell_volume();
+  for (const Phase &phase : look.phases) {
     if (!is_on_grid(phase)) continue;
     WorkSpace::Lease work;
     PetscCall(find(phase, &work));
-    std::vector<ExactSums> sum(row_parts(*domain_), ExactSums(MembraneMechanics::sums));
-    PetscCall(membrane_.measure(phase, velocity, film_, 0, &sum, samples));
+    std::vector<ExactSums> sum(row_parts(flow_.domain), ExactSums(MembraneMechanics::sums));
+    PetscCall(membrane_.measure(phase, flow_.now.velocity, film_, 0, &sum, samples));
     double total[MembraneMechanics::sums];
-    PetscCall(reduce_parts(domain_->comm(), sum, total));
+    PetscCall(reduce_parts(flow_.domain.comm(), sum, total));
     measured->power += total[MembraneMechanics::power] * volume;
     measured->energy += total[MembraneMechanics::stored] * volume;
   }

@@ -2,47 +2,50 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/net_force.hpp"
-#include "field/work_space.hpp"
-#include "grid/domain.hpp"
 #include "membranes/membrane.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
 #include "solids/elastic_force.hpp"
 
 namespace eulastic {
 
-class MembraneTransport {
+class MembraneTransport final : public FlowPart {
 public:
-  /// Ghosts of the velocity that `advance` reads.
-  static constexpr int velocity_ghosts = MembraneMechanics::velocity_ghosts;
-  /// Of the work space, during each call.
-  static constexpr int work_fields = MembraneMechanics::work_fields;
+  static constexpr int fields = MembraneMechanics::work_fields;
 
-  /// `sides`: of the box, which must outlive this; `drifts`: as of SurfaceTension, for bending.
-  MembraneTransport(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const BoxSides &sides, bool drifts)
-      : domain_(&domain),
-        work_(&work),
-        exchange_(&exchange),
-        sides_(&sides),
-        membrane_({&domain, &sides, &exchange}),
-        markers_(domain),
-        drifts_(drifts),
-        force_(domain, domain.dimension()) {}
+  explicit MembraneTransport(Flow *flow)
+      : flow_(*flow),
+        membrane_(flow->place_of_phases()),
+        markers_(flow->domain),
+        force_(flow->domain, flow->domain.dimension()) {}
+  int work_fields() const override { return fields; }
+  PetscErrorCode start() override;
+  PetscErrorCode resume() override;
+  PetscErrorCode settle(Phase *phase) override;
+  PetscErrorCode begin_slope(double dt, Field &slope) override;
+  PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
+  PetscErrorCode add_rate(const MomentumRate &rate) override;
+  PetscErrorCode follow() override;
+  PetscErrorCode see_new_body(const Phase &phase, int number, int label) override {
+    return place_markers(phase, number, label, &flow_.now.markers);
+  }
+  PetscErrorCode see_bodies_leave() override { return follow(); }
+  PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+                                    std::vector<SurfaceSample> *samples) override;
   /// Whether the grid has any.
   static bool exists(const std::vector<Phase> &phases);
   static bool marks(const std::vector<Phase> &phases);  ///< whether any of those has markers
-  std::size_t bytes() const { return force_.bytes(); }
+  std::size_t bytes() const override { return force_.bytes(); }
 
   /// Where walls are: solid sides of the box, and `rigid` bodies, which do not travel; before any force.
   PetscErrorCode find_walls(const std::vector<const Phase *> &rigid);
-  /// MembraneMechanics::start().
-  PetscErrorCode start(Phase *phase);
+  /// Markers for all bodies, which keep the strain that they have, in place of those of the state. Collective.
+  PetscErrorCode place_markers();
   /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
   /// Collective.
   PetscErrorCode place_markers(const Phase &phase, int number, int label, std::vector<SurfaceMarker> *markers);
-  /// Each to the phase that its body is in now; those of bodies that are gone away.
-  PetscErrorCode follow(std::vector<Phase> *phases, std::vector<SurfaceMarker> *markers);
-  /// MembraneMechanics::extend().
-  PetscErrorCode extend(Phase *phase);
+  /// Those of a state that was read, each on any rank. Collective.
+  PetscErrorCode set_markers(const std::vector<SurfaceMarker> &markers);
   /// What a state has beside its phases, and what advance() finds of it.
   struct Memory {
     std::vector<SurfaceMarker> *markers;
@@ -56,9 +59,6 @@ public:
   /// divergence of a stress adds up to nothing.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const WeightedTarget &slope = {});
-  /// Adds energies and power; `samples`: of all owned cells at surfaces, where bodies have labels.
-  PetscErrorCode measure(const std::vector<Phase> &phases, const Field &velocity, SurfaceEnergy *measured,
-                         std::vector<SurfaceSample> *samples = nullptr);
 
 private:
   /// `work`: the memory that membrane_ uses.
@@ -68,14 +68,10 @@ private:
   PetscErrorCode end_force(NetForce *net);
   bool drives_all(const std::vector<Phase> &phases) const;
 
-  const Domain *domain_;
-  WorkSpace *work_;
-  GhostExchange *exchange_;
-  const BoxSides *sides_;
+  Flow &flow_;
   MembraneMechanics membrane_;  ///< of the phase that is worked on
   SurfaceMarkers markers_;
   WallFilm film_;
-  bool drifts_;
   Field force_;        ///< at faces, if it is known
   Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
   bool force_known_ = false;

@@ -5,6 +5,7 @@
 #include "bodies/unwrap.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace eulastic {
 bool StretchForces::exist(const std::vector<Phase> &phases) {
@@ -18,24 +19,23 @@ void StretchForces::for_cells(const std::vector<Phase> &phases, const Visit &vis
   for (const Phase &phase : phases) {
     if (!(phase.material.stretch_force.force > 0) || !phase.label) continue;
     const ConstView label = phase.label[0];
-    for (const Segment &whole : domain_->rows()) {
+    for (const Segment &whole : flow_.domain.rows()) {
       const Segment row = phase.rows.within(whole, label);
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int b = owners_->slot(static_cast<int>(label(i, row.j, row.k)) - 1);
         if (b < 0) continue;
-        const int low = domain_->is_wall(0) ? -near_[b][0] : -(domain_->domain_cells()[0] / 2);  // of offset()
-        visit(phase, b, static_cast<int>(offset(*domain_, near_[b], {i, row.j, row.k})[0]) - low, i, row.j, row.k);
+        const int low = flow_.domain.is_wall(0) ? -near_[b][0] : -(flow_.domain.domain_cells()[0] / 2);  // of offset()
+        visit(phase, b, static_cast<int>(offset(flow_.domain, near_[b], {i, row.j, row.k})[0]) - low, i, row.j, row.k);
       }
     }
   }
 }
 
-PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
-                                   const std::vector<Int3> &references) {
+PetscErrorCode StretchForces::find(const std::vector<Phase> &phases) {
+  const Domain &domain = flow_.domain;
   PetscFunctionBeginUser;
-  domain_ = &domain;
-  owners_ = &owners;
-  near_ = references;
+  owners_ = std::make_unique<BodyOwners>();
+  PetscCall(flow_.bodies.connect(domain, phases, {}, owners_.get(), &near_));
   const int columns = domain.domain_cells()[0];
   BodySums sums(near_.size(), columns);
   std::vector<StretchForce> forces(near_.size());
@@ -44,10 +44,10 @@ PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase
     sums.add(body, column, phase.fraction[0](i, j, k));
     forces[body] = phase.material.stretch_force;
   });
-  PetscCall(sums.reduce(owners));
-  for (int b = 0; b < owners.owned().size(); ++b)
+  PetscCall(sums.reduce(*owners_));
+  for (int b = 0; b < owners_->owned().size(); ++b)
     for (int c = 0; c < columns; ++c) owned.push_back(sums.value(b, c) * domain.cell_volume());
-  PetscCall(owners.bring(columns, owned, &volumes));
+  PetscCall(owners_->bring(columns, owned, &volumes));
   pull_.assign(near_.size(), {});
   for (std::size_t b = 0; b < near_.size(); ++b) {
     if (forces[b].force == 0) continue;
@@ -57,17 +57,33 @@ PetscErrorCode StretchForces::find(const Domain &domain, const std::vector<Phase
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
-                                  const std::vector<WeightedTarget> &targets) const {
+PetscErrorCode StretchForces::begin_slope(double dt, Field &slope) {
+  return add({{&slope, -1 / (dt * flow_.fluid.density)}});
+}
+
+PetscErrorCode StretchForces::add_rate(const MomentumRate &rate) {
+  const double density = flow_.fluid.density;
+  std::vector<WeightedTarget> targets{{&rate.field, rate.scale / density}};
+  if (rate.slope.field) targets.push_back({rate.slope.field, rate.slope.factor / density});
+  return add(targets);
+}
+
+// On the phases as they are, with labels and references of the last step.
+PetscErrorCode StretchForces::add(const std::vector<WeightedTarget> &targets) {
+  const std::vector<Phase> &phases = flow_.now.phases;
+  WorkSpace::Lease lease;
   PetscFunctionBeginUser;
+  PetscCall(find(phases));
+  PetscCall(flow_.work.take("stretch force", 1, &lease));
+  Field &scratch = lease.fields();
   scratch.fill(0, 0);
   const View force = scratch[0];
   for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
     force(i, j, k) += pull_[body][column] * phase.fraction[0](i, j, k);
   });
-  PetscCall(exchange.update_ghosts(scratch, 1));
+  PetscCall(flow_.exchange.update_ghosts(scratch, 1));
   for (const auto &[field, factor] : targets)
-    for (const Segment &row : domain_->rows()) {
+    for (const Segment &row : flow_.domain.rows()) {
       const double *f = force.row(row.j, row.k);
       double *out = (*field)[0].row(row.j, row.k);
       for (int i = row.i_begin; i < row.i_end; ++i) out[i] += 0.5 * factor * (f[i - 1] + f[i]);
@@ -75,16 +91,18 @@ PetscErrorCode StretchForces::add(GhostExchange &exchange, const std::vector<Pha
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::power(const std::vector<Phase> &phases, const Field &velocity, double *power) const {
+PetscErrorCode StretchForces::add_power(const FlowLook &look, double *power) {
+  double total = 0;
   PetscFunctionBeginUser;
+  PetscCall(find(look.phases));
   ExactSums sum(1);
-  const ConstView v = velocity[0];
-  for_cells(phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
+  const ConstView v = std::as_const(flow_.now.velocity)[0];
+  for_cells(look.phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
     const double force = pull_[body][column] * phase.fraction[0](i, j, k);
     sum.add(0, 0.5 * force * (v(i, j, k) + v(i + 1, j, k)));
   });
-  PetscCall(sum.reduce(domain_->comm(), power));
-  *power *= domain_->cell_volume();
+  PetscCall(sum.reduce(flow_.domain.comm(), &total));
+  *power += total * flow_.domain.cell_volume();
   PetscFunctionReturn(0);
 }
 

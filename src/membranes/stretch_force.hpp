@@ -4,34 +4,31 @@
 
 #include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
-#include "field/ghost_exchange.hpp"
-#include "field/net_force.hpp"
-#include "field/phase.hpp"
-#include "grid/domain.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
 
 namespace eulastic {
 
-class StretchForces {
+class StretchForces final : public FlowPart {
 public:
+  explicit StretchForces(Flow *flow) : flow_(*flow) {}
+  int work_fields() const override { return 1; }
+  PetscErrorCode begin_slope(double dt, Field &slope) override;
+  PetscErrorCode add_rate(const MomentumRate &rate) override;
+  PetscErrorCode add_power(const FlowLook &look, double *power) override;
   /// Whether bodies of any phase on the grid are pulled.
   static bool exist(const std::vector<Phase> &phases);
 
-  /// Finds the ends of the bodies that are here; `owners` stays, `references`: BodyTracker::connect. Exact sums, one
-  /// per cell along x and body. Collective.
-  PetscErrorCode find(const Domain &domain, const std::vector<Phase> &phases, const BodyOwners &owners,
-                      const std::vector<Int3> &references);
-  /// Adds the force per volume at owned faces, to each target as many times as it says. `scratch`: a field.
-  PetscErrorCode add(GhostExchange &exchange, const std::vector<Phase> &phases, Field &scratch,
-                     const std::vector<WeightedTarget> &targets) const;
-  /// What they do on the flow; one ghost of the velocity. Collective.
-  PetscErrorCode power(const std::vector<Phase> &phases, const Field &velocity, double *power) const;
-
 private:
+  /// Finds the ends of the bodies that are here. Exact sums, one per cell along x and body. Collective.
+  PetscErrorCode find(const std::vector<Phase> &phases);
+  /// Adds the force per volume at owned faces, to each target as many times as it says; of the phases of the state.
+  PetscErrorCode add(const std::vector<WeightedTarget> &targets);
   template <class Visit>
   void for_cells(const std::vector<Phase> &phases, const Visit &visit) const;
 
-  const Domain *domain_ = nullptr;
-  const BodyOwners *owners_ = nullptr;
+  Flow &flow_;
+  std::unique_ptr<BodyOwners> owners_;     ///< of the phases that find() has seen
   std::vector<Int3> near_;                 ///< references of bodies that are here
   std::vector<std::vector<double>> pull_;  ///< of these, by column of cells across x: force per volume
 };

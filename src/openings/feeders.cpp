@@ -15,9 +15,10 @@ Feeders::~Feeders() {
   for (Stretch &stretch : stretches_) (void)MPI_Comm_free(&stretch.line);
 }
 
-PetscErrorCode Feeders::create(const Domain &domain, const BoxSides &sides) {
+PetscErrorCode Feeders::create() {
+  const Domain &domain = flow_.domain;
+  const BoxSides &sides = flow_.spec.sides;
   PetscFunctionBeginUser;
-  domain_ = &domain;
   const Int3 position = domain.split().position_of(domain.rank());
   for (int d = 0; d < domain.dimension(); ++d)
     for (const int high : {0, 1}) {
@@ -44,73 +45,81 @@ void Feeders::for_cells(const Box &box, const Stretch &stretch, const Visit &vis
       for (int i = from[0]; i < to[0]; ++i) visit(i, j, k);
 }
 
-PetscErrorCode Feeders::check_lumen(const std::vector<Phase> &phases, std::string *wrong) const {
+// Rigid bodies are the same all along a stretch.
+PetscErrorCode Feeders::check_lumen() const {
   constexpr double same = 0.05;  // of a solid fraction; surfaces of triangles and voxels are not quite straight
   std::vector<double> change(stretches_.size(), 0);
   PetscFunctionBeginUser;
   for (std::size_t s = 0; s < stretches_.size(); ++s)
-    for (const Phase &phase : phases) {
+    for (const Phase &phase : flow_.now.phases) {
       if (!phase.material.is_rigid()) continue;
       const ConstView phi = phase.fraction[0];
       const std::ptrdiff_t next = (stretches_[s].high ? -1 : 1) * phi.stride(stretches_[s].d);
-      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
+      for_cells(flow_.domain, stretches_[s], [&](int i, int j, int k) {
         const double *here = &phi(i, j, k);
         change[s] = std::max(change[s], std::fabs(here[next] - here[0]));
       });
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, change.data(), static_cast<int>(change.size()), MPI_DOUBLE, MPI_MAX,
-                             domain_->comm()));
+                             flow_.domain.comm()));
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
-      *wrong = std::string("-inflow_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
-               "_feeder: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
+      flow_.crowded = std::string("-inflow_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
+                      "_feeder: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::feed_velocity(double time, const Field &velocity, BoxSides *sides) const {
+// Normal velocities on the sides at the end of the step: those at the ends of the stretches, and what the flow rate
+// lacks with the profile of the side.
+PetscErrorCode Feeders::constrain(double dt) {
+  const double time = flow_.now.time + dt;
+  Field &velocity = flow_.velocity_star;
   PetscFunctionBeginUser;
+  PetscCall(flow_.exchange.update_ghosts(velocity, Box::stencil_width));
   for (const Stretch &stretch : stretches_) {
-    const int d = stretch.d, N = domain_->domain_cells()[d];
+    const int d = stretch.d, N = flow_.domain.domain_cells()[d];
     const int end = stretch.high ? N - stretch.cells : stretch.cells;
-    Side &side = (*sides)[d][stretch.high];
+    Side &side = flow_.spec.sides[d][stretch.high];
     auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, end, stretch.line, fed.get()));
+    PetscCall(FedVelocity::copy(flow_.domain, velocity[d], d, end, stretch.line, fed.get()));
     ExactSums sums(1);
     double sum, cells = 1;
-    for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : domain_->domain_cells()[e];
-    const Int3 &n = domain_->cells();
-    const Split &split = domain_->split();
+    for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : flow_.domain.domain_cells()[e];
+    const Int3 &n = flow_.domain.cells();
+    const Split &split = flow_.domain.split();
     // One rank of the line adds, that which has the faces.
-    const bool adds = split.position_along(d, end) == split.position_of(domain_->rank())[d];
+    const bool adds = split.position_along(d, end) == split.position_of(flow_.domain.rank())[d];
     fed->for_each([&](const Int3 &at, double &value) {
       bool own = adds;
       for (int e = 0; e < 3; ++e) own = own && (e == d || (at[e] >= 0 && at[e] < n[e]));
       if (own) sums.add(0, value);
     });
-    PetscCall(sums.reduce(domain_->comm(), &sum));
+    PetscCall(sums.reduce(flow_.domain.comm(), &sum));
     const double missing = (stretch.high ? -1 : 1) * side.given.at(time) - sum / cells;
-    fed->for_each([&](const Int3 &at, double &value) { value += missing * inflow_shape(*domain_, side, d, at); });
+    fed->for_each([&](const Int3 &at, double &value) { value += missing * inflow_shape(flow_.domain, side, d, at); });
     side.fed = std::move(fed);
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::recall_velocity(const Field &velocity, BoxSides *sides) const {
+// The same from what is on the sides already.
+PetscErrorCode Feeders::recall() {
+  const Field &velocity = flow_.now.velocity;
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d;
     auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(*domain_, velocity[d], d, stretch.high ? domain_->domain_cells()[d] : 0, stretch.line,
-                                fed.get()));
-    (*sides)[d][stretch.high].fed = std::move(fed);
+    PetscCall(FedVelocity::copy(flow_.domain, velocity[d], d, stretch.high ? flow_.domain.domain_cells()[d] : 0,
+                                stretch.line, fed.get()));
+    flow_.spec.sides[d][stretch.high].fed = std::move(fed);
   }
   PetscFunctionReturn(0);
 }
 
 // visit(stretch, label) for all cells of bodies in stretches, one after the other.
 template <class Visit>
-void Feeders::for_bodies(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
-                         const Visit &visit) const {
+void Feeders::for_bodies(const Visit &visit) const {
+  const std::vector<BodyInBox> boxed = boxed_.list();
   for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
     for (const BodyInBox &body : boxed) {
       const ConstView phi = body.phase->fraction[0];
@@ -119,34 +128,35 @@ void Feeders::for_bodies(const std::vector<Phase> &phases, const std::vector<Bod
                 [&](int i, int j, int k) { any = any || phi(i, j, k) > BodyCells::threshold; });
       if (any) visit(s, body.number);
     }
-    for (const Phase &phase : phases) {
+    for (const Phase &phase : flow_.now.phases) {
       if (!phase.label || phase.material.is_rigid()) continue;
       const BodyCells cells{phase.label[0], phase.fraction[0]};
-      for_cells(*domain_, stretches_[s], [&](int i, int j, int k) {
+      for_cells(flow_.domain, stretches_[s], [&](int i, int j, int k) {
         if (const int label = static_cast<int>(cells(i, j, k)); label > 0) visit(s, label);
       });
     }
   }
 }
 
-PetscErrorCode Feeders::start(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed) {
+PetscErrorCode Feeders::start() {
   std::map<int, int> here;
   PetscFunctionBeginUser;
-  for_bodies(phases, boxed, [&](int stretch, int label) { here.try_emplace(label, stretch); });
+  PetscCall(check_lumen());
+  for_bodies([&](int stretch, int label) { here.try_emplace(label, stretch); });
   PetscCall(set_inside(here));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
-  std::vector<int> some, all, counts(domain_->ranks()), begins(domain_->ranks() + 1, 0);
+  std::vector<int> some, all, counts(flow_.domain.ranks()), begins(flow_.domain.ranks() + 1, 0);
   PetscFunctionBeginUser;
   for (const auto &[label, stretch] : here) some.insert(some.end(), {label, stretch});
   const int count = static_cast<int>(some.size());
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, domain_->comm()));
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, flow_.domain.comm()));
   std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
   all.resize(begins.back());
-  PetscCallMPI(
-      MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT, domain_->comm()));
+  PetscCallMPI(MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT,
+                              flow_.domain.comm()));
   inside_.clear();
   for (std::size_t n = 0; n < all.size(); n += 2) {
     int &stretch = inside_.try_emplace(all[n], all[n + 1]).first->second;
@@ -155,19 +165,18 @@ PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::find_passed(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
-                                    std::vector<int> *labels) const {
+PetscErrorCode Feeders::find_passed(std::vector<int> *labels) const {
   std::vector<int> inside;
   PetscFunctionBeginUser;
   labels->clear();
   for (const auto &[label, stretch] : inside_) inside.push_back(label);
   std::vector<int> still(inside.size(), 0);
-  for_bodies(phases, boxed, [&](int stretch, int label) {
+  for_bodies([&](int stretch, int label) {
     const auto at = std::lower_bound(inside.begin(), inside.end(), label);
     if (at != inside.end() && *at == label && inside_.at(label) == stretch) still[at - inside.begin()] = 1;
   });
   PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, domain_->comm()));
+      MPI_Allreduce(MPI_IN_PLACE, still.data(), static_cast<int>(still.size()), MPI_INT, MPI_MAX, flow_.domain.comm()));
   for (std::size_t n = 0; n < inside.size(); ++n)
     if (still[n] == 0) labels->push_back(inside[n]);
   PetscFunctionReturn(0);

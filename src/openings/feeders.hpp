@@ -2,10 +2,9 @@
 // (docs/method.md, section 20).
 #pragma once
 
-#include "base/petsc.hpp"
-#include "field/phase.hpp"
-#include "field/sides.hpp"
-#include "grid/domain.hpp"
+#include "boxes/boxed_bodies.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
 
 #include <map>
 #include <string>
@@ -13,31 +12,23 @@
 
 namespace eulastic {
 
-class Feeders {
+class Feeders final : public FlowPart {
 public:
   /// Cells beyond the end of the stretch that a body must have passed, all of it: it comes in as far from the side.
   static constexpr int beyond = 2;
 
-  Feeders() = default;
+  Feeders(Flow *flow, const BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
   Feeders(const Feeders &) = delete;
   Feeders &operator=(const Feeders &) = delete;
-  ~Feeders();
-  PetscErrorCode create(const Domain &domain, const BoxSides &sides);
+  ~Feeders() override;
+  PetscErrorCode create();
+  PetscErrorCode start() override;
+  PetscErrorCode recall() override;
+  PetscErrorCode constrain(double dt) override;
   int count() const { return static_cast<int>(stretches_.size()); }
-  /// One line if rigid bodies are not the same all along a stretch.
-  PetscErrorCode check_lumen(const std::vector<Phase> &phases, std::string *wrong) const;
 
-  /// Normal velocities on the sides at `time`: those at the ends of the stretches, and what the flow rate lacks with
-  /// the profile of the side. Three ghosts of `velocity` along the planes.
-  PetscErrorCode feed_velocity(double time, const Field &velocity, BoxSides *sides) const;
-  /// The same from what is on the sides already.
-  PetscErrorCode recall_velocity(const Field &velocity, BoxSides *sides) const;
-
-  /// Finds out which bodies are in which stretch; `boxed`: those of this rank in boxes of their own.
-  PetscErrorCode start(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed);
-  /// Those that have passed the end of theirs, ascending; they keep being named until forget().
-  PetscErrorCode find_passed(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed,
-                             std::vector<int> *labels) const;
+  /// Bodies that have passed the end of their stretch, ascending; they keep being named until forget().
+  PetscErrorCode find_passed(std::vector<int> *labels) const;
   /// Where a body comes in, relative to where it is.
   Int3 shift_of(int label) const;
   /// A body is not in its stretch any more; another one has come into that.
@@ -57,9 +48,11 @@ private:
   template <class Visit>  ///< those of a block, and those just beyond the stretch
   static void for_cells(const Box &box, const Stretch &stretch, const Visit &visit);
   template <class Visit>
-  void for_bodies(const std::vector<Phase> &phases, const std::vector<BodyInBox> &boxed, const Visit &visit) const;
+  void for_bodies(const Visit &visit) const;
+  PetscErrorCode check_lumen() const;
 
-  const Domain *domain_ = nullptr;
+  Flow &flow_;
+  const BoxedBodies &boxed_;
   std::vector<Stretch> stretches_;
   std::map<int, int> inside_;  ///< the same on all ranks
 };

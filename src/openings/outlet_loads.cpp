@@ -104,17 +104,10 @@ BoxSides OutletLoads::with_pressures(const BoxSides &sides) const {
   return now;
 }
 
-std::vector<double> OutletLoads::numbers() const {
-  std::vector<double> numbers;
-  for (const Load &load : loads_) numbers.insert(numbers.end(), {load.capacity, load.pressure});
+std::vector<double *> OutletLoads::numbers() {
+  std::vector<double *> numbers;
+  for (Load &load : loads_) numbers.insert(numbers.end(), {&load.capacity, &load.pressure});
   return numbers;
-}
-
-void OutletLoads::set_numbers(const std::vector<double> &numbers) {
-  for (std::size_t n = 0; n < loads_.size(); ++n) {
-    loads_[n].capacity = numbers[2 * n];
-    loads_[n].pressure = numbers[2 * n + 1];
-  }
 }
 
 }  // namespace eulastic

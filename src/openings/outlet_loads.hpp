@@ -31,8 +31,7 @@ public:
   /// `sides` with the present pressures on those that are loaded.
   BoxSides with_pressures(const BoxSides &sides) const;
   /// Pressures of the capacities and on the sides: what is carried from step to step.
-  std::vector<double> numbers() const;
-  void set_numbers(const std::vector<double> &numbers);
+  std::vector<double *> numbers();
 
 private:
   struct Load {

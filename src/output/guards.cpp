@@ -1,5 +1,6 @@
 #include "output/guards.hpp"
 
+#include "boxes/boxed_bodies.hpp"
 #include "diagnostics/places.hpp"
 #include "field/open_sides.hpp"
 
@@ -127,7 +128,7 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
   PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes,
-                             solver.boxed_bodies()));
+                             solver.boxed().list()));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }

@@ -8,6 +8,8 @@
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "diagnostics/surface_loads.hpp"
+#include "membranes/surface_measures.hpp"
+#include "rigid/rigid_surfaces.hpp"
 #include "scene/config.hpp"
 #include "solver/solver.hpp"
 

@@ -1,9 +1,11 @@
 #include "output/outputs.hpp"
 
 #include "base/events.hpp"
+#include "boxes/boxed_bodies.hpp"
 #include "output/saved_state.hpp"
 #include "output/series_columns.hpp"
 #include "output/verdict.hpp"
+#include "solver/looks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -94,7 +96,7 @@ PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times)
   if (times.empty()) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
-  PetscCall(solver_->look_back(times, [this] { return snapshots_->write(config_, solver_); }));
+  PetscCall(solver_->looks().back(times, [this] { return snapshots_->write(config_, solver_); }));
   snapshot_due_.last_time = times.back();
   PetscFunctionReturn(0);
 }
@@ -123,7 +125,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   if (samples)
-    PetscCall(solver_->with_bodies_on_grid([&](const std::vector<Phase> &phases) {
+    PetscCall(solver_->looks().on_grid([&](const std::vector<Phase> &phases) {
       return samples_.write(state.time, probes, last, {state.velocity, state.pressure, phases});
     }));
   if (series && (last || !solver_->is_behind())) {
@@ -201,7 +203,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   double counted[3] = {0, 0, 0};  // bytes of fields, points where B is evolved, markers of membranes
   counted[0] = double(solver_->bytes());
   for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
-  for (const BodyInBox &body : solver_->boxed_bodies()) counted[1] += body.phase->tensor.evolving.points();
+  for (const BodyInBox &body : solver_->boxed().list()) counted[1] += body.phase->tensor.evolving.points();
   counted[2] = double(state.markers.size());
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   summary.bytes_per_cell = counted[0] / domain_->domain_cell_count();

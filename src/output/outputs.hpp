@@ -8,6 +8,7 @@
 #include "io/bodies_file.hpp"
 #include "io/series.hpp"
 #include "io/summary.hpp"
+#include "membranes/surface_measures.hpp"
 #include "output/due.hpp"
 #include "output/guards.hpp"
 #include "output/sample_files.hpp"

@@ -3,7 +3,8 @@
 #include "output/between.hpp"
 #include "output/outputs.hpp"
 #include "output/time_step_control.hpp"
-#include "solids/species_force.hpp"
+#include "rigid/rigid_flow.hpp"
+#include "solver/looks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,8 @@ PetscErrorCode Outputs::look(Measured *measured) {
   Measured &m = *measured;
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
-  PetscCall(solver_->phases_now(&phases));
-  PetscCall(solver_->bodies_now(&boxed));
+  PetscCall(solver_->looks().phases(&phases));
+  PetscCall(solver_->looks().bodies(&boxed));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
   const Field *viscosity = nullptr;
@@ -29,7 +30,8 @@ PetscErrorCode Outputs::look(Measured *measured) {
     PetscCall(measure_flow(
         *domain_, state.velocity,
         {fluid.density, fluid.viscosity, state.dt, std::hypot(f[0], f[1], f[2]), viscosity, &config_.sides}, &m.flow));
-    PetscCall(solver_->add_rigid_dissipation(&m.flow.viscous_dissipation));
+    if (const auto *bodies = solver_->part<RigidFlow>())
+      PetscCall(bodies->add_dissipation(&m.flow.viscous_dissipation));
   }
   PetscCall(measure_phases(*domain_, *phases, &m.flow, boxed));
   if (solver_->bodies().bodies() > 0)
@@ -53,8 +55,8 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
   EnergyState &energy = row->energy = {};
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
-  PetscCall(solver_->phases_now(&phases));
-  PetscCall(solver_->bodies_now(&boxed));
+  PetscCall(solver_->looks().phases(&phases));
+  PetscCall(solver_->looks().bodies(&boxed));
   energy.kinetic = measured.flow.kinetic_energy;
   energy.elastic = measured.flow.elastic_energy;
   energy.surface = measured.surface.energy;
@@ -66,9 +68,7 @@ PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
                               &config_.sides, state.time,      viscosity};
   PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates, boxed));
   double power = 0;
-  PetscCall(species_force_power(*domain_, *phases, state.time, fluid.density, state.velocity, &power));
-  energy.rates.force_power += power;
-  PetscCall(solver_->stretch_power(&power));
+  PetscCall(solver_->force_power(&power));
   energy.rates.force_power += power;
   for (std::size_t b = 0; b < measured.loads.size(); ++b) {
     const RigidLoad &load = measured.loads[b];
@@ -121,7 +121,7 @@ PetscErrorCode Outputs::look(Row *row) {
 PetscErrorCode Outputs::await_row(double time_before) {
   PetscFunctionBeginUser;
   row_ = {};
-  PetscCall(solver_->look_behind([this] { return look(&row_); }));
+  PetscCall(solver_->looks().behind([this] { return look(&row_); }));
   waits_ = true;
   series_time_before_ = time_before;
   PetscFunctionReturn(0);

@@ -1,11 +1,15 @@
 #include "output/saved_state.hpp"
 
 #include "base/deliver.hpp"
+#include "boxes/boxed_bodies.hpp"
 #include "diagnostics/state_hash.hpp"
 #include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
+#include "membranes/membrane_transport.hpp"
+#include "openings/feeders.hpp"
 #include "output/checkpoint_range.hpp"
+#include "parts/carried_state.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -15,108 +19,53 @@ namespace {
 
 std::uint64_t hash_name(const std::string &name) { return mix_bits(checksum(name.data(), name.size(), 0)); }
 
-// Every field that is carried on; of 2-D tensors the components that are there.
-std::vector<CheckpointField> fields_of(Solver &solver) {
-  State &state = solver.state();
-  std::vector<CheckpointField> fields;
-  for (int d = 0; d < state.velocity.count(); ++d)
-    fields.push_back({std::string("velocity_") + "xyz"[d], at_face[d], state.velocity[d]});
-  fields.push_back({"pressure", at_centre, state.pressure[0]});
-  if (state.pressure_before) fields.push_back({"pressure_before", at_centre, state.pressure_before[0]});
-  for (int d = 0; d < state.advection.count(); ++d)
-    fields.push_back({std::string("advection_") + "xyz"[d], at_face[d], state.advection[d]});
-  for (Phase &phase : state.phases) {
-    if (phase.boxed) continue;
-    const std::string species = "_" + phase.species;
-    fields.push_back({"solid_fraction" + species, at_centre, phase.fraction[0]});
-    for (int c = 0; c < phase.tensor.field.count(); ++c) {
-      const TensorComponent &component = phase.tensor.components()[c];
-      fields.push_back({"left_cauchy_green_" + component.name() + species, component.at, phase.tensor.field[c]});
-    }
-    if (phase.label) fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
-  }
-  // May be missing: the pressure solver can be changed at a restart.
-  if (Field *memory = solver.pressure_memory())
-    for (int f = 0; f < memory->count(); ++f)
-      fields.push_back({"pressure_increment_" + std::to_string(f), at_centre, (*memory)[f], Stored::float64, true});
-  return fields;
-}
-
-CheckpointRecords markers_of(const State &state) {
-  CheckpointRecords records{"membrane_markers", SurfaceMarker::numbers, {}};
-  for (const SurfaceMarker &marker : state.markers) {
-    const auto values = marker.packed();
-    records.values.insert(records.values.end(), values.begin(), values.end());
-  }
-  return records;
-}
-
 // Bodies in boxes of their own: their heads (FreeBodies::packed), and what follows them, one body after the other.
 constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
 
-std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
+std::vector<CheckpointRecords> boxes_of(Solver &solver) {
   CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
-  for (std::size_t b = 0; b < solver.boxed_bodies().size(); ++b) {
-    const std::vector<double> packed = solver.boxed().packed(b);
+  for (std::size_t b = 0; b < solver.boxed().list().size(); ++b) {
+    const std::vector<double> packed = solver.boxed().bodies().packed(b);
     heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeBodies::head);
     values.values.insert(values.values.end(), packed.begin() + FreeBodies::head, packed.end());
   }
   return {heads, values};
 }
 
-// Everything else of the solver that its future depends on, but for what belongs to bodies.
-CheckpointNumbers numbers_of(Solver &solver) {
-  const State &s = solver.state();
+// The values of what is carried.
+CheckpointNumbers numbers_of(const CarriedState &state) {
   CheckpointNumbers numbers;
-  auto &reals = numbers.reals;
-  auto &integers = numbers.integers;
-  reals["time"] = {s.time};
-  reals["time_step"] = {s.dt};
-  reals["flow_scales"] = {s.speed_scale, s.crossing_rate, s.travel};
-  integers["step"] = {static_cast<long>(s.step)};
-  if (OutletLoads *loads = solver.loads()) reals["outlet_loads"] = loads->numbers();
-  if (s.pressure_before) reals["pressure_interval"] = {s.pressure_interval};
-  if (s.forgotten > 0) integers["forgotten"] = {static_cast<long>(s.forgotten)};
+  for (const auto &[name, places] : state.reals)
+    for (const double *place : places) numbers.reals[name].push_back(*place);
+  for (const auto &[name, places] : state.integers)
+    for (const std::int64_t *place : places) numbers.integers[name].push_back(static_cast<long>(*place));
   return numbers;
 }
 
-// With those that a run has beside the solver, and the solver's counts.
-CheckpointNumbers numbers_of(Solver &solver, const RunPosition &position) {
-  const OutputsPosition &o = position.outputs;
-  CheckpointNumbers numbers = numbers_of(solver);
-  auto &reals = numbers.reals;
-  auto &integers = numbers.integers;
-  reals["time_step"].push_back(position.dt);
-  reals["wall_seconds"] = {position.wall_seconds, position.wall_seconds_total};
-  reals["output_times"] = {o.series_time, o.snapshot_time, o.profile_time};
-  reals["energy_budget"] = o.energy.numbers();
-  reals["energy_made"] = o.energy.made_numbers();
-  reals["mach_max"] = {o.mach_max};
-  integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
-  integers["output_rows"] = {o.series_rows, o.bodies_rows, o.snapshots};
-  return numbers;
+void take_numbers(const CheckpointNumbers &numbers, const CarriedState &state) {
+  for (const auto &[name, places] : state.reals)
+    for (std::size_t n = 0; n < places.size(); ++n) *places[n] = numbers.reals.at(name)[n];
+  for (const auto &[name, places] : state.integers)
+    for (std::size_t n = 0; n < places.size(); ++n) *places[n] = numbers.integers.at(name)[n];
 }
 
-// Of every body: force, torque, power.
-std::vector<double> numbers_of(const std::vector<RigidLoad> &loads) {
-  std::vector<double> numbers;
-  for (const RigidLoad &load : loads) {
-    numbers.insert(numbers.end(), load.force.begin(), load.force.end());
-    numbers.insert(numbers.end(), load.torque.begin(), load.torque.end());
-    numbers.push_back(load.power);
-  }
-  return numbers;
+// What a run carries beside the solver, its numbers of energy not included.
+void add_position(RunPosition *position, CarriedState *state) {
+  OutputsPosition &o = position->outputs;
+  state->reals["time_step"].push_back(&position->dt);
+  state->reals["wall_seconds"] = {&position->wall_seconds, &position->wall_seconds_total};
+  state->reals["output_times"] = {&o.series_time, &o.snapshot_time, &o.profile_time};
+  state->reals["mach_max"] = {&o.mach_max};
+  state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
 }
 
-std::vector<RigidLoad> loads_of(const std::vector<double> &numbers) {
-  std::vector<RigidLoad> loads(numbers.size() / 7);
-  for (std::size_t b = 0; b < loads.size(); ++b) {
-    const double *from = &numbers[7 * b];
-    std::copy_n(from, 3, loads[b].force.begin());
-    std::copy_n(from + 3, 3, loads[b].torque.begin());
-    loads[b].power = from[6];
-  }
-  return loads;
+// All numbers of a checkpoint but those of single bodies.
+CheckpointNumbers numbers_of(const Solver &solver, const CarriedState &state, const RunPosition &position) {
+  CheckpointNumbers numbers = numbers_of(state);
+  numbers.reals["energy_budget"] = position.outputs.energy.numbers();
+  numbers.reals["energy_made"] = position.outputs.energy.made_numbers();
+  numbers.integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
+  return numbers;
 }
 
 template <class T>
@@ -136,52 +85,18 @@ const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumb
   return nullptr;
 }
 
-void take_numbers(CheckpointNumbers &numbers, Solver *solver, RunPosition *position) {
-  State &s = solver->state();
-  OutputsPosition &o = position->outputs;
-  auto &reals = numbers.reals;
-  auto &integers = numbers.integers;
-  s.time = reals["time"][0];
-  s.dt = reals["time_step"][0];
-  position->dt = reals["time_step"][1];
-  s.speed_scale = reals["flow_scales"][0];
-  s.crossing_rate = reals["flow_scales"][1];
-  s.travel = reals["flow_scales"][2];
-  position->wall_seconds = reals["wall_seconds"][0];
-  position->wall_seconds_total = reals["wall_seconds"][1];
-  o.series_time = reals["output_times"][0];
-  o.snapshot_time = reals["output_times"][1];
-  o.profile_time = reals["output_times"][2];
-  o.energy.set_numbers(reals["energy_budget"]);
-  o.energy.set_made_numbers(reals["energy_made"]);
-  o.mach_max = reals["mach_max"][0];
-  if (OutletLoads *loads = solver->loads()) loads->set_numbers(reals["outlet_loads"]);
-  if (reals.count("pressure_interval") > 0) s.pressure_interval = reals["pressure_interval"][0];
-  s.step = integers["step"][0];
-  if (const auto loads = reals.find("rigid_loads"); loads != reals.end())
-    solver->set_rigid_loads(loads_of(loads->second));
-  o.series_rows = integers["output_rows"][0];
-  o.bodies_rows = integers["output_rows"][1];
-  o.snapshots = integers["output_rows"][2];
-}
-
 // Of all bodies, on rank 0: what owners know of them, and what feeders do.
 PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   std::vector<Int3> references;
   std::vector<double> first_volumes;
   PetscFunctionBeginUser;
-  if (solver.keeps_rigid_loads()) {
-    std::vector<RigidLoad> loads;
-    PetscCall(solver.rigid_loads(&loads));
-    numbers->reals["rigid_loads"] = numbers_of(loads);
-  }
   BodyTracker &bodies = solver.bodies();
   PetscCall(bodies.known(solver.domain(), &references, &first_volumes));
   if (bodies.bodies() == 0) PetscFunctionReturn(0);
   std::vector<long> &cells = numbers->integers["bodies.references"];  // "body_" begins the labels of a species
   for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
   numbers->reals["bodies.first_volumes"] = std::move(first_volumes);
-  const Feeders *feeders = solver.feeders();
+  const Feeders *feeders = solver.part<Feeders>();
   if (!feeders) PetscFunctionReturn(0);
   if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
   std::vector<long> &inside = numbers->integers["bodies_in_feeders"];
@@ -246,7 +161,7 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   const Domain &domain = solver->domain();
   CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
   PetscFunctionBeginUser;
-  if (!solver->has_boxed()) PetscFunctionReturn(0);
+  if (!solver->boxed().exist()) PetscFunctionReturn(0);
   PetscCall(file->read_records(&heads));
   const std::vector<Phase> &phases = solver->state().phases;
   PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
@@ -257,7 +172,7 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
         domain.domain_shape(), phases[static_cast<int>(heads.values[n + 1])].tensor.centred, &heads.values[n]));
   values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   PetscCall(file->read_own_records(&values));
-  solver->clear_boxed_bodies();
+  solver->boxed().clear();
   std::vector<std::vector<double>> all;
   std::string wrong;
   const double *next = values.values.data();
@@ -276,7 +191,43 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
       wrong = find_absurd_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
   }
   PetscCall(require_range(domain, path, wrong));
-  for (const std::vector<double> &packed : all) PetscCall(solver->add_packed_body(packed));
+  for (const std::vector<double> &packed : all) PetscCall(solver->boxed().add_packed(packed));
+  PetscFunctionReturn(0);
+}
+
+constexpr const char *markers_name = "membrane_markers";
+
+CheckpointRecords markers_of(const State &state) {
+  CheckpointRecords records{markers_name, SurfaceMarker::numbers, {}};
+  for (const SurfaceMarker &marker : state.markers) {
+    const auto values = marker.packed();
+    records.values.insert(records.values.end(), values.begin(), values.end());
+  }
+  return records;
+}
+
+PetscErrorCode load_markers(CheckpointFile *file, const std::string &path, Solver *solver) {
+  const Domain &domain = solver->domain();
+  CheckpointRecords records = markers_of({});
+  std::vector<SurfaceMarker> markers;
+  PetscFunctionBeginUser;
+  PetscCall(file->read_records(&records));
+  const Extent whole{{0, 0, 0}, domain.domain_cells()};
+  const int bodies = solver->bodies().bodies(), species = static_cast<int>(solver->state().phases.size());
+  PetscCall(require_range(domain, path, find_absurd_marker(records.values, whole, bodies, species)));
+  for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
+    markers.push_back(SurfaceMarker::unpacked(&records.values[n]));
+  solver->state().markers.clear();
+  if (auto *membranes = solver->part<MembraneTransport>()) PetscCall(membranes->set_markers(markers));
+  PetscFunctionReturn(0);
+}
+
+// Where a file has none: from the strain that membranes have.
+PetscErrorCode place_markers(const CheckpointFile &file, Solver *solver) {
+  PetscFunctionBeginUser;
+  if (file.has(markers_name)) PetscFunctionReturn(0);
+  if (auto *membranes = solver->part<MembraneTransport>()) PetscCall(membranes->place_markers());
+  PetscCall(solver->boxed().place_markers());
   PetscFunctionReturn(0);
 }
 
@@ -284,71 +235,76 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
 
 PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
   const Domain &domain = solver->domain();
-  CheckpointNumbers numbers = numbers_of(*solver);
+  CarriedState state;
   std::uint64_t sum = 0;
   PetscFunctionBeginUser;
+  PetscCall(solver->carry(&state));
+  CheckpointNumbers numbers = numbers_of(state);
   PetscCall(gather_numbers(*solver, &numbers));
   if (domain.rank() == 0) sum = hash_arrays(numbers.reals) + hash_arrays(numbers.integers);
-  for (const CheckpointField &field : fields_of(*solver))
+  for (const CheckpointField &field : state.fields)
     sum += hash_points(domain, field.view, field.staggering, hash_name(field.name));
   for (const SurfaceMarker &marker : solver->state().markers) {
     const auto values = marker.packed();
     sum += hash_values(values.data(), values.size());
   }
-  for (const BodyInBox &body : solver->boxed_bodies()) sum += hash_body(body);
+  for (const BodyInBox &body : solver->boxed().list()) sum += hash_body(body);
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
+PetscErrorCode save_state(Solver *solver, const RunPosition &run_position, const std::string &options,
                           const std::string &path) {
+  RunPosition position = run_position;
+  CarriedState state;
   PetscFunctionBeginUser;
-  CheckpointNumbers numbers = numbers_of(*solver, position);
+  PetscCall(solver->carry(&state));
+  add_position(&position, &state);
+  CheckpointNumbers numbers = numbers_of(*solver, state, position);
   PetscCall(gather_numbers(*solver, &numbers));
   std::vector<CheckpointRecords> records = boxes_of(*solver);
   records.push_back(markers_of(solver->state()));
-  PetscCall(write_checkpoint(solver->domain(), path, options, numbers, fields_of(*solver), records));
+  PetscCall(write_checkpoint(solver->domain(), path, options, numbers, state.fields, records));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Domain &domain = solver->domain();
+  Feeders *feeders = solver->part<Feeders>();
   std::vector<long> forgotten, like;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("forgotten", &forgotten));
-  if (solver->feeders()) {
+  if (feeders) {
     PetscCall(file->read_if_there("bodies_like", &like));
     solver->bodies().set_like({});
     PetscCall(require_range(domain, path, find_absurd_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
   PetscCall(require_range(domain, path, find_absurd_count("forgotten", forgotten)));
-  CheckpointNumbers expected = numbers_of(*solver, *position);
-  if (solver->keeps_rigid_loads()) expected.reals["rigid_loads"].resize(7 * solver->rigid()->count);
+  solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
+  CarriedState state;
+  PetscCall(solver->carry(&state));
+  add_position(position, &state);
+  const CheckpointNumbers expected = numbers_of(*solver, state, *position);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
   PetscCall(require_range(domain, path, find_absurd_number(numbers)));
-  PetscCall(load_bodies(file, path, domain, &solver->bodies(), solver->feeders()));
+  PetscCall(load_bodies(file, path, domain, &solver->bodies(), feeders));
   solver->clear_pressure_memory();  // the file may know of fewer increments
   for (Phase &phase : solver->state().phases) phase.empty(domain, bool(phase.label));  // of the scene's start
   PetscCall(load_boxes(file, path, solver));
-  PetscCall(file->read_fields(domain, fields_of(*solver)));
-  take_numbers(numbers, solver, position);
-  CheckpointRecords records = markers_of({});
-  PetscCall(file->read_records(&records));
-  PetscCall(
-      require_range(domain, path,
-                    find_absurd_marker(records.values, {{0, 0, 0}, domain.domain_cells()}, solver->bodies().bodies(),
-                                       static_cast<int>(solver->state().phases.size()))));
-  std::vector<SurfaceMarker> markers;
-  for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
-    markers.push_back(SurfaceMarker::unpacked(&records.values[n]));
-  solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
-  PetscCall(solver->set_markers(markers));
+  state = {};
+  PetscCall(solver->carry(&state));  // the phases lie elsewhere now
+  PetscCall(file->read_fields(domain, state.fields));
+  add_position(position, &state);
+  take_numbers(numbers, state);
+  position->outputs.energy.set_numbers(numbers.reals["energy_budget"]);
+  position->outputs.energy.set_made_numbers(numbers.reals["energy_made"]);
+  PetscCall(load_markers(file, path, solver));
   PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
-  if (!file->has(records.name)) PetscCall(solver->place_markers());
+  PetscCall(place_markers(*file, solver));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 
 #include "diagnostics/surface_shear_stress.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
+#include "solver/looks.hpp"
 
 #include <algorithm>
 
@@ -61,8 +62,8 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
 
 PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   PetscFunctionBeginUser;
-  PetscCall(solver->with_bodies_on_grid(
-      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
+  PetscCall(
+      solver->looks().on_grid([&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
   PetscFunctionReturn(0);
 }
 

@@ -45,6 +45,7 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
   faces_.travels = faces_.travels || faces_.motions.back().travels();
   const bool travels = faces_.motions.back().travels(), turns = spec.turns(dimension),
              file = spec.shape == Shape::voxels || spec.shape == Shape::state;
+  phase->travels = travels;
   std::shared_ptr<const Surface> surface;
   RigidMass mass;
   if (file && travels) {
@@ -330,7 +331,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
       sums.add(per_body * index + per_component * a + 1 + d, part * arm * domain_.spacing()[d]);
     }
   };
-  const auto rests = [&](const Phase &phase) { return phase.material.is_rigid() && !travels(phase); };
+  const auto rests = [&](const Phase &phase) { return phase.material.is_rigid() && !phase.travels; };
   const auto index_of = [&](const Phase &phase, int label) {
     for (std::size_t index = 0; index < sources_.size(); ++index) {
       const Species &species = species_[faces_.bodies[images * index].motion];
@@ -558,12 +559,6 @@ void RigidBodies::say_touching(const std::array<int, 2> &bodies, double time) {
                 mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(),
                 second.name.c_str(), time);
   touching_ = text;
-}
-
-bool RigidBodies::travels(const Phase &phase) const {
-  return std::any_of(species_.begin(), species_.end(), [&](const Species &s) {
-    return s.spec.name == phase.species && s.spec.travels(domain_.dimension());
-  });
 }
 
 PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const {

@@ -33,7 +33,6 @@ public:
   PetscErrorCode measure_gaps(const std::vector<Phase> &phases);
   /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
   PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
-  bool travels(const Phase &phase) const;
   /// One line if, where they were placed last, bodies of which one travels touch.
   const std::string &touching() const { return touching_; }
   std::size_t bytes() const;

@@ -177,7 +177,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     if (run->stop) break;
     step_begin = MPI_Wtime();
     double looked = 0;
-    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Solver::Look {
+    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Look {
       if (!run->outputs.row_waits()) return {};
       return [&, see] {
         const double begin = MPI_Wtime();

@@ -9,7 +9,7 @@
 #include "flow/initial_velocity.hpp"
 #include "grid/box.hpp"
 #include "io/snapshot_format.hpp"
-#include "solver/method.hpp"
+#include "parts/method.hpp"
 
 #include <string>
 #include <vector>

@@ -8,8 +8,8 @@
 #include "bodies/placement.hpp"
 #include "grid/domain.hpp"
 #include "io/hdf5_file.hpp"
+#include "parts/state.hpp"
 #include "scene/config.hpp"
-#include "solver/state.hpp"
 
 namespace eulastic {
 

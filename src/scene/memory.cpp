@@ -1,9 +1,11 @@
 #include "scene/memory.hpp"
 
 #include "bodies/shapes.hpp"
+#include "boxes/free_bodies.hpp"
 #include "field/open_sides.hpp"
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
+#include "solver/scheme.hpp"
 #include "solver/solver.hpp"
 
 #include <unistd.h>
@@ -96,7 +98,7 @@ double fields(const Config &config) {
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (Solver::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
+  if (Scheme::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
 }
 

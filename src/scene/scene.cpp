@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
+#include "boxes/boxed_bodies.hpp"
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "rigid/rigid_bodies.hpp"
@@ -46,8 +47,8 @@ PetscErrorCode box_places(const Domain &domain, const SpeciesSpec &species, cons
     }
     if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
     const Box box = box_of_body(domain.domain_shape(), surface, place, 0, domain.spec().ghosts);
-    PetscCall(solver->add_body(numbering.first_label + place.index, numbering.species, box,
-                               fill_body(box, species, surface, place)));
+    PetscCall(solver->boxed().add(numbering.first_label + place.index, numbering.species, box,
+                                  fill_body(box, species, surface, place)));
   }
   PetscFunctionReturn(0);
 }
@@ -89,7 +90,8 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
   PetscCall(solver->set_rigid(std::move(rigid)));
   if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(domain, state, &solver->bodies()));
   for (std::size_t s = 0; s < config.species.size(); ++s)
-    if (state.phases[s].boxed && file.holds(config.species[s])) PetscCall(solver->box_bodies(static_cast<int>(s)));
+    if (state.phases[s].boxed && file.holds(config.species[s]))
+      PetscCall(solver->boxed().take_from_grid(static_cast<int>(s)));
   PetscFunctionReturn(0);
 }
 

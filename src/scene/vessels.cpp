@@ -2,6 +2,7 @@
 
 #include "bodies/shapes.hpp"
 #include "grid/domain.hpp"
+#include "solver/looks.hpp"
 
 #include <algorithm>
 
@@ -79,7 +80,7 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
   }
   std::sort(loads->begin(), loads->end(), [](const auto &one, const auto &two) { return one.label < two.label; });
   if (loads->empty()) PetscFunctionReturn(0);
-  PetscCall(solver->with_bodies_on_grid(
+  PetscCall(solver->looks().on_grid(
       [&](const std::vector<Phase> &phases) { return measure_loads(config, phases, solver, loads); }));
   PetscFunctionReturn(0);
 }

@@ -26,32 +26,36 @@ void for_forces(const Box &box, const std::vector<Phase> &phases, double time, c
 
 }  // namespace
 
-bool species_are_forced(const std::vector<Phase> &phases) {
+bool SpeciesForces::exist(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.body_force.acts(); });
 }
 
-void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, Field &out) {
-  for_forces(box, phases, time, [&](const Phase &phase, double force, int a) {
+PetscErrorCode SpeciesForces::add_rate(const MomentumRate &rate) {
+  const Box &box = flow_.domain;
+  Field &out = rate.field;
+  PetscFunctionBeginUser;
+  for_forces(box, flow_.now.phases, rate.step.force_time, [&](const Phase &phase, double force, int a) {
     const ConstView phi = phase.fraction[0];
     const auto add = [&](const Segment &row) {
       if (!phase.rows.idle(row.j, row.k))
-        add_row(row, 0.5 * scale * force, phi.row(row.j, row.k), phi.stride(a), out[a].row(row.j, row.k));
+        add_row(row, 0.5 * rate.scale * force, phi.row(row.j, row.k), phi.stride(a), out[a].row(row.j, row.k));
     };
     in_row_parts(box, [&](const RowPart &part) {
       for (const Segment &row : part.rows(box)) add(row);
     });
     for (const Segment &faces : box.open_high_faces(a)) add(faces);
   });
+  PetscFunctionReturn(0);
 }
 
-PetscErrorCode species_force_power(const Domain &domain, const std::vector<Phase> &phases, double time, double density,
-                                   const Field &velocity, double *power) {
+PetscErrorCode SpeciesForces::add_power(const FlowLook &look, double *power) {
+  const Domain &domain = flow_.domain;
+  const Field &velocity = flow_.now.velocity;
+  double total = 0;
   PetscFunctionBeginUser;
-  *power = 0;
-  if (!species_are_forced(phases)) PetscFunctionReturn(0);
   const auto add = [&](const RowPart &part, ExactSums &sum) {
     std::vector<double> values(domain.cells()[0]);
-    for_forces(domain, phases, time, [&](const Phase &phase, double force, int a) {
+    for_forces(domain, look.phases, flow_.now.time, [&](const Phase &phase, double force, int a) {
       const std::ptrdiff_t below = phase.fraction[0].stride(a);
       for (const Segment &row : part.rows(domain)) {
         if (phase.rows.idle(row.j, row.k)) continue;
@@ -61,8 +65,8 @@ PetscErrorCode species_force_power(const Domain &domain, const std::vector<Phase
       }
     });
   };
-  PetscCall(sum_row_parts(domain, 1, add, power));
-  *power *= density * domain.cell_volume();
+  PetscCall(sum_row_parts(domain, 1, add, &total));
+  *power += total * flow_.fluid.density * domain.cell_volume();
   PetscFunctionReturn(0);
 }
 

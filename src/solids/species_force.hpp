@@ -3,17 +3,22 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/phase.hpp"
-#include "grid/domain.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
 
 namespace eulastic {
 
-/// Whether any phase has one.
-bool species_are_forced(const std::vector<Phase> &phases);
-/// out += scale phi f(time) at owned faces; one ghost of phi.
-void add_species_forces(const Box &box, const std::vector<Phase> &phases, double time, double scale, Field &out);
-/// What they do on the flow: sum of density phi f . v. Collective.
-PetscErrorCode species_force_power(const Domain &domain, const std::vector<Phase> &phases, double time, double density,
-                                   const Field &velocity, double *power);
+/// Reads one ghost of phi and of the velocity.
+class SpeciesForces final : public FlowPart {
+public:
+  explicit SpeciesForces(Flow *flow) : flow_(*flow) {}
+  /// Whether any phase has one.
+  static bool exist(const std::vector<Phase> &phases);
+  PetscErrorCode add_rate(const MomentumRate &rate) override;
+  PetscErrorCode add_power(const FlowLook &look, double *power) override;
+
+private:
+  Flow &flow_;
+};
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 // Rigid bodies against exact flows: a tube anywhere in the grid, a cylinder that turns in another, an array of discs;
 // and nothing passes a wall of two cells.
+#include "rigid/rigid_surfaces.hpp"
 #include "support/rigid_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -31,7 +31,7 @@ double error(int cells, MethodKind method) {
   EXPECT_EQ(scene.run(3, method == MethodKind::fast ? 300 : 12 * cells * cells), 0);
   double power = 0;
   const State &state = scene.solver.state();
-  EXPECT_EQ(species_force_power(scene.domain, state.phases, 0, 1, state.velocity, &power), 0);
+  EXPECT_EQ(scene.solver.force_power(&power), 0);
   const double given = f * f / nu * ((s - s * s / 2) * s * s / 2 - s * s * s / 6) * grid.length[0];
   EXPECT_NEAR(power, given, 0.02 * given);
   return rms_error(scene.domain, state.velocity[0], at_face[0], [](double, double y, double) { return exact(y); });

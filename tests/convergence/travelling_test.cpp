@@ -1,5 +1,6 @@
 // Rigid bodies that travel through the grid: against the exact force on a cylinder that swings in another, and against
 // the same cylinder at rest in a fluid that comes to it.
+#include "rigid/rigid_surfaces.hpp"
 #include "support/rigid_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -122,9 +122,7 @@ protected:
     Solver &solver = scene->solver;
     const double scale = 1 / solver.spec().fluid.density;
     if (places[GetParam()].membrane) {
-      WorkSpace work(scene->domain);
-      PetscCall(work.reserve(MembraneTransport::work_fields));
-      MembraneTransport membranes(scene->domain, solver.exchange(), work, solver.spec().sides, false);
+      MembraneTransport membranes(&solver.flow());
       PetscCall(membranes.find_walls({}));
       PetscCall(membranes.add_force(solver.state().phases, scale, false, *force));
     } else {

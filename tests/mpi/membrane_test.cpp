@@ -79,7 +79,7 @@ End run(MPI_Comm comm, const Case &c) {
   EXPECT_EQ(scene.solver.surface_energy(&end.surface, &owned), 0);
   EXPECT_EQ(all_bodies(comm, scene.solver.bodies().bodies(), 2, owned, &end.bodies), 0);
   EXPECT_GT(end.surface.energy, 0.01);
-  EXPECT_EQ(scene.solver.stretch_power(&end.stretch_power), 0);
+  EXPECT_EQ(scene.solver.force_power(&end.stretch_power), 0);
   EXPECT_EQ(end.stretch_power > 0, c.stretch_force > 0);
   return end;
 }

@@ -2,6 +2,7 @@
 // beside a soft one: the same bits on any number of ranks.
 #include "base/rank_zero.hpp"
 #include "output/saved_state.hpp"
+#include "rigid/rigid_surfaces.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/rigid_scene.hpp"
 

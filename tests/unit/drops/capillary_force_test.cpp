@@ -255,14 +255,16 @@ TEST(SurfaceTension, AddsTheForcesOfItsPhases) {
   OnGrid grid({"drop", {40, 32, 1}, false, {0.61, 0.47, 0}, {0.3, 0.2, 0}});
   const Domain &domain = grid.domain;
   const Result one = find(grid, domain, grid.exchange.get(), grid.phases[0], grid.velocity);
-  WorkSpace work(domain);
-  ASSERT_EQ(work.reserve(SurfaceTension::work_fields), 0);
-  SurfaceTension tension(domain, *grid.exchange, work, true);
+  Flow flow(domain, {});
+  ASSERT_EQ(flow.work.reserve(SurfaceTension::fields), 0);
+  flow.now.velocity = std::move(grid.velocity);
+  SurfaceTension tension(&flow);
+  const FlowLook look{grid.phases, {}};
   SurfaceEnergy seen;
-  ASSERT_EQ(tension.measure(grid.phases, grid.velocity, &seen), 0);
+  ASSERT_EQ(tension.add_surface_energy(look, &seen, nullptr), 0);
   EXPECT_EQ(seen.energy, sigma * one.sum[CapillaryForce::area]);
   SurfaceEnergy both = seen;  // with that of others
-  ASSERT_EQ(tension.measure(grid.phases, grid.velocity, &both), 0);
+  ASSERT_EQ(tension.add_surface_energy(look, &both, nullptr), 0);
   EXPECT_EQ(both.energy, 2 * seen.energy);
   EXPECT_EQ(both.power, 2 * seen.power);
   EXPECT_EQ(seen.power, one.sum[CapillaryForce::power] * domain.cell_volume());

@@ -151,20 +151,20 @@ TEST(SurfaceTension, HasTheEnergyOfItsAreaAndNoNetForce) {
   for (const bool flat : {true, false}) {
     const int cells = 32;
     LevelScene box({cells, cells, flat ? 1 : cells}, {1, 1, 1}, ball({0.51, 0.49, 0.5}, 0.3, flat ? 2 : 3));
-    GhostExchange exchange(box.domain);
-    WorkSpace work(box.domain);
-    ASSERT_EQ(work.reserve(SurfaceTension::work_fields), 0);
+    Flow flow(box.domain, {});
+    ASSERT_EQ(flow.work.reserve(SurfaceTension::fields), 0);
     std::vector<Phase> phases(1);
     phases[0].material.surface_tension = 3;
     phases[0].fraction = std::move(box.fraction);
-    ASSERT_EQ(exchange.update_ghosts(phases[0].fraction, 5), 0);
+    ASSERT_EQ(flow.exchange.update_ghosts(phases[0].fraction, 5), 0);
     ASSERT_EQ(phases[0].rows.find(box.domain, phases[0].fraction[0]), 0);
     const int dim = box.domain.dimension();
-    Field force(box.domain, dim), velocity(box.domain, dim);
-    velocity.fill(1, 0.7);
-    SurfaceTension tension(box.domain, exchange, work, true);
+    Field force(box.domain, dim);
+    flow.now.velocity = Field(box.domain, dim);
+    flow.now.velocity.fill(1, 0.7);
+    SurfaceTension tension(&flow);
     SurfaceEnergy seen;
-    ASSERT_EQ(tension.measure(phases, velocity, &seen), 0);
+    ASSERT_EQ(tension.add_surface_energy({phases, {}}, &seen, nullptr), 0);
     const double area = flat ? 2 * M_PI * 0.3 : 4 * M_PI * 0.09;
     EXPECT_NEAR(seen.energy / (3 * area), 1, 4e-3);
     ASSERT_EQ(tension.add_force(phases, 1, true, force), 0);

@@ -1,5 +1,6 @@
 // Fields that rest away from bodies: memory follows what is written.
 #include "output/saved_state.hpp"
+#include "solver/looks.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -98,7 +99,7 @@ void expect_little_memory(MethodKind kind) {
   const double before = own_memory(), field = double(scene.domain.layout().size) * sizeof(double);
   for (int step = 0; step < 3; ++step) ASSERT_EQ(scene.solver.step(1e-4), 0);
   const std::vector<Phase> *phases = nullptr;
-  ASSERT_EQ(scene.solver.phases_now(&phases), 0);
+  ASSERT_EQ(scene.solver.looks().phases(&phases), 0);
   std::uint64_t hash = 0;
   ASSERT_EQ(state_hash(&scene.solver, &hash), 0);
   EXPECT_GT((*phases)[0].tensor.field[0](53, 53, 53), 1.1);

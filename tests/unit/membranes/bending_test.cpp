@@ -86,15 +86,15 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   phase.material.membrane.spontaneous_curvature = c0;
   EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
   EXPECT_EQ(phase.rows.find(scene.domain, phase.fraction[0]), 0);
-  WorkSpace work(scene.domain);
-  EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-  const BoxSides sides{};
-  MembraneTransport membrane(scene.domain, exchange, work, sides, true);
-  EXPECT_EQ(membrane.start(&phase), 0);
+  Flow flow(scene.domain, {});
+  EXPECT_EQ(flow.work.reserve(MembraneTransport::fields), 0);
+  flow.now.phases = std::move(phases);
+  MembraneTransport membrane(&flow);
+  EXPECT_EQ(membrane.start(), 0);
   Field force(scene.domain, dim);
   Seen seen{};
   const double volume = scene.domain.cell_volume() * (dim == 2 ? cells : 1);
-  EXPECT_EQ(membrane.add_force(phases, 1, true, force), 0);
+  EXPECT_EQ(membrane.add_force(flow.now.phases, 1, true, force), 0);
   scene.each_owned([&](int i, int j, int k) {
     for (int d = 0; d < dim; ++d) {
       std::array<bool, 3> at{true, true, true};
@@ -106,7 +106,8 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   });
   EXPECT_EQ(exchange.update_ghosts(scene.velocity, 1), 0);
   SurfaceEnergy measured;
-  EXPECT_EQ(membrane.measure(phases, scene.velocity, &measured), 0);
+  flow.now.velocity = std::move(scene.velocity);
+  EXPECT_EQ(membrane.add_surface_energy({flow.now.phases, {}}, &measured, nullptr), 0);
   seen.energy = measured.energy;
   seen.power = measured.power;
   return seen;

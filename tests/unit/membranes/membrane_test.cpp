@@ -243,26 +243,27 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
 TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    WorkSpace work(ball.domain);
-    ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-    const BoxSides sides{};
-    MembraneTransport membrane(ball.domain, *ball.exchange, work, sides, false);
-    ball.phases[0].material.law = Law::membrane;
-    ball.phases[0].material.membrane.shear_modulus = 2;
-    Field velocity(ball.domain, dim);
+    Flow flow(ball.domain, {});
+    ASSERT_EQ(flow.work.reserve(MembraneTransport::fields), 0);
+    flow.now.phases = std::move(ball.phases);
+    flow.now.velocity = Field(ball.domain, dim);
+    Phase &phase = flow.now.phases[0];
+    MembraneTransport membrane(&flow);
+    phase.material.law = Law::membrane;
+    phase.material.membrane.shear_modulus = 2;
     for (const double stretch : {1.0, 1.2}) {
-      ball.phases[0].material.membrane.initial_area_stretch = stretch;
-      ball.phases[0].tensor.field = tensor_at_rest(ball.domain);
-      ASSERT_EQ(membrane.start(&ball.phases[0]), 0);
+      phase.material.membrane.initial_area_stretch = stretch;
+      phase.tensor.field = tensor_at_rest(ball.domain);
+      ASSERT_EQ(membrane.start(), 0);
       SurfaceEnergy seen;
-      ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
+      ASSERT_EQ(membrane.add_surface_energy({flow.now.phases, {}}, &seen, nullptr), 0);
       const double area = dim == 2 ? 2 * M_PI * Ball::radius : 4 * M_PI * Ball::radius * Ball::radius;
       // Stretch of area J: in the plane lengths are J, in space J^(1/2).
       const double J = stretch, trace = dim == 2 ? J * J + 1 : 2 * J;
       const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
       EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
       Field force(ball.domain, dim);
-      ASSERT_EQ(membrane.add_force(ball.phases, 1, false, force), 0);
+      ASSERT_EQ(membrane.add_force(flow.now.phases, 1, false, force), 0);
       // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
       double virial = 0, largest = 0;
       ball.each_owned([&](int i, int j, int k) {
@@ -288,27 +289,25 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
 TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
   for (const double stretch : {1.2, 5.0}) {
     Ball ball(2);
-    WorkSpace work(ball.domain);
-    ASSERT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-    const BoxSides sides{};
-    MembraneTransport membrane(ball.domain, *ball.exchange, work, sides, false);
-    Phase &phase = ball.phases[0];
+    Flow flow(ball.domain, {});
+    ASSERT_EQ(flow.work.reserve(MembraneTransport::fields), 0);
+    flow.now.phases = std::move(ball.phases);
+    flow.now.velocity = Field(ball.domain, 2);
+    flow.now.velocity.fill(0, 1);
+    MembraneTransport membrane(&flow);
+    Phase &phase = flow.now.phases[0];
     phase.material.law = Law::membrane;
     phase.material.membrane.shear_modulus = 2;
     phase.tensor.field = tensor_at_rest(ball.domain);
-    ASSERT_EQ(membrane.start(&phase), 0);
-    std::vector<SurfaceMarker> markers;
-    ASSERT_EQ(membrane.place_markers(phase, 0, 0, &markers), 0);
+    ASSERT_EQ(membrane.start(), 0);
+    std::vector<SurfaceMarker> &markers = flow.now.markers;
     ASSERT_GT(markers.size(), 50u);
     for (SurfaceMarker &marker : markers)
       for (int d = 0; d < 2; ++d)
         marker.rest[d] = ball.centre[d] + std::remainder(marker.rest[d] - ball.centre[d], 1.0) / stretch;
-    Field velocity(ball.domain, 2);
-    velocity.fill(0, 1);
-    MembraneTransport::Memory memory{&markers};
-    ASSERT_EQ(membrane.advance(0.2 / Ball::cells, velocity, &memory, &ball.phases), 0);
+    ASSERT_EQ(membrane.move(0.2 / Ball::cells, &flow.now.phases), 0);
     SurfaceEnergy seen;
-    ASSERT_EQ(membrane.measure(ball.phases, velocity, &seen), 0);
+    ASSERT_EQ(membrane.add_surface_energy({flow.now.phases, {}}, &seen, nullptr), 0);
     const double length = 2 * M_PI * Ball::radius;
     if (stretch > 2)
       EXPECT_LT(seen.energy, 1e-3 * length);

@@ -14,10 +14,8 @@ constexpr double radius = 0.33, force = 0.7, part = 0.1;
 
 // A ball or disc whose centre has this x, in a periodic box.
 struct Pulled : InterfaceScene {
-  std::vector<Phase> phases{1};
-  std::unique_ptr<GhostExchange> exchange;
-  BodyOwners owners;
-  StretchForces forces;
+  std::unique_ptr<Flow> flow;
+  std::unique_ptr<StretchForces> forces;
   int dim;
   Real3 centre;
 
@@ -27,16 +25,25 @@ struct Pulled : InterfaceScene {
     spec.length = {1, 1, dim == 2 ? 1. / cells : 1};
     EXPECT_EQ(create(PETSC_COMM_SELF, spec), 0);
     set_fraction(ball(centre, radius, dim, true));
-    exchange = std::make_unique<GhostExchange>(domain);
-    Phase &phase = phases[0];
+    flow = std::make_unique<Flow>(domain, SolverSpec{});
+    forces = std::make_unique<StretchForces>(flow.get());
+    EXPECT_EQ(flow->work.reserve(forces->work_fields()), 0);
+    flow->now.phases.resize(1);
+    Phase &phase = flow->now.phases[0];
     phase.fraction = std::move(fraction);
     phase.label = Field(domain, 1);
     phase.material.stretch_force = {force, part};
     each_owned([&](int i, int j, int k) { phase.label[0](i, j, k) = phase.fraction[0](i, j, k) > 1e-12; });
-    EXPECT_EQ(exchange->update_ghosts(phase.fraction, 1), 0);
+    EXPECT_EQ(flow->exchange.update_ghosts(phase.fraction, 1), 0);
     EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
-    EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
-    EXPECT_EQ(forces.find(domain, phases, owners, {{int(x * cells) % cells, 19, 0}}), 0);
+    flow->bodies.add_phase(domain, {{{std::fmod(x, 1.0), centre[1], centre[2]}, {}}});
+  }
+  // What they add to a rate.
+  Field rate(double scale) {
+    Field rate(domain, dim);
+    const MomentumStep step{};
+    EXPECT_EQ(forces->add_rate({step, scale, rate, nullptr, {}, 0}), 0);
+    return rate;
   }
   /// From the centre, of a face or a cell.
   double x_of(int i, bool cell) const {
@@ -64,9 +71,8 @@ TEST(StretchForce, PullsThatPartOfTheVolumeAtEitherEnd) {
     const double middle = cap(dim, low).second;
     for (const double x : {0.51, 0.03}) {
       Pulled body(dim, x);
-      Field rate(body.domain, dim), scratch(body.domain, 1);
       constexpr double scale = 0.5;
-      ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&rate, scale}}), 0);
+      const Field rate = body.rate(scale);
       const double volume = body.domain.cell_volume();
       double all = 0, sum[2] = {}, place[2] = {}, largest = 0;
       body.each_owned([&](int i, int j, int k) {
@@ -92,8 +98,7 @@ TEST(StretchForce, FollowsTheBodyContinuously) {
   double before = 0, most = 0, travelled = 0;
   for (int n = 0; n <= 20; ++n) {
     Pulled body(2, 0.51 + 5 * n * step);
-    Field rate(body.domain, 2), scratch(body.domain, 1);
-    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&rate, 1}}), 0);
+    const Field rate = body.rate(1);
     double moment = 0;
     body.each_owned([&](int i, int j, int k) {
       if (const double at = body.x_of(i, false); at > 0)
@@ -116,13 +121,13 @@ TEST(StretchForce, PowerIsThatOfTheEnds) {
     for (int k = 0; k < body.domain.cells()[2]; ++k)
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i <= cells; ++i) body.velocity[0](i, j, k) = 3 + rate * i / cells;
-    Field force_rate(body.domain, dim), scratch(body.domain, 1);
-    ASSERT_EQ(body.forces.add(*body.exchange, body.phases, scratch, {{&force_rate, 1}}), 0);
+    body.flow->now.velocity = std::move(body.velocity);
+    const Field &velocity = body.flow->now.velocity, force_rate = body.rate(1);
     double expected = 0, power = 0;
     body.each_owned([&](int i, int j, int k) {
-      expected += force_rate[0](i, j, k) * body.velocity[0](i, j, k) * body.domain.cell_volume();
+      expected += force_rate[0](i, j, k) * velocity[0](i, j, k) * body.domain.cell_volume();
     });
-    ASSERT_EQ(body.forces.power(body.phases, body.velocity, &power), 0);
+    ASSERT_EQ(body.forces->add_power({body.flow->now.phases, {}}, &power), 0);
     EXPECT_NEAR(power, expected, 1e-12);
     EXPECT_GT(power, rate * force * radius);
   }

@@ -47,17 +47,19 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   EXPECT_EQ(exchange.update_ghosts(scene.velocity, 1), 0);
   EXPECT_EQ(exchange.update_ghosts(phase.fraction, 5), 0);
   EXPECT_EQ(phase.rows.find(scene.domain, phase.fraction[0]), 0);
-  WorkSpace work(scene.domain);
-  EXPECT_EQ(work.reserve(MembraneTransport::work_fields), 0);
-  const BoxSides sides{};
-  MembraneTransport membrane(scene.domain, exchange, work, sides, false);
-  EXPECT_EQ(membrane.start(&phase), 0);
+  eulastic::Flow still(scene.domain, {});
+  EXPECT_EQ(still.work.reserve(MembraneTransport::fields), 0);
+  still.now.phases = std::move(phases);
+  still.now.velocity = std::move(scene.velocity);
+  MembraneTransport membrane(&still);
+  EXPECT_EQ(membrane.start(), 0);
   std::vector<SurfaceSample> samples;
-  EXPECT_EQ(membrane.measure(phases, scene.velocity, energy, &samples), 0);
+  EXPECT_EQ(membrane.add_surface_energy({still.now.phases, {}}, energy, &samples), 0);
   std::vector<SurfaceMeasure> bodies;
   BodyOwners owners;
   EXPECT_EQ(owners.connect(PETSC_COMM_SELF, 1, {0}), 0);
-  EXPECT_EQ(measure_surfaces(scene.domain, phases, samples, owners, {{20, 20, dim == 2 ? 0 : 20}}, &bodies), 0);
+  EXPECT_EQ(measure_surfaces(scene.domain, still.now.phases, samples, owners, {{20, 20, dim == 2 ? 0 : 20}}, &bodies),
+            0);
   return bodies.at(0);
 }
 

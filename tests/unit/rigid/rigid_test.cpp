@@ -1,4 +1,5 @@
 // Where rigid bodies cut the faces of the velocity.
+#include "rigid/rigid_surfaces.hpp"
 #include "support/rigid_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,371 @@
+#include "boxes/boxed_bodies.hpp"
+
+#include "base/deliver.hpp"
+#include "bodies/unwrap.hpp"
+#include "boxes/share_out.hpp"
+#include "solids/grid_bodies.hpp"
+#include "solids/transport.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+
+bool BoxedBodies::exist() const {
+  const std::vector<Phase> &phases = flow_.now.phases;
+  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.boxed; });
+}
+
+PetscErrorCode BoxedBodies::add(int number, int species, const Box &box, Phase &&phase) {
+  PetscFunctionBeginUser;
+  phase.tensor.rule = evolve_rule(flow_, phase.material);
+  PetscCall(bodies_.add(number, species, box, std::move(phase)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::add_packed(const std::vector<double> &packed) {
+  PetscFunctionBeginUser;
+  PetscCall(bodies_.add_packed(packed, flow_.now.phases[static_cast<int>(packed[1])]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::add_copies(const std::vector<std::pair<int, int>> &copies,
+                                       const std::map<int, Int3> &shifts) {
+  PetscFunctionBeginUser;
+  for (const auto &[label, copy] : copies)
+    PetscCall(bodies_.add_copy(label, copy, shifts.at(label), flow_.now.phases[flow_.bodies.species(label)]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::refit() {
+  PetscFunctionBeginUser;
+  forget_looks();
+  PetscCall(bodies_.follow());
+  PetscCall(show_fractions(list(), &flow_.now.phases));
+  PetscFunctionReturn(0);
+}
+
+namespace {
+
+// A body on the grid: its box, and the rank that is to have it.
+struct Found {
+  int number;
+  Int3 begin, end;
+};
+
+// What a box that has been brought from the grid holds of one of its bodies: phi where that has the label, B where any
+// cell of the body lies, I elsewhere.
+Phase take_body(const Box &box, const Phase &like, int number, const Field &brought) {
+  const ConstView phi = brought[0], label = brought[1];
+  Phase phase;
+  phase.species = like.species;
+  phase.material = like.material;
+  phase.fraction = Field(box, 1);
+  phase.tensor.field = tensor_at_rest(box);
+  phase.tensor.centred = like.tensor.centred;
+  for_points(box.rows(), [&](int i, int j, int k) {
+    if (label(i, j, k) == number) phase.fraction[0](i, j, k) = phi(i, j, k);
+  });
+  const ConstView own = std::as_const(phase).fraction[0];
+  for (int c = 0; c < phase.tensor.field.count(); ++c) {
+    const TensorComponent &component = phase.tensor.components()[c];
+    const Staggering &at = component.at;
+    const auto [low_a, low_b] = component.steps(own);
+    for (int k = 0; k < box.points_end(2, at[2]); ++k)
+      for (int j = 0; j < box.points_end(1, at[1]); ++j)
+        for (int i = 0; i < box.points_end(0, at[0]); ++i) {
+          const double *here = &own(i, j, k);
+          if (here[0] > 0 || here[-low_a] > 0 || here[-low_b] > 0 || here[-low_a - low_b] > 0)
+            phase.tensor.field[c](i, j, k) = brought[2 + c](i, j, k);
+        }
+  }
+  return phase;
+}
+
+}  // namespace
+
+// References are at the centres of bodies: a body is shorter than the domain.
+PetscErrorCode BoxedBodies::take_from_grid(int species) {
+  const Domain &domain = flow_.domain;
+  PetscFunctionBeginUser;
+  Phase &phase = flow_.now.phases[species];
+  BodyOwners owners;
+  std::vector<Int3> references;
+  PetscCall(flow_.bodies.connect(domain, flow_.now.phases, {}, &owners, &references));
+  const auto bodies = static_cast<std::size_t>(owners.owned().size());
+  std::array<std::vector<double>, 6> here, ends;  // the last cells from the reference, low and high
+  for (int e = 0; e < 6; ++e) here[e].assign(owners.here().size(), -HUGE_VAL), ends[e].assign(bodies, -HUGE_VAL);
+  for_points(domain.rows(), [&](int i, int j, int k) {
+    const int slot = owners.slot(static_cast<int>(phase.label[0](i, j, k)) - 1);
+    if (slot < 0 || !(phase.fraction[0](i, j, k) > 0)) return;
+    const Real3 x = offset(domain, references[slot], {i, j, k});
+    for (int d = 0; d < 3; ++d) {
+      here[2 * d][slot] = std::max(here[2 * d][slot], -x[d]);
+      here[2 * d + 1][slot] = std::max(here[2 * d + 1][slot], x[d]);
+    }
+  });
+  for (int e = 0; e < 6; ++e) PetscCall(owners.reduce(1, MPI_MAX, here[e], &ends[e]));
+  std::vector<Found> found;
+  std::vector<int> ranks;
+  PetscCall(flow_.bodies.owned_references(domain, &references));
+  for (std::size_t b = 0; b < bodies; ++b) {
+    if (!(ends[0][b] > -HUGE_VAL)) continue;
+    Found &body = found.emplace_back();
+    body.number = owners.owned().begin + static_cast<int>(b) + 1;
+    const Int3 &at = references[b];
+    for (int d = 0; d < 3; ++d) {
+      body.begin[d] = at[d] - static_cast<int>(ends[2 * d][b]);
+      body.end[d] = at[d] + static_cast<int>(ends[2 * d + 1][b]) + 1;
+    }
+    ranks.push_back(domain.owner(domain.image(0, at[0]), domain.image(1, at[1]), domain.image(2, at[2])));
+  }
+  PetscCall(deliver(domain.comm(), ranks, &found));
+  std::vector<Box> boxes;
+  std::vector<BoxExchange::NumberedBox> numbered;
+  for (const Found &body : found) {
+    Int3 cells{};
+    for (int d = 0; d < 3; ++d) cells[d] = body.end[d] - body.begin[d];
+    boxes.emplace_back(domain.domain_shape(), body.begin, cells, domain.spec().ghosts);
+  }
+  for (std::size_t n = 0; n < found.size(); ++n) numbered.push_back({&boxes[n], found[n].number});
+  const int components = 2 + phase.tensor.field.count();
+  Field grid(domain, components);
+  const std::size_t size = domain.layout().size;
+  std::copy_n(phase.fraction.data(), size, grid.data());
+  std::copy_n(phase.label.data(), size, grid.data() + size);
+  std::copy_n(phase.tensor.field.data(), (components - 2) * size, grid.data() + 2 * size);
+  BoxExchange exchange(domain, components);
+  PetscCall(exchange.connect(numbered));
+  PetscCall(exchange.fetch(grid));
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    Field all(boxes[n], components);
+    exchange.copy_to_box(n, grid, all);
+    PetscCall(add(found[n].number, species, boxes[n], take_body(boxes[n], phase, found[n].number, all)));
+  }
+  phase.empty(domain, false);
+  PetscFunctionReturn(0);
+}
+
+// Where no wall holds the fluid, the net force of surfaces that pull would move all of it.
+PetscErrorCode BoxedBodies::start_surfaces() {
+  bool membranes = false, pulls = false;
+  std::vector<const Phase *> rigid;
+  PetscFunctionBeginUser;
+  for (const Phase &phase : flow_.now.phases) {
+    const Material &material = phase.material;
+    if (material.is_rigid() && !phase.travels) rigid.push_back(&phase);
+    if (!phase.boxed) continue;
+    membranes = membranes || material.is_membrane();
+    pulls = pulls || material.surface_tension > 0 || (material.is_membrane() && material.membrane.bending_modulus > 0);
+  }
+  if (!membranes && !pulls) PetscFunctionReturn(0);
+  bodies_.set_surroundings(flow_.drifts() && pulls, membranes ? rigid : std::vector<const Phase *>());
+  PetscCall(bodies_.start_membranes());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::start() {
+  PetscFunctionBeginUser;
+  PetscCall(start_surfaces());
+  PetscCall(bodies_.place_markers());
+  PetscCall(resume());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::resume() {
+  PetscFunctionBeginUser;
+  PetscCall(share());
+  PetscCall(show_fractions(list(), &flow_.now.phases));
+  PetscFunctionReturn(0);
+}
+
+// Every rank has its part of the flow and of the phases on the grid, whatever bodies it gets.
+PetscErrorCode BoxedBodies::share() {
+  const Domain &domain = flow_.domain;
+  std::vector<BodyShare> bodies;
+  std::vector<int> ranks;
+  double load = flow_work * double(domain.cell_count());
+  PetscFunctionBeginUser;
+  if (!exist()) PetscFunctionReturn(0);
+  forget_looks();
+  for (const Phase &phase : flow_.now.phases)
+    if (!phase.boxed) load += phase_work(phase.material, false) * double(phase.rows.cells());
+  for (const BodyInBox &body : list()) {
+    const Layout &layout = body.box->layout();
+    Int3 middle{};
+    for (int d = 0; d < 3; ++d) middle[d] = domain.image(d, layout.begin[d] + layout.cells[d] / 2);
+    const double cost = phase_work(body.phase->material, true) * body.box->cell_count();
+    bodies.push_back({body.number, domain.owner(middle[0], middle[1], middle[2]), cost});
+  }
+  PetscCall(share_out(domain.comm(), load, bodies, &ranks));
+  PetscCall(bodies_.give(ranks, flow_.now.phases));
+  PetscCall(bodies_.follow());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::begin_step() {
+  constexpr int shared_every = 100;  // steps: bodies move by some cells meanwhile
+  PetscFunctionBeginUser;
+  forget_looks();
+  if (flow_.now.step > 0 && flow_.now.step % shared_every == 0) PetscCall(share());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::begin_slope(double dt, Field &slope) { return bodies_.add_forces({{&slope, -1 / dt}}); }
+
+PetscErrorCode BoxedBodies::move(double dt, std::vector<Phase> *phases) {
+  long unresolved = 0;
+  PetscFunctionBeginUser;
+  if (phases == &flow_.now.phases) {
+    PetscCall(bodies_.advance({flow_.now.time, dt, flow_.now.step}, flow_.now.velocity, &unresolved));
+    flow_.now.forgotten += unresolved;
+    PetscCall(show_fractions(list(), phases));
+  } else {
+    std::vector<BodyInBox> seen;
+    PetscCall(look(dt, &seen));
+    PetscCall(show_fractions(seen, phases));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::add_rate(const MomentumRate &rate) {
+  PetscFunctionBeginUser;
+  std::vector<WeightedTarget> targets{{&rate.field, rate.scale}};
+  if (rate.slope.field) targets.push_back(rate.slope);
+  PetscCall(bodies_.add_forces(targets));
+  take_off_mean(flow_.domain, bodies_.mean_force(), rate.field);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::add_power(const FlowLook &look, double *power) {
+  double own = 0;
+  PetscFunctionBeginUser;
+  PetscCall(bodies_.stretch_power(look.boxed, flow_.now.phases, &own));
+  *power += own;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+                                               std::vector<SurfaceSample> *) {
+  PetscFunctionBeginUser;
+  const std::vector<Phase> &phases = flow_.now.phases;
+  if (std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
+        return phase.boxed && (phase.material.is_membrane() || phase.material.surface_tension > 0);
+      }))
+    PetscCall(bodies_.measure_surfaces(look.boxed, phases, measured, &samples_));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &seen, int first,
+                                                  std::vector<SurfaceMeasure> *owned) const {
+  struct Found {
+    int number;
+    SurfaceMeasure measure;
+  };
+  std::vector<Found> found;
+  std::vector<int> ranks;
+  PetscFunctionBeginUser;
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    if (!seen[b].phase->material.is_membrane()) continue;
+    found.push_back({seen[b].number, measure_surface_in_box(seen[b], samples_[b])});
+    ranks.push_back(BodyRange::owner(seen[b].number - 1, flow_.bodies.bodies(), flow_.domain.ranks()));
+  }
+  PetscCall(deliver(flow_.domain.comm(), ranks, &found));
+  for (const Found &one : found) (*owned)[one.number - 1 - first] = one.measure;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::forget_unresolved(const std::vector<double> &trace) {
+  long count = 0;
+  PetscFunctionBeginUser;
+  if (exist()) PetscCall(bodies_.forget_unresolved(trace, &count));
+  flow_.now.forgotten += count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::look(double behind, std::vector<BodyInBox> *seen) {
+  PetscFunctionBeginUser;
+  if (exist() && !is_seen_) {
+    PetscCall(bodies_.look({flow_.now.time, behind, flow_.now.step}, flow_.now.velocity, &seen_));
+    is_seen_ = true;
+  }
+  *seen = seen_;
+  PetscFunctionReturn(0);
+}
+
+void BoxedBodies::forget_looks() {
+  is_seen_ = false;
+  seen_.clear();
+  shown_.clear();
+}
+
+// phi on the grid of species whose viscosity or force the flow has to know.
+PetscErrorCode BoxedBodies::show_fractions(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases) {
+  std::map<int, Phase *> shown;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    const Material &material = (*phases)[p].material;
+    if ((*phases)[p].boxed &&
+        (viscosity_of(material, flow_.fluid) != flow_.fluid.viscosity || material.body_force.acts()))
+      shown[static_cast<int>(p)] = &(*phases)[p];
+  }
+  if (shown.empty()) PetscFunctionReturn(0);
+  PetscCall(bodies_.show_fractions(seen, shown));
+  for (const auto &[p, phase] : shown) PetscCall(flow_.find_rows(phase));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::show_all_fractions(std::map<int, Phase> *phases) {
+  std::map<int, Phase *> shown;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
+    if (!flow_.now.phases[p].boxed) continue;
+    Phase &phase = (*phases)[static_cast<int>(p)];
+    phase.fraction = Field(flow_.domain, 1);
+    shown[static_cast<int>(p)] = &phase;
+  }
+  PetscCall(bodies_.show_fractions(list(), shown));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxedBodies::show_on_grid(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases,
+                                         const std::function<PetscErrorCode()> &look) {
+  PetscFunctionBeginUser;
+  if (exist() && shown_.empty()) PetscCall(show(seen));
+  const auto swap = [&] {
+    for (auto &[species, phase] : shown_) std::swap((*phases)[species], phase);
+  };
+  swap();
+  struct Restore {
+    const decltype(swap) &undo;
+    ~Restore() { undo(); }
+  } const restore{swap};
+  PetscCall(look());
+  PetscFunctionReturn(0);
+}
+
+// The phases of species whose bodies lie in boxes, as they would be on the grid.
+PetscErrorCode BoxedBodies::show(const std::vector<BodyInBox> &seen) {
+  std::map<int, Phase *> shown;
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
+    const Phase &of_species = flow_.now.phases[p];
+    if (!of_species.boxed) continue;
+    Phase &phase = shown_[static_cast<int>(p)];
+    phase.species = of_species.species;
+    phase.material = of_species.material;
+    phase.tensor.rule = of_species.tensor.rule;
+    phase.empty(flow_.domain, true);
+    shown[static_cast<int>(p)] = &phase;
+  }
+  PetscCall(bodies_.show(seen, shown));
+  for (auto &[species, phase] : shown_) {
+    PetscCall(flow_.find_rows(&phase));
+    PetscCall(flow_.exchange.update_ghosts(phase.label, 1, &phase.rows));
+    PetscCall(find_solid(flow_.domain, phase));
+    PetscCall(flow_.place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

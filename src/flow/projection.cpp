@@ -1,0 +1,159 @@
+#include "flow/projection.hpp"
+
+#include "field/open_sides.hpp"
+#include "flow/correction.hpp"
+#include "flow/divergence.hpp"
+#include "flow/momentum.hpp"
+#include "flow/viscous_stress.hpp"
+#include "parts/flow_part.hpp"
+#include "pressure/acm.hpp"
+#include "pressure/acm_sweeps.hpp"
+#include "pressure/ksp.hpp"
+#include "pressure/obstacles.hpp"
+#include "pressure/smac.hpp"
+#include "rigid/rigid_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eulastic {
+
+int Projection::work_fields(const Method &method, bool open, bool rigid) {
+  const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
+  const bool formula = method.pressure == PressureKind::acm && !sweeps && !open;
+  return 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
+         (rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
+}
+
+PetscErrorCode Projection::create(int memory) {
+  const SolverSpec &spec = flow_.spec;
+  PetscFunctionBeginUser;
+  if (spec.pressure == PressureKind::smac) {
+    PetscCall(SmacSolver::create(flow_.domain, flow_.exchange, &solver_));
+  } else if (spec.pressure == PressureKind::ksp) {
+    auto ksp = std::make_unique<KspSolver>();
+    PetscCall(ksp->create(flow_.domain, flow_.exchange));
+    solver_ = std::move(ksp);
+  } else if (spec.acm_of_the_paper()) {
+    solver_ = std::make_unique<AcmSolver>(flow_.domain);
+  } else {
+    auto sweeps = std::make_unique<AcmSweepSolver>();
+    PetscCall(sweeps->create(flow_.domain, flow_.exchange, {spec.acm_sweeps_max, memory, spec.acm_coarse}, flow_.work));
+    solver_ = std::move(sweeps);
+  }
+  PetscFunctionReturn(0);
+}
+
+// (10) or (11), for a velocity with one ghost.
+PetscErrorCode Projection::find_increment(double dt, double target, const Field &velocity, Field &pressure,
+                                          Field &divergence, Field &increment) {
+  PetscFunctionBeginUser;
+  PetscCall(compute_divergence(flow_.domain, flow_.fluid.density, velocity, divergence));
+  PetscCall(flow_.exchange.update_ghosts(divergence, 1));
+  fill_ghosts_of_increment(flow_.domain, divergence[0], 1);
+  solver_->set_target(target);
+  PetscCall(solver_->solve(dt, divergence, pressure, increment));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Projection::correct(double dt, double rotation, const Field &divergence, const Field &increment,
+                                   Field &velocity, Field &pressure) {
+  const double density = flow_.fluid.density;
+  PetscFunctionBeginUser;
+  if (const kernels::AcmIncrement *formula = solver_->formula())
+    PetscCall(correct_velocity(flow_.domain, density, dt, rotation, *formula, divergence, velocity, pressure));
+  else
+    PetscCall(correct_velocity(flow_.domain, density, dt, rotation, increment, divergence, velocity, pressure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Projection::end_step(double dt, const PressureRotation &rotation, const Field &viscosity) {
+  const Real3 &h = flow_.domain.spacing();
+  const double shortest = flow_.domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
+  const double target = flow_.spec.acm_tolerance * flow_.fluid.density * flow_.speed_scale(dt) / shortest;
+  WorkSpace::Lease of_velocity, increment;
+  PetscFunctionBeginUser;
+  PetscCall(flow_.work.take("divergence", 1, &of_velocity));
+  if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
+  Field &divergence = of_velocity.fields(), &pressure = flow_.now.pressure, &velocity = flow_.velocity_star;
+  PetscCall(find_increment(dt, target, velocity, pressure, divergence, increment.fields()));
+  for (FlowPart *part : flow_.parts) {
+    PetscCall(part->begin_correction(divergence));
+    if (!solver_->formula()) PetscCall(part->see_increment(increment.fields()));
+  }
+  PetscCall(correct(dt, rotation.uniform, divergence, increment.fields(), velocity, pressure));
+  for (FlowPart *part : flow_.parts) PetscCall(part->correct(flow_.now.time + dt, dt, increment.fields(), velocity));
+  for (FlowPart *part : flow_.parts) PetscCall(part->end_projection(dt, divergence, increment.fields()));
+  if (rotation.local > 0) PetscCall(rotate_pressure(flow_.domain, viscosity, rotation.local, divergence, pressure));
+  flow_.now.velocity.swap(velocity);
+  PetscFunctionReturn(0);
+}
+
+// The single step of the paper's artificial compressibility is repeated.
+PetscErrorCode Projection::make_solenoidal(bool is_rate, Field &velocity, Field &pressure) {
+  constexpr double dt = 1;
+  const int times = flow_.spec.pressure == PressureKind::acm && flow_.spec.acm_of_the_paper() ? 200 : 1;
+  WorkSpace::Lease of_velocity, increment;
+  Field found(flow_.domain, 1);  // without a pressure its relaxation has nothing to do
+  PetscFunctionBeginUser;
+  PetscCall(flow_.work.take("divergence", 1, &of_velocity));
+  if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
+  Field &divergence = of_velocity.fields();
+  for (int n = 0; n < times; ++n) {
+    PetscCall(flow_.exchange.update_ghosts(velocity, 1));
+    PetscCall(find_increment(dt, 0, velocity, found, divergence, increment.fields()));
+    PetscCall(correct(dt, 0, divergence, increment.fields(), velocity, found));
+    for (FlowPart *part : flow_.parts) PetscCall(part->correct(flow_.now.time, dt, increment.fields(), velocity));
+    if (flow_.rigid && is_rate) clear_rigid_faces(flow_.domain, *flow_.rigid, velocity);
+    for (const Segment &row : flow_.domain.rows()) {
+      const double *q = found[0].row(row.j, row.k);
+      double *p = pressure[0].row(row.j, row.k);
+      for (int i = 0; i < row.i_end; ++i) p[i] += q[i];
+    }
+    found.clear();
+  }
+  PetscFunctionReturn(0);
+}
+
+namespace {
+
+// What comes in changes by per time.
+BoxSides rates_of(const BoxSides &sides, double time) {
+  BoxSides rates = sides;
+  for (auto &pair : rates)
+    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};  // at the start nothing is fed
+  return rates;
+}
+
+}  // namespace
+
+// The first step would do both as well, with a pressure that grows as 1/dt; the next would start from that.
+PetscErrorCode start_flow(Flow *flow, Projection *projection) {
+  const Domain &domain = flow->domain;
+  State &now = flow->now;
+  const int dim = domain.dimension();
+  double largest = 0;
+  Field unused(domain, 1), rate(domain, dim), no_advection;
+  PetscFunctionBeginUser;
+  PetscCall(projection->make_solenoidal(false, now.velocity, unused));
+  PetscCall(flow->update_velocity_ghosts(now.velocity, now.time, Box::stencil_width));
+  for_points(domain.rows(),
+             [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now.pressure[0](i, j, k))); });
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
+  if (largest > 0) PetscFunctionReturn(0);  // of a file
+  fill_ghosts_of_given_pressure(domain, flow->spec.sides, now.time, flow->fluid.density, now.velocity, now.pressure[0]);
+  const MomentumStep step{now.time, 1, flow->speed_scale(1), {}};
+  PetscCall(momentum_rate(domain, flow->fluid, step, now.velocity, now.pressure, {}, no_advection, rate));
+  for (int d = 0; d < dim; ++d)
+    if (domain.is_wall(d)) {
+      close_wall_faces(domain, rate[d], d);
+      set_inflow_faces(domain, rates_of(flow->spec.sides, now.time), 0, rate[d], d);
+    }
+  const double nu = flow->fluid.kinematic_viscosity();
+  if (flow->rigid) see_rigid_surfaces(domain, *flow->rigid, nu, nu, now.time, 0, now.velocity, rate, nullptr);
+  PetscCall(projection->make_solenoidal(true, rate, now.pressure));
+  PetscCall(flow->update_centre_ghosts(now.pressure, 1));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,38 @@
+// Bodies where volume crosses sides of the box: they flow out, or are taken out whole, and come in from feeders
+// (docs/method.md, section 20).
+#pragma once
+
+#include "boxes/boxed_bodies.hpp"
+#include "openings/feeders.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
+
+#include <map>
+
+namespace eulastic {
+
+class BodiesAtSides final : public FlowPart {
+public:
+  /// `feeders`: null where no side has one.
+  BodiesAtSides(Flow *flow, BoxedBodies *boxed, Feeders *feeders) : flow_(*flow), boxed_(*boxed), feeders_(feeders) {}
+
+  PetscErrorCode start() override { return check_sides(true); }
+  PetscErrorCode end_step() override { return check_sides(false); }
+  PetscErrorCode follow() override;
+
+private:
+  /// What becomes of a body that has left its feeder, as far as a rank knows: all others say has_left.
+  enum class Coming : int { has_left, waits, comes_in };
+  PetscErrorCode check_sides(bool start);
+  PetscErrorCode take_out_bodies(bool whole);
+  PetscErrorCode take_out_boxed(const std::vector<std::size_t> &leaving);
+  PetscErrorCode sum_fractions(Field *sum);
+  PetscErrorCode find_coming(const std::vector<int> &labels, std::vector<Coming> *states);
+  PetscErrorCode feed_boxed(const std::vector<int> &labels);
+
+  Flow &flow_;
+  BoxedBodies &boxed_;
+  Feeders *feeders_;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,61 @@
+// Rigid bodies in a flow: where they are, their part in the prediction and in the projection, and what the fluid exerts
+// on them; docs/method.md, section 19.
+#pragma once
+
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
+#include "pressure/obstacles.hpp"
+#include "rigid/rigid_bodies.hpp"
+#include "rigid/rigid_impulse.hpp"
+
+#include <memory>
+
+namespace eulastic {
+
+class RigidFlow final : public FlowPart {
+public:
+  RigidFlow(Flow *flow, std::unique_ptr<RigidBodies> bodies);
+  /// Puts the bodies to where they are now. What solves for an increment of the pressure has to know which faces are
+  /// closed: then another solver takes the place of `solver`, which becomes its preconditioner. Collective.
+  PetscErrorCode create(std::unique_ptr<PressureSolver> *solver);
+  const RigidFaces &faces() const { return bodies_->faces(); }
+
+  std::size_t bytes() const override { return bodies_->bytes() + (impulse_ ? impulse_->bytes() : 0); }
+  PetscErrorCode carry(CarriedState *state) override;
+  PetscErrorCode start() override;
+  PetscErrorCode recall() override;
+  PetscErrorCode resume() override;
+  PetscErrorCode impose(double time, Field &velocity) override;
+  double shortest_period() const override { return faces().shortest_period(); }
+  PetscErrorCode prepare(double dt) override;
+  PetscErrorCode begin_rate(const MomentumStep &step) override;
+  PetscErrorCode add_rate(const MomentumRate &rate) override;
+  PetscErrorCode close_rate(const MomentumRate &rate) override;
+  PetscErrorCode constrain(double dt) override;
+  PetscErrorCode begin_correction(Field &divergence) override;
+  PetscErrorCode see_increment(const Field &increment) override;
+  PetscErrorCode correct(double time, double dt, const Field &increment, Field &velocity) override;
+  PetscErrorCode end_projection(double dt, const Field &divergence, Field &increment) override;
+  PetscErrorCode place(double time, std::vector<Phase> *phases) override;
+  PetscErrorCode end_step() override;
+
+  /// What the fluid has exerted on every body in the last step, in their order; before the first one, what the state
+  /// says. Where bodies travel it costs as much as the rate of momentum. Collective.
+  PetscErrorCode loads(std::vector<RigidLoad> *loads);
+  /// Adds to a dissipation by viscosity, as compact differences between faces have it, what surfaces of bodies change
+  /// in it. Collective.
+  PetscErrorCode add_dissipation(double *dissipation) const;
+
+private:
+  PetscErrorCode move_bodies(double time, double dt);
+  PetscErrorCode start_loads();
+
+  Flow &flow_;
+  std::unique_ptr<RigidBodies> bodies_;
+  ObstacleSolver *obstacles_ = nullptr;  ///< the pressure solver, if it sees the bodies
+  std::unique_ptr<RigidImpulse> impulse_;
+  std::vector<RigidLoad> loads_;  ///< of step loads_step_
+  std::int64_t loads_step_ = -1;
+};
+
+}  // namespace eulastic

@@ -1,0 +1,209 @@
+#include "solids/grid_bodies.hpp"
+
+#include "field/law.hpp"
+#include "parts/carried_state.hpp"
+#include "solids/transport.hpp"
+#include "solids/unresolved.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eulastic {
+namespace {
+
+// Rows of a phase and, if its fields are swapped, of what they are swapped with, which may be those of another phase:
+// ghosts need an exchange, and those behind walls values, if they did in either.
+struct MovedRows {
+  bool swaps = false;
+  OccupiedRows swapped_in, joined;
+  void join(const OccupiedRows &rows) {
+    joined = rows;
+    if (swaps && !swapped_in.inside()) joined.join(swapped_in);
+  }
+};
+
+// Rigid bodies stay where they are, and others may lie in boxes of their own.
+bool moves_on_grid(const Phase &phase) { return !phase.material.is_rigid() && !phase.boxed; }
+
+}  // namespace
+
+EvolveRule evolve_rule(const Flow &flow, const Material &material) {
+  if (material.is_membrane()) return around_membranes;
+  if (!material.elastic()) return {};
+  const Domain &domain = flow.domain;
+  const bool reset = flow.spec.exterior == SolidExterior::identity;
+  const bool linear =
+      material.attached && damps_short_waves(domain.spacing(), domain.dimension(), flow.fluid, material);
+  EvolveRule rule = reset ? reset_below_one_per_cent : linear ? evolve_where_full : evolve_above_half;
+  // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
+  const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
+  if (!flow.staggered() && !edges) rule.reach = 1;
+  if (!reset && flow.spec.interface == InterfaceScheme::weno5)
+    rule.stressed = -1e300;  // smeared everywhere, and below 0
+  // In cut cells B of a free body follows the velocity of the mixture, and is not that of the solid alone.
+  const bool alone = linear || material.viscosity < flow.fluid.viscosity;
+  if (!reset && material.viscosity > 0 && alone) rule.viscosity_excess = material.viscosity / flow.fluid.viscosity - 1;
+  return rule;
+}
+
+int GridBodies::work_fields(const Method &method, int dimension) {
+  const int tensor = method.staggered() ? static_cast<int>(tensor_components(dimension).size()) : 0;
+  return std::max(tensor, method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0);
+}
+
+std::size_t GridBodies::bytes() const {
+  std::size_t sum = flow_.next_fraction.bytes() + flow_.next_tensor.bytes();
+  for (const Phase &phase : flow_.now.phases) sum += phase.bytes();
+  return sum;
+}
+
+PetscErrorCode GridBodies::carry(CarriedState *state) {
+  PetscFunctionBeginUser;
+  for (Phase &phase : flow_.now.phases) {
+    if (phase.boxed) continue;
+    const std::string species = "_" + phase.species;
+    state->add_centred("solid_fraction" + species, phase.fraction);
+    for (int c = 0; c < phase.tensor.field.count(); ++c) {
+      const TensorComponent &component = phase.tensor.components()[c];
+      state->fields.push_back({"left_cauchy_green_" + component.name() + species, component.at, phase.tensor.field[c]});
+    }
+    if (phase.label) state->fields.push_back({"body" + species, at_centre, phase.label[0], Stored::int32});
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridBodies::start() {
+  const Domain &domain = flow_.domain;
+  std::vector<Phase> &phases = flow_.now.phases;
+  PetscFunctionBeginUser;
+  if (!flow_.staggered() &&
+      std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.elastic(); }))
+    flow_.next_tensor = tensor_at_rest(domain);
+  if (flow_.spec.interface != InterfaceScheme::plic) flow_.next_fraction = Field::at_rest(domain, 1);
+  for (Phase &phase : phases) {
+    phase.tensor.rule = evolve_rule(flow_, phase.material);
+    PetscCall(flow_.settle(&phase));
+  }
+  next_rows_ = phases[0].rows;  // more than those of the blocks, which are at rest
+  stale_.build(domain, phases[0].fraction[0], phases[0].rows, HUGE_VAL, 0, 0);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridBodies::resume() {
+  PetscFunctionBeginUser;
+  for (Phase &phase : flow_.now.phases) {
+    PetscCall(flow_.find_rows(&phase));
+    PetscCall(find_solid(flow_.domain, phase));
+    if (!phase.boxed && phase.material.elastic())
+      PetscCall(flow_.place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridBodies::settle(Phase *phase) {
+  PetscFunctionBeginUser;
+  const OccupiedRows before = phase->rows;
+  PetscCall(flow_.find_rows(phase));
+  if (!phase->boxed && !phase->material.is_membrane()) PetscCall(reset_exterior(flow_.domain, before, *phase));
+  PetscCall(find_solid(flow_.domain, *phase));
+  if (phase->boxed || !phase->material.elastic()) PetscFunctionReturn(0);
+  const PhasePlace place = flow_.place_of_phases();
+  PetscCall(solids_.find_layers(flow_.domain, *phase));
+  PetscCall(solids_.extend(place, *phase, phase->tensor.field, &phase->rows));
+  PetscCall(place.update_ghosts(phase->tensor.field, Box::stencil_width, &phase->rows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridBodies::forget_unresolved(const std::vector<double> &trace) {
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
+    Phase &phase = flow_.now.phases[p];
+    long count = 0;
+    if (!phase.material.elastic() || phase.boxed) continue;
+    PetscCall(find_and_forget(flow_.domain, trace[p], phase, &count));
+    flow_.now.forgotten += count;
+    if (count > 0) PetscCall(flow_.settle(&phase));
+  }
+  PetscFunctionReturn(0);
+}
+
+// (4) of all phases, then (5) of the elastic ones.
+PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
+  std::vector<Phase> &phases = *moved_phases;
+  const Domain &domain = flow_.domain;
+  const Field &velocity = flow_.now.velocity;
+  const int ghosts = domain.spec().ghosts;
+  const bool plic = flow_.spec.interface == InterfaceScheme::plic, swaps = !flow_.staggered() || !plic;
+  std::vector<MovedRows> rows(phases.size());
+  PetscFunctionBeginUser;
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    if (!moves_on_grid(phase)) continue;
+    if ((rows[p].swaps = swaps)) {
+      rows[p].swapped_in = next_rows_;
+      if (phase.material.elastic())
+        next_rows_ = phase.rows;
+      else
+        next_rows_.join(phase.rows);  // its B is not swapped
+    }
+    if (plic) {
+      WorkSpace::Lease fluxes;
+      PetscCall(flow_.work.take("fluxes of the interface", InterfaceTransport::work_fields, &fluxes));
+      PetscCall(interface_.advance(domain, dt, velocity, static_cast<long>(flow_.now.step), phase.rows, phase.fraction,
+                                   fluxes.fields()));
+    } else {
+      PetscCall(advect_fraction(domain, dt, velocity, phase, rows[p].swapped_in, flow_.next_fraction));
+      phase.fraction.swap(flow_.next_fraction);
+    }
+    rows[p].join(phase.rows);  // it has moved less than a cell
+  }
+  std::vector<OccupiedRows::Moved> moved;
+  std::vector<WantedGhosts> fractions, tensors;
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    if (moves_on_grid(phases[p])) {
+      fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
+      moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
+    }
+  PetscCall(flow_.exchange.update_ghosts(fractions));
+  PetscCall(OccupiedRows::follow(domain, moved));  // sees what has come into ghosts, even of idle rows
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    Phase &phase = phases[p];
+    if (!moves_on_grid(phase)) continue;
+    rows[p].join(phase.rows);
+    fill_wall_ghosts_even(domain, at_centre, phase.fraction[0], ghosts, &rows[p].joined);
+    if (!phase.material.carries_tensor()) continue;
+    const ActiveSegments before = std::move(phase.tensor.strained);
+    PetscCall(find_solid(domain, phase));
+    if (phase.material.is_membrane()) continue;  // with the others of its kind
+    PetscCall(solids_.find_layers(domain, phase));
+    PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));
+    tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined});
+  }
+  PetscCall(flow_.exchange.update_ghosts(tensors));
+  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(domain, flow_.spec.sides, *B.field, B.width, B.rows);
+  PetscFunctionReturn(0);
+}
+
+// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G. `before` is
+// where the B of the phase differed from I; what lies outside it stays I untouched. Leaves the ghosts to the caller.
+PetscErrorCode GridBodies::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
+                                                       const OccupiedRows *rows) {
+  const PhasePlace place = flow_.place_of_phases();
+  const Field &velocity = flow_.now.velocity;
+  PetscFunctionBeginUser;
+  if (flow_.staggered()) {
+    WorkSpace::Lease stage;
+    PetscCall(flow_.work.take("first stage of B", phase.tensor.field.count(), &stage));
+    PetscCall(solids_.advance(place, {dt, flow_.now.step, flow_.fluid, velocity, before}, rows, phase, stage.fields()));
+  } else {
+    PetscCall(
+        transport_tensor(flow_.domain, {dt, false, &stale_}, velocity, phase, phase.tensor.field, flow_.next_tensor));
+    phase.tensor.field.swap(flow_.next_tensor);
+    stale_ = before;
+    PetscCall(solids_.extend(place, phase, phase.tensor.field, rows));
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,42 @@
+// Bodies that lie on the grid of all ranks: phi of all their species, and B of the elastic ones. All phases together,
+// so that their ghosts come together.
+#pragma once
+
+#include "grid/active_segments.hpp"
+#include "parts/flow.hpp"
+#include "parts/flow_part.hpp"
+#include "solids/interface.hpp"
+#include "solids/solid_transport.hpp"
+
+namespace eulastic {
+
+/// Where B of a material lives and evolves.
+EvolveRule evolve_rule(const Flow &flow, const Material &material);
+
+class GridBodies final : public FlowPart {
+public:
+  explicit GridBodies(Flow *flow) : flow_(*flow), solids_(flow->spec.exterior == SolidExterior::extrapolate) {}
+  /// Fields of the work space that transport needs.
+  static int work_fields(const Method &method, int dimension);
+  int work_fields() const override { return work_fields(flow_.spec, flow_.domain.dimension()); }
+  std::size_t bytes() const override;
+  PetscErrorCode carry(CarriedState *state) override;
+  PetscErrorCode start() override;
+  PetscErrorCode resume() override;
+  PetscErrorCode settle(Phase *phase) override;
+  PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
+  /// Mends or forgets B where the grid does not resolve it. `trace`: the largest tr B of every phase. Collective.
+  PetscErrorCode forget_unresolved(const std::vector<double> &trace);
+
+private:
+  PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
+                                             const OccupiedRows *rows);
+
+  Flow &flow_;
+  SolidTransport solids_;
+  InterfaceTransport interface_;
+  OccupiedRows next_rows_;  ///< of the phase that Flow::next_fraction and next_tensor were swapped out of
+  ActiveSegments stale_;    ///< plain Euler: where Flow::next_tensor may differ from I
+};
+
+}  // namespace eulastic

@@ -1,0 +1,102 @@
+#include "solver/fast_step.hpp"
+
+#include "field/open_sides.hpp"
+#include "flow/momentum.hpp"
+#include "flow/projection.hpp"
+#include "solids/elastic_force.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+
+PetscErrorCode FastStep::start() {
+  State &now = flow_.now;
+  const int dim = flow_.domain.dimension();
+  PetscFunctionBeginUser;
+  PetscCall(Scheme::start());
+  if (now.phases.empty() || !flow_.spec.linear_force()) PetscFunctionReturn(0);
+  flow_.velocity_star = {};
+  Field memory(flow_.domain, 3 * dim);
+  std::copy_n(now.velocity.data(), flow_.domain.layout().size * dim, memory.data());
+  now.velocity = memory.part(0, dim);
+  flow_.slope = memory.part(dim, dim);
+  flow_.velocity_star = memory.part(2 * dim, dim);
+  flow_.memory = std::move(memory);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with_pressure) {
+  const State &now = flow_.now;
+  const double to_middle = 0.5 * (now.dt + dt);
+  // Cells; below the half that carry_labels() bears, as the speed is some steps old.
+  constexpr double allowed = 0.3;
+  PetscFunctionBeginUser;
+  for (FlowPart *part : flow_.parts) PetscCall(part->begin_step());
+  PetscCall(begin_slope(to_middle));
+  PetscCall(move_bodies(to_middle));  // (4), (5)
+  PetscCall(in_middle());
+  if (now.pressure_before) expect_pressure(dt);
+  for (FlowPart *part : flow_.parts) PetscCall(part->prepare(dt));
+  PetscCall(predict(dt));                             // (7)
+  PetscCall(project(dt, rotation(), with_pressure));  // (8) to (10)
+  PetscCall(end_step(dt, allowed));
+  PetscFunctionReturn(0);
+}
+
+// What forces are before bodies move, to say how they change within the step.
+PetscErrorCode FastStep::begin_slope(double dt) {
+  PetscFunctionBeginUser;
+  if (!flow_.slope) PetscFunctionReturn(0);
+  PetscCall(compute_elastic_force(flow_.domain, -1 / (dt * flow_.fluid.density), flow_.now.phases, flow_.slope));
+  for (FlowPart *part : flow_.parts) PetscCall(part->begin_slope(dt, flow_.slope));
+  PetscFunctionReturn(0);
+}
+
+// What of the pressure is wrong makes a flow only where viscosity varies or beside bodies, and there it takes steps to
+// settle: that of the last step would leave the velocity behind by a few (docs/method.md, section 16).
+void FastStep::expect_pressure(double dt) {
+  State &state = flow_.now;
+  const double interval = state.dt > 0 ? 0.5 * (state.dt + dt) : 0;
+  const double ratio = state.pressure_interval > 0 ? interval / state.pressure_interval : 0;
+  double *now = state.pressure.data(), *before = state.pressure_before.data();
+  const std::size_t size = state.pressure.layout().size;
+#pragma omp simd
+  for (std::size_t i = 0; i < size; ++i) {
+    const double p = now[i];
+    now[i] = p + ratio * (p - before[i]);
+    before[i] = p;
+  }
+  state.pressure_interval = interval;
+}
+
+PetscErrorCode FastStep::predict(double dt) {
+  State &now = flow_.now;
+  Fluid fluid;
+  PetscFunctionBeginUser;
+  PetscCall(find_viscosity(&fluid));
+  MomentumStep step{now.time + 0.5 * dt, dt, flow_.speed_scale(dt), {}};
+  if (now.dt > 0) step.weights = {1 + 0.5 * dt / now.dt, -0.5 * dt / now.dt};  // Adams-Bashforth 2
+  fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), step.force_time, fluid.density, now.velocity,
+                                now.pressure[0]);
+  for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
+  WeightedTarget slope;
+  if (flow_.slope) slope = {&flow_.slope, 1 / (0.5 * (now.dt + dt))};
+  PetscCall(predict_in_stages(fluid, step, slope));
+  PetscFunctionReturn(0);
+}
+
+// What the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3 of it;
+// half of it where each step begins with the last pressure. Of a body much more viscous than the fluid nothing but the
+// fluid resists a dilation, so that the viscosity of the place turns p into noise there; the least one does not at any
+// contrast.
+PressureRotation FastStep::rotation() const {
+  const bool expects = static_cast<bool>(flow_.now.pressure_before);
+  if (!viscosity_) return {(expects ? 1 : 0.5) * flow_.fluid.kinematic_viscosity(), 0};
+  const ViscosityContrast range = contrast({});
+  const double whole = flow_.domain.dimension() == 3 ? 4. / 3 : 1;
+  if (expects) return {whole * range.least / flow_.fluid.density, 0};
+  if (range.within(5)) return {0, whole / 2};
+  return {whole / 2 * range.least / flow_.fluid.density, 0};
+}
+
+}  // namespace eulastic

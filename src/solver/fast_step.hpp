@@ -1,0 +1,22 @@
+// The scheme of `-method fast`: bodies live half a step behind the velocity, and a step is second order in time;
+// docs/method.md, sections 2 to 8 and 16.
+#pragma once
+
+#include "solver/scheme.hpp"
+
+namespace eulastic {
+
+class FastStep final : public Scheme {
+public:
+  using Scheme::Scheme;
+  PetscErrorCode start() override;
+  PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) override;
+
+private:
+  PetscErrorCode begin_slope(double dt);
+  void expect_pressure(double dt);
+  PetscErrorCode predict(double dt);
+  PressureRotation rotation() const;
+};
+
+}  // namespace eulastic

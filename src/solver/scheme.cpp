@@ -1,0 +1,153 @@
+#include "solver/scheme.hpp"
+
+#include "bodies/labels.hpp"
+#include "field/open_sides.hpp"
+#include "flow/momentum.hpp"
+#include "flow/projection.hpp"
+#include "flow/super_time_stepping.hpp"
+#include "flow/viscous_stress.hpp"
+#include "rigid/rigid_surfaces.hpp"
+
+#include <algorithm>
+
+namespace eulastic {
+
+int Scheme::work_fields(const Method &method, int dimension, int forces) {
+  return method.explicit_predictor() ? forces : dimension + std::max(dimension, forces);
+}
+
+bool Scheme::expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
+  return method.staggered() && method.viscous == ViscousScheme::rkl &&
+         (contrast.exists() ? contrast.settles() : travel);
+}
+
+PetscErrorCode Scheme::start() {
+  PetscFunctionBeginUser;
+  const ViscosityContrast range = contrast({});
+  if (range.exists()) viscosity_ = LocalViscosity(flow_.domain);
+  if (expects_pressure(flow_.spec, range, flow_.rigid && flow_.rigid->travels))
+    flow_.now.pressure_before = Field(flow_.domain, 1);
+  PetscFunctionReturn(0);
+}
+
+std::size_t Scheme::bytes() const { return viscosity_.bytes(); }
+
+ViscosityContrast Scheme::contrast(const std::vector<double> &trace) const {
+  ViscosityContrast contrast(flow_.fluid);
+  for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
+    const Material &material = flow_.now.phases[p].material;
+    contrast.add(material, trace.empty() ? 0 : largest_stiffness(material, trace[p], flow_.domain.dimension()));
+  }
+  return contrast;
+}
+
+TimeStepLimits Scheme::limits(const FlowExtremes &extremes) const {
+  TimeStepLimits limits =
+      time_step_limits(flow_.domain, flow_.driven_fluid(), contrast(extremes.trace), flow_.spec.sides, extremes,
+                       {flow_.staggered(), flow_.spec.viscous == ViscousScheme::rkl});
+  for (const FlowPart *part : flow_.parts) limits.forcing = std::min(limits.forcing, part->shortest_period());
+  return limits;
+}
+
+PetscErrorCode Scheme::viscosity_of(const std::vector<Phase> &phases, const Field **viscosity) {
+  PetscFunctionBeginUser;
+  *viscosity = nullptr;
+  if (!viscosity_) PetscFunctionReturn(0);
+  PetscCall(compute_viscosity(flow_.domain, flow_.fluid, flow_.spec.sides, phases, &viscosity_));
+  *viscosity = &viscosity_.fields;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Scheme::find_viscosity(Fluid *fluid) {
+  const Field *fields = nullptr;
+  PetscFunctionBeginUser;
+  *fluid = flow_.fluid;
+  PetscCall(viscosity_of(flow_.now.phases, &fields));
+  if (fields) fluid->viscosity = 0;
+  PetscFunctionReturn(0);
+}
+
+// Cut faces of rigid bodies have had theirs.
+PetscErrorCode Scheme::add_local_viscous_force(double scale, Field &to) {
+  std::vector<double> cut;
+  PetscFunctionBeginUser;
+  if (!viscosity_) PetscFunctionReturn(0);
+  if (flow_.rigid) cut = cut_face_values(flow_.domain, *flow_.rigid, to);
+  PetscCall(add_viscous_force(flow_.domain, viscosity_, scale, flow_.now.velocity, to));
+  if (flow_.rigid) set_cut_face_values(flow_.domain, *flow_.rigid, cut, to);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Scheme::move_bodies(double dt) {
+  PetscFunctionBeginUser;
+  for (FlowPart *part : flow_.parts) PetscCall(part->move(dt, &flow_.now.phases));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Scheme::predict_in_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope) {
+  const Domain &domain = flow_.domain;
+  const BoxSides &sides = flow_.spec.sides;
+  State &now = flow_.now;
+  const int dim = domain.dimension();
+  WorkSpace::Lease rate, before;
+  PetscFunctionBeginUser;
+  PetscCall(flow_.work.take("rate of momentum", dim, &rate));
+  PetscCall(
+      momentum_rate(domain, fluid, step, now.velocity, now.pressure, now.phases, now.advection, rate.fields(), slope));
+  const MomentumRate all{
+      step, 1, rate.fields(), now.advection ? &now.advection : nullptr, slope, fluid.kinematic_viscosity()};
+  for (FlowPart *part : flow_.parts) PetscCall(part->add_rate(all));
+  for (FlowPart *part : flow_.parts) PetscCall(part->close_rate(all));
+  PetscCall(add_local_viscous_force(1, rate.fields()));
+  PetscCall(flow_.work.take("viscous stage before", dim, &before));
+  SuperTimeStepping viscous{rate.part(0, dim), {}, flow_.velocity_star.part(0, dim), before.part(0, dim)};
+  std::vector<char> stressed;
+  if (flow_.slope) {
+    viscous.slope = flow_.slope.part(0, dim);
+    stressed = stressed_rows(domain, now.phases);
+    for (const FlowPart *part : flow_.parts) part->mark_forced_rows(&stressed);
+  }
+  const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
+  if (viscosity_)
+    PetscCall(super_time_step(domain, flow_.exchange, sides, viscosity_, now.time, step.dt, stages, now.velocity,
+                              viscous, flow_.velocity_star, flow_.rigid, flow_.fluid.kinematic_viscosity(),
+                              flow_.rigid_means));
+  else
+    PetscCall(super_time_step(domain, flow_.exchange, sides, fluid.kinematic_viscosity(), now.time, step.dt, stages,
+                              stressed, now.velocity, viscous, flow_.velocity_star, flow_.rigid, flow_.rigid_means));
+  stages_ += stages;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Scheme::project(double dt, const PressureRotation &rotation, const Look &with_pressure) {
+  State &now = flow_.now;
+  PetscFunctionBeginUser;
+  for (FlowPart *part : flow_.parts) PetscCall(part->constrain(dt));
+  PetscCall(flow_.update_velocity_ghosts(flow_.velocity_star, now.time + dt, 1));
+  PetscCall(projection_.end_step(dt, rotation, viscosity_.fields));
+  PetscCall(with_pressure());
+  PetscCall(flow_.update_velocity_ghosts(now.velocity, now.time + dt, Box::stencil_width));
+  PetscFunctionReturn(0);
+}
+
+// Labels are carried on a schedule that is part of the run, never because somebody looks.
+PetscErrorCode Scheme::end_step(double dt, double allowed) {
+  State &now = flow_.now;
+  PetscFunctionBeginUser;
+  now.travel += now.crossing_rate * dt;
+  if (flow_.bodies.bodies() > 0 && now.travel >= allowed) {
+    for (FlowPart *part : flow_.parts) PetscCall(part->place(now.time + dt, &now.phases));
+    for (Phase &phase : now.phases)
+      if (phase.label) PetscCall(carry_labels(flow_.domain, flow_.exchange, &phase));
+    PetscCall(flow_.bodies.follow(flow_.domain, now.phases));
+    for (FlowPart *part : flow_.parts) PetscCall(part->follow());
+    now.travel = 0;
+  }
+  for (FlowPart *part : flow_.parts) PetscCall(part->end_step());
+  now.time += dt;
+  now.dt = dt;
+  ++now.step;
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
