@@ -52,6 +52,7 @@ const std::vector<std::pair<Words, std::string>> &called_otherwise() {
       {{"outlet", "outlets"},
        "is called outflow here, or pressure where the pressure is given: -boundary_xmax outflow, -boundary_xmax "
        "pressure with -pressure_xmax_value"},
+      {{"time_integrator"}, "is -method: fast is of second order in time, classic plain Euler"},
       {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"},
   };
   return table;

@@ -118,20 +118,16 @@ std::string by_method(const Option &row, Method &method) {
 void add_method(Rows &rows, Config &config) {
   rows.group = "Method";
   Method &method = config.method;
-  const Names integrator_names{"staggered", "euler"};
-  rows.choice("method", method.kind, method_names, "preset of the parts below; classic is the paper's");
+  rows.choice("method", method.kind, method_names, "second order with bodies at half steps, or the paper's");
   const std::size_t parts = rows.rows.size();
-  rows.choice("time_integrator", method.integrator, integrator_names,
-              "second order with solids at half steps, or explicit Euler");
   rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
               "solid fraction: sharp and conservative, or WENO5");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
               "B outside bodies: extended, or reset to I");
-  const std::size_t force = rows.rows.size();
   rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
               "elastic force within a step: linear in time, or that of its middle");
-  rows.restrict(force, "time_integrator", method.integrator, integrator_names, {TimeIntegrator::staggered});
+  rows.restrict(parts, "method", method.kind, method_names, {MethodKind::fast});
   const Names pressure_names{"acm", "smac", "ksp"};
   const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,

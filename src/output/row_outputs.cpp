@@ -12,7 +12,7 @@
 
 namespace eulastic {
 
-// All but volume drifts, of phases as Solver::phases_now() has them; `measured`: of another time, or of this velocity.
+// All but volume drifts, of phases as Looks::phases() has them; `measured`: of another time, or of this velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();

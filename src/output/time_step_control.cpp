@@ -34,7 +34,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
                                        std::string *warning) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
-  const bool large_steps = solver->spec().staggered() || solver->spec().viscous == ViscousScheme::rkl;
+  const bool large_steps = solver->spec().staggered();
   const int interval = large_steps ? 1 : euler_interval;
   const bool look = state.step % interval == 0 || dt_ == 0;
   measured_ = look;

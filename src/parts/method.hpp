@@ -1,20 +1,18 @@
-// The parts of the scheme, each by itself, and the two presets made of them.
+// The two methods, and what may be changed in them.
 #pragma once
 
 namespace eulastic {
 
 enum class MethodKind { fast, classic };
-enum class TimeIntegrator { staggered, euler };
 enum class ViscousScheme { rkl, explicit_euler };
 enum class InterfaceScheme { plic, weno5 };
 enum class SolidExterior { extrapolate, identity };
 enum class ElasticForce { linear, constant };
 enum class PressureKind { acm, smac, ksp };
 
-/// The initialisers are the paper's method.
+/// The initialisers are the paper's method, of which only the pressure may be found in another way.
 struct Method {
   MethodKind kind = MethodKind::classic;
-  TimeIntegrator integrator = TimeIntegrator::euler;
   ViscousScheme viscous = ViscousScheme::explicit_euler;
   InterfaceScheme interface = InterfaceScheme::weno5;
   SolidExterior exterior = SolidExterior::identity;
@@ -25,10 +23,9 @@ struct Method {
   int acm_memory = 0;           ///< increments of earlier steps kept as directions
   bool acm_coarse = false;      ///< sweep along a V-cycle of D, else along D
 
-  bool staggered() const { return integrator == TimeIntegrator::staggered; }
+  /// Whether bodies and pressure live half a step beside the velocity.
+  bool staggered() const { return kind == MethodKind::fast; }
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
-  /// v* = v + dt dv/dt, without more stages.
-  bool explicit_predictor() const { return viscous == ViscousScheme::explicit_euler && !staggered(); }
   /// Whether free bodies may lie in boxes of their own (boxes/free_bodies.hpp).
   bool boxes_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
   /// One step of (11)-(13) and nothing else.
@@ -40,7 +37,6 @@ inline Method method_preset(MethodKind kind) {
   Method method;
   if (kind == MethodKind::classic) return method;
   method.kind = MethodKind::fast;
-  method.integrator = TimeIntegrator::staggered;
   method.viscous = ViscousScheme::rkl;
   method.interface = InterfaceScheme::plic;
   method.exterior = SolidExterior::extrapolate;

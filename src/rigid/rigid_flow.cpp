@@ -108,12 +108,12 @@ PetscErrorCode RigidFlow::add_rate(const MomentumRate &rate) {
 PetscErrorCode RigidFlow::close_rate(const MomentumRate &rate) {
   const double viscosity = flow_.fluid.kinematic_viscosity();
   PetscFunctionBeginUser;
-  if (flow_.spec.explicit_predictor())
-    see_rigid_surfaces_at_once(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
-                               flow_.now.velocity, rate.field);
-  else
+  if (flow_.staggered())
     see_rigid_surfaces(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
                        flow_.now.velocity, rate.field, flow_.slope ? &flow_.slope : nullptr);
+  else
+    see_rigid_surfaces_at_once(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
+                               flow_.now.velocity, rate.field);
   PetscFunctionReturn(0);
 }
 

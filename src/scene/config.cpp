@@ -8,7 +8,7 @@ std::string Config::why_no_boxes(const SpeciesSpec &spec) const {
   if (spec.law == Law::rigid || spec.material().attached) return "soft bodies that are free to move";
   if (!has_box) return "-" + spec.name + "_shape sphere, biconcave or ellipsoid";
   if (!body_series) return "-body_series true";
-  if (!method.boxes_bodies()) return "-time_integrator staggered and -interface_scheme plic, as -method fast has them";
+  if (!method.boxes_bodies()) return "-method fast and -interface_scheme plic";
   return {};
 }
 

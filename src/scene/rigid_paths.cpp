@@ -132,8 +132,7 @@ std::string check_paths(const Config &config) {
     if (!spec.travels(dimension)) continue;
     const std::string option = "-" + spec.name + (spec.turns(dimension) ? "_angular_velocity" : "_velocity") +
                                ": a body that travels through the grid, or turns there, ";
-    if (!config.method.staggered())
-      return option + "needs -time_integrator staggered; accepted here: along itself, or 0,0,0";
+    if (!config.method.staggered()) return option + "needs -method fast; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
       return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
     if (has_feeders(config.sides)) return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";

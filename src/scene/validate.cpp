@@ -108,8 +108,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   const std::string name = spec.law == Law::red_cell ? "red_cell" : "membrane",
                     law = "-" + spec.name + "_law: " + name + " needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
-    return law +
-           "-time_integrator staggered and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
+    return law + "-method fast and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
   if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
@@ -190,7 +189,8 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
     return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
            spec.name + "_shear_modulus > 0";
   if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
-    return "-" + spec.name + "_surface_tension: needs a sharp interface; accepted: -interface_scheme plic, or 0";
+    return "-" + spec.name +
+           "_surface_tension: needs a sharp interface; accepted: -method fast and -interface_scheme plic, or 0";
   if (flat(config) && spec.initial_stretch[2] != 1)
     return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
   const bool random = spec.placement == Placement::random;
@@ -300,8 +300,7 @@ std::string check_time(const Config &config) {
 std::string check_snapshots(const Config &config) {
   const OutputControl &output = config.output;
   if (!output.snapshot_exact) return {};
-  if (!config.method.staggered())
-    return "-snapshot_times: exact needs -time_integrator staggered; accepted here: steps";
+  if (!config.method.staggered()) return "-snapshot_times: exact needs -method fast; accepted here: steps";
   constexpr double most = 1e5, most_in_step = 100;
   const double least = std::max(config.time.end / most, config.time.step / most_in_step);
   if (output.snapshot_interval == 0 || output.snapshot_interval >= least) return {};

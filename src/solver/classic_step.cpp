@@ -7,16 +7,13 @@
 namespace eulastic {
 
 PetscErrorCode ClassicStep::step(double dt, const Look &, const Look &with_pressure) {
-  // Cells; below the half that carry_labels() bears, as the speed is some steps old. Planes leave no tail that has the
-  // label before the surface comes: as phases are measured as they are, it is carried in every step.
-  const double allowed = flow_.spec.interface == InterfaceScheme::plic ? 0 : 0.3;
   PetscFunctionBeginUser;
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_step());
   for (FlowPart *part : flow_.parts) PetscCall(part->prepare(dt));
   PetscCall(predict(dt));                     // (7)
   PetscCall(project(dt, {}, with_pressure));  // (8), (9), (11) to (13)
   PetscCall(move_bodies(dt));                 // (4), (5)
-  PetscCall(end_step(dt, allowed));
+  PetscCall(end_step(dt));
   PetscFunctionReturn(0);
 }
 
@@ -30,10 +27,6 @@ PetscErrorCode ClassicStep::predict(double dt) {
   fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), now.time + dt, fluid.density, now.velocity,
                                 now.pressure[0]);
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
-  if (!flow_.spec.explicit_predictor()) {
-    PetscCall(predict_in_stages(fluid, step, {}));
-    PetscFunctionReturn(0);
-  }
   PetscCall(predict_velocity(flow_.domain, fluid, step, now.velocity, now.pressure, now.phases, velocity));
   const MomentumRate all{step, dt, velocity, nullptr, {}, fluid.kinematic_viscosity()};
   for (FlowPart *part : flow_.parts) PetscCall(part->add_rate(all));

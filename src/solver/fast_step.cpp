@@ -28,8 +28,6 @@ PetscErrorCode FastStep::start() {
 PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with_pressure) {
   const State &now = flow_.now;
   const double to_middle = 0.5 * (now.dt + dt);
-  // Cells; below the half that carry_labels() bears, as the speed is some steps old.
-  constexpr double allowed = 0.3;
   PetscFunctionBeginUser;
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_step());
   PetscCall(begin_slope(to_middle));
@@ -39,7 +37,7 @@ PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with
   for (FlowPart *part : flow_.parts) PetscCall(part->prepare(dt));
   PetscCall(predict(dt));                             // (7)
   PetscCall(project(dt, rotation(), with_pressure));  // (8) to (10)
-  PetscCall(end_step(dt, allowed));
+  PetscCall(end_step(dt));
   PetscFunctionReturn(0);
 }
 

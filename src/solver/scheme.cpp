@@ -13,7 +13,7 @@
 namespace eulastic {
 
 int Scheme::work_fields(const Method &method, int dimension, int forces) {
-  return method.explicit_predictor() ? forces : dimension + std::max(dimension, forces);
+  return method.staggered() ? dimension + std::max(dimension, forces) : forces;
 }
 
 bool Scheme::expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
@@ -131,7 +131,9 @@ PetscErrorCode Scheme::project(double dt, const PressureRotation &rotation, cons
 }
 
 // Labels are carried on a schedule that is part of the run, never because somebody looks.
-PetscErrorCode Scheme::end_step(double dt, double allowed) {
+PetscErrorCode Scheme::end_step(double dt) {
+  // Cells; below the half that carry_labels() bears, as the speed is some steps old.
+  constexpr double allowed = 0.3;
   State &now = flow_.now;
   PetscFunctionBeginUser;
   now.travel += now.crossing_rate * dt;

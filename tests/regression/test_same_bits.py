@@ -122,7 +122,7 @@ class DifficultScenes(WithRoom):
                  "-boundary_y wall -species a,b -a_shape cylinder -a_radius .44 -a_axis z -a_centre 2.2,9,0 "
                  "-a_shear_modulus .1 -b_shape tube -b_radius .99 -b_axis y -b_centre 1.7,7,0 -b_shear_modulus .1 "
                  "-time_end 1000 -time_steps_max 8 -guard_volume_drift 0 -method").split()
-        methods = ("classic", "fast", "fast -interface_scheme weno5", "classic -solid_exterior extrapolate")
+        methods = ("classic", "fast", "fast -interface_scheme weno5")
         self.compare({f"method{n}": [*scene, *method.split()] for n, method in enumerate(methods)},
                      {"whole": {"skip_nothing": True}, "ranks": {"ranks": 2}})
 
@@ -161,8 +161,7 @@ class DifficultScenes(WithRoom):
                  "-species a,b -a_shape sphere -a_radius .3 -a_centre 16.9,.5,0 -a_shear_modulus .05 "
                  "-b_shape sphere -b_radius .25 -b_centre .5,.4,0 -b_shear_modulus .1 -time_end .9 -guard_volume_drift 0 "
                  "-method").split()
-        methods = ("classic", "fast", "fast -solid_exterior identity", "fast -interface_scheme weno5",
-                   "classic -solid_exterior extrapolate")
+        methods = ("classic", "fast", "fast -solid_exterior identity", "fast -interface_scheme weno5")
         self.compare({f"method{n}": [*scene, *method.split()] for n, method in enumerate(methods)},
                      {"x": {"words": ("-da_processors_x", 2), "ranks": 2},
                       "xy": {"words": ("-da_processors_x", 2, "-da_processors_y", 2), "ranks": 4}})

@@ -14,9 +14,9 @@ BALL = "-cell_shape sphere -cell_radius .5"
 FEATURES = {
     "dimension": {"2-D": FLAT, "3-D": DEEP},
     "method": {
-        "fast": "", "classic": "-method classic", "euler": "-time_integrator euler", "explicit": "-viscous_scheme explicit",
+        "fast": "", "classic": "-method classic", "explicit": "-viscous_scheme explicit",
         "constant force": "-elastic_force constant", "weno5": "-interface_scheme weno5",
-        "classic, extended": "-method classic -solid_exterior extrapolate", "identity": "-solid_exterior identity"},
+        "identity": "-solid_exterior identity"},
     "pressure": {"acm": "", "plain sweeps": "-acm_coarse false -acm_memory 0 -acm_sweeps_max 4", "smac": "-pressure_solver smac"},
     "x": {"periodic": "", "walls": "-boundary_x wall",
           "inflow, outflow": "-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .2 -inflow_xmin_frequency 3",

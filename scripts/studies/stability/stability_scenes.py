@@ -223,7 +223,7 @@ def crowd(hematocrit, seed):
     """Red cells at random between plates, 16 cells long and 2.5 thick, in um, us and mPa s: they touch walls and each other."""
     return box((48, 40), "y", 1.2, 1500, 20000, grid_length="24,20,.5", body_force="4e-4,0,0", species="rbc", rbc_law="red_cell",
                rbc_diameter=8, rbc_placement="random", rbc_orientation="random", rbc_hematocrit=hematocrit, rbc_seed=seed,
-               time_integrator="staggered", interface_scheme="plic", series_interval=10)
+               series_interval=10)
 
 
 MODULI = [1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000]

@@ -120,7 +120,8 @@ TEST(SceneRefusals, PathsOfRigidBodies) {
        {"-a_velocity .6,.35,0",
         {"-a_velocity", "carries a body to one of b at t = 0.", "accepted: a path with a cell"}},
        {"-a_velocity .5,.35,0 -b_velocity -.1,0,0", {"-a_velocity", "carries a body to one of b at t = 0."}},
-       {"-a_velocity .1,0,0 -time_integrator euler", {"-a_velocity", "-time_integrator staggered"}},
-       {"-a_velocity .1,0,0 -method classic -time_integrator staggered", {"-a_velocity", "-acm_sweeps_max > 1"}}},
+       {"-a_velocity .1,0,0 -method classic", {"-a_velocity", "-method fast"}},
+       {"-a_velocity .1,0,0 -acm_sweeps_max 1 -acm_memory 0 -acm_coarse false",
+        {"-a_velocity", "-acm_sweeps_max > 1"}}},
       ball);
 }

@@ -96,11 +96,11 @@ TEST(CheckOnly, WarnsOfBodiesThatMergeWhereTheInterfaceIsSharp) {
   };
   const std::string merging =
       "bodies of cell merge where they meet: boxes of their own, in which they stay separate, need ";
-  const std::string plain_euler = "-cell_shape sphere -time_integrator euler -cell_count 2,1,1";
-  EXPECT_NE(warnings(plain_euler).find(merging + "-time_integrator staggered"), std::string::npos);
   EXPECT_NE(warnings("-cell_shape cylinder -cell_count 2,1,1").find(merging + "-cell_shape sphere"), std::string::npos);
   for (const std::string &fine :
-       {plain_euler + " -cell_contact merge", plain_euler + " -interface_scheme weno5",
+       {std::string("-cell_shape cylinder -cell_count 2,1,1 -cell_contact merge"),
+        std::string("-cell_shape sphere -interface_scheme weno5 -cell_count 2,1,1"),
+        std::string("-cell_shape sphere -method classic -cell_count 2,1,1"),
         std::string("-cell_shape sphere -cell_count 2,1,1"), std::string("-cell_shape cylinder -cell_count 1,1,1")})
     EXPECT_EQ(warnings(fine).find("merge where they meet"), std::string::npos) << fine;
 }
