@@ -166,13 +166,43 @@ std::vector<BodyInBox> FreeBodies::list() const {
   return all;
 }
 
+namespace {
+
+// What show() sends of a box: the species, phi, B, and for every component of B phi where it lives.
+enum { species_shown, fraction_shown, tensor_shown };
+
+// Of a block of cells of a body.
+void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *field) {
+  field->fill(species_shown, body.species);
+  const Int3 first = first_in(*body.box, block);
+  const auto of_block = [&first](ConstView view) {
+    view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
+    return view;
+  };
+  const ConstView phi = of_block(body.phase->fraction[0]);
+  for_points(block.rows(), [&](int i, int j, int k) { (*field)[fraction_shown](i, j, k) = phi(i, j, k); });
+  for (int c = 0; c < tensors; ++c) {
+    const TensorComponent &component = body.phase->tensor.components()[c];
+    const Staggering &at = component.at;
+    const auto [low_a, low_b] = component.steps(phi);
+    const ConstView B = of_block(body.phase->tensor.field[c]);
+    const View tensor = (*field)[tensor_shown + c], part = (*field)[tensor_shown + tensors + c];
+    for (int k = 0; k < block.points_end(2, at[2]); ++k)
+      for (int j = 0; j < block.points_end(1, at[1]); ++j)
+        for (int i = 0; i < block.points_end(0, at[0]); ++i) {
+          const double *here = &phi(i, j, k);
+          part(i, j, k) = 0.25 * ((here[0] + here[-low_a - low_b]) + (here[-low_a] + here[-low_b]));
+          tensor(i, j, k) = B(i, j, k) - component.rest();
+        }
+  }
+}
+
+}  // namespace
+
 PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
-  const int dimension = domain_->dimension();
-  const int tensors = static_cast<int>(tensor_components(dimension).size());
-  // Of a box: the species, phi, B, and for every component of B phi where it lives.
-  enum { species, fraction, tensor };
-  const int part = tensor + tensors, all = part + tensors;
+  const int tensors = static_cast<int>(tensor_components(domain_->dimension()).size());
+  const int part = tensor_shown + tensors, all = part + tensors;
   std::vector<Field> fields;
   std::vector<const Field *> shown;
   std::vector<Box> blocks;
@@ -181,31 +211,8 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
   for (const BodyInBox &body : seen)
     blocks.push_back(body.phase->block(*body.box, ExteriorLayers::layers, ExteriorLayers::layers + 1));
   for (std::size_t b = 0; b < seen.size(); ++b) {
-    const BodyInBox &body = seen[b];
-    const Box &block = blocks[b];
-    Field &field = fields.emplace_back(block, all);
-    field.fill(species, body.species);
-    const Int3 first = first_in(*body.box, block);
-    const auto of_block = [&first](ConstView view) {
-      view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
-      return view;
-    };
-    const ConstView phi = of_block(body.phase->fraction[0]);
-    for_points(block.rows(), [&](int i, int j, int k) { field[fraction](i, j, k) = phi(i, j, k); });
-    for (int c = 0; c < tensors; ++c) {
-      const TensorComponent &component = body.phase->tensor.components()[c];
-      const Staggering &at = component.at;
-      const auto [low_a, low_b] = component.steps(phi);
-      const ConstView B = of_block(body.phase->tensor.field[c]);
-      for (int k = 0; k < block.points_end(2, at[2]); ++k)
-        for (int j = 0; j < block.points_end(1, at[1]); ++j)
-          for (int i = 0; i < block.points_end(0, at[0]); ++i) {
-            const double *here = &phi(i, j, k);
-            field[part + c](i, j, k) = 0.25 * ((here[0] + here[-low_a - low_b]) + (here[-low_a] + here[-low_b]));
-            field[tensor + c](i, j, k) = B(i, j, k) - component.rest();
-          }
-    }
-    boxes.push_back({&block, body.number});
+    fill_shown(seen[b], blocks[b], tensors, &fields.emplace_back(blocks[b], all));
+    boxes.push_back({&blocks[b], seen[b].number});
   }
   for (const Field &field : fields) shown.push_back(&field);
   std::map<int, Field> most;  // phi of the body that B at the point is of
@@ -214,20 +221,21 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
   PetscCall(exchange.connect(boxes));
   const std::ptrdiff_t size = domain_->layout().size;
   PetscCall(exchange.collect(shown, [&](int number, std::ptrdiff_t at, const double *values) {
-    const int s = static_cast<int>(values[species]);
+    const int s = static_cast<int>(values[species_shown]);
     Phase &phase = *phases.at(s);
     double *best = most.at(s).data() + at;
-    if (values[fraction] > 0) phase.fraction.data()[at] += values[fraction];
-    if (values[fraction] > *best) {
-      *best = values[fraction];
+    const double fraction = values[fraction_shown];
+    if (fraction > 0) phase.fraction.data()[at] += fraction;
+    if (fraction > *best) {
+      *best = fraction;
       if (phase.label) phase.label.data()[at] = number;
     }
     for (int c = 0; c < tensors; ++c) {
-      const double rest = phase.tensor.components()[c].rest();
+      const double rest = phase.tensor.components()[c].rest(), tensor = values[tensor_shown + c];
       double &B = phase.tensor.field.data()[c * size + at], &largest = best[(1 + c) * size];
-      const bool first = largest == 0 && values[tensor + c] != 0 && B == rest;
+      const bool first = largest == 0 && tensor != 0 && B == rest;
       if (!first && values[part + c] <= largest) continue;
-      B = rest + values[tensor + c];
+      B = rest + tensor;
       largest = values[part + c];
     }
   }));

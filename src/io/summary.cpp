@@ -32,15 +32,12 @@ Json body_json(const BodyRecord &b) {
 }  // namespace
 
 std::string summary_text(const Summary &s) {
-  std::vector<Json> bodies;
+  std::vector<Json> bodies, sides, files, verdicts;
   for (const BodyRecord &b : s.bodies) bodies.push_back(body_json(b));
-  std::vector<Json> sides;
   for (const Summary::SideRecord &side : s.sides)
     sides.push_back(Json().add("side", side.side).add("flow_rate", side.flow_rate).add("pressure", side.pressure));
-  std::vector<Json> files;
   for (const Summary::FileRecord &file : s.files)
     files.push_back(Json().add("option", file.option).add("path", file.path).add("content", file.content));
-  std::vector<Json> verdicts;
   for (const Summary::Verdict &v : s.verdicts)
     verdicts.push_back(Json().add("of", v.of).add("verdict", v.verdict).add("why", v.why));
   const double updates = double(s.cells) * double(s.steps);

@@ -185,13 +185,7 @@ void add_samples(Rows &rows, Config &config) {
             "time between profiles, the start and the end included; 0 = only at the end");
 }
 
-void add_running(Rows &rows, Config &config) {
-  const std::size_t first = rows.rows.size();
-  rows.group = "Time";
-  rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
-  rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
-  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "stop after so many steps; 0 = no limit");
-
+void add_output(Rows &rows, Config &config) {
   rows.group = "Output";
   OutputControl &output = config.output;
   rows.path("output_dir", output.directory, "directory of everything that is written");
@@ -215,7 +209,9 @@ void add_running(Rows &rows, Config &config) {
             "time between lines of series.csv; 0 = default")
       .default_note = "time_end/200";
   add_samples(rows, config);
+}
 
+void add_checkpoints(Rows &rows, Config &config) {
   rows.group = "Checkpoints and restart";
   CheckpointControl &checkpoint = config.checkpoint;
   const std::size_t regular = rows.rows.size();
@@ -233,7 +229,9 @@ void add_running(Rows &rows, Config &config) {
             "wall time after which a checkpoint is written and the run ends; 0 = never");
   rows.path("restart", checkpoint.restart,
             "checkpoint, or output directory whose newest good one is taken; in the same -output_dir its files go on");
+}
 
+void add_guards(Rows &rows, Config &config) {
   rows.group = "Guards: bounds that stop the run; 0 = none";
   GuardControl &guard = config.guard;
   rows.real("guard_cfl", guard.cfl, not_negative, "", "CFL number, the sum of max |v_i| dt/h_i");
@@ -247,7 +245,9 @@ void add_running(Rows &rows, Config &config) {
       "was supplied with since");
   rows.real("guard_memory", guard.memory, not_negative, "",
             "memory that the ranks of a node need, per memory it has; looked at before the start");
+}
 
+void add_program(Rows &rows, Config &config) {
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
   rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
@@ -260,6 +260,19 @@ void add_running(Rows &rows, Config &config) {
            "docs/options.md, -help man a page for man; -h a few lines")
       .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
+}
+
+// All that may change at a restart.
+void add_running(Rows &rows, Config &config) {
+  const std::size_t first = rows.rows.size();
+  rows.group = "Time";
+  rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
+  rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "stop after so many steps; 0 = no limit");
+  add_output(rows, config);
+  add_checkpoints(rows, config);
+  add_guards(rows, config);
+  add_program(rows, config);
   rows.allow_change(first);
 }
 

@@ -153,6 +153,33 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionReturn(0);
 }
 
+// What the last row has of the flow and of its energy.
+void Outputs::add_measures(const EnergyBudget &budget, Summary *summary) const {
+  const Measured &measured = now_.measured;
+  summary->divergence_rms = measured.flow.divergence_rms;
+  summary->divergence_max = measured.flow.divergence_max;
+  summary->mach_max = mach_max_;
+  summary->volume_drift = measured.volume_drift;
+  summary->kinetic_energy = measured.flow.kinetic_energy;
+  summary->elastic_energy = measured.flow.elastic_energy;
+  const EnergyState &energy = now_.energy;
+  summary->viscous_dissipation = energy.dissipation;
+  summary->force_power = energy.rates.force_power;
+  summary->wall_power = energy.rates.wall_power;
+  summary->side_power = energy.rates.side_power;
+  for (const SideFlow &side : now_.sides) summary->sides.push_back({side.name(), side.flow_rate, side.pressure});
+  summary->elastic_power = energy.rates.elastic_power;
+  summary->energy_supplied = budget.supplied();
+  summary->energy_dissipated = budget.dissipated();
+  summary->energy_lost = budget.lost();
+  summary->energy_lost_elastic = budget.lost_elastic();
+  summary->energy_lost_extended = budget.lost_extended();
+  summary->energy_made_share = budget.made_share_max();
+  summary->surface_energy = energy.surface;
+  summary->surface_power = energy.surface_power;
+  summary->bulk_velocity = measured.flow.bulk_velocity[0];
+}
+
 PetscErrorCode Outputs::write_summary(Summary summary) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
@@ -175,30 +202,8 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
         sweeps;
   }
   summary.strain_forgotten = static_cast<long>(state.forgotten);
-  const Measured &measured = now_.measured;
-  summary.divergence_rms = measured.flow.divergence_rms;
-  summary.divergence_max = measured.flow.divergence_max;
-  summary.mach_max = mach_max_;
-  summary.volume_drift = measured.volume_drift;
-  summary.kinetic_energy = measured.flow.kinetic_energy;
-  summary.elastic_energy = measured.flow.elastic_energy;
-  const EnergyState &energy = now_.energy;
   const EnergyBudget budget = budget_now();
-  summary.viscous_dissipation = energy.dissipation;
-  summary.force_power = energy.rates.force_power;
-  summary.wall_power = energy.rates.wall_power;
-  summary.side_power = energy.rates.side_power;
-  for (const SideFlow &side : now_.sides) summary.sides.push_back({side.name(), side.flow_rate, side.pressure});
-  summary.elastic_power = energy.rates.elastic_power;
-  summary.energy_supplied = budget.supplied();
-  summary.energy_dissipated = budget.dissipated();
-  summary.energy_lost = budget.lost();
-  summary.energy_lost_elastic = budget.lost_elastic();
-  summary.energy_lost_extended = budget.lost_extended();
-  summary.energy_made_share = budget.made_share_max();
-  summary.surface_energy = energy.surface;
-  summary.surface_power = energy.surface_power;
-  summary.bulk_velocity = measured.flow.bulk_velocity[0];
+  add_measures(budget, &summary);
   PetscCall(list_bodies(&summary));
   double counted[3] = {0, 0, 0};  // bytes of fields, points where B is evolved, markers of membranes
   counted[0] = double(solver_->bytes());
@@ -210,7 +215,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.active_fraction = counted[1] / domain_->domain_cell_count();
   PetscCall(state_hash(solver_, &summary.state_hash));
   const double evolved = (counted[1] + counted[2]) * double(state.step);
-  const Evidence evidence{budget, energy_unknown_, measured, double(state.forgotten), evolved};
+  const Evidence evidence{budget, energy_unknown_, now_.measured, double(state.forgotten), evolved};
   verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};
   summary.verdicts = verdicts_;
   PetscCall(eulastic::write_summary(domain_->comm(), directory_ + "/summary.json", summary));

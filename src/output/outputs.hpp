@@ -74,6 +74,7 @@ private:
   /// Of these bodies, with the loads that were measured.
   std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                   const std::vector<SurfaceMeasure> &surfaces) const;
+  void add_measures(const EnergyBudget &budget, Summary *summary) const;
   PetscErrorCode list_bodies(Summary *summary) const;
   PetscErrorCode measure_drift(Measured *measured);
   PetscErrorCode measure_strains(Measured *measured);

@@ -305,6 +305,15 @@ std::size_t RigidBodies::bytes() const {
 
 // The volume between the surface of bodies that rest and the faces inside them.
 
+// Of a body of a species, by its label; bodies of a species follow each other.
+int RigidBodies::index_of(const std::string &species, int label) const {
+  for (std::size_t index = 0; index < sources_.size(); ++index) {
+    const Species &own = species_[faces_.bodies[images * index].motion];
+    if (own.spec.name == species) return static_cast<int>(index) + label - own.first_label;
+  }
+  return -1;
+}
+
 // Every cell gives half of its solid fraction to each of its two faces of a component. A fluid face has it in excess of
 // what counts as inside; a face inside lacks what the cell has of fluid. Where bodies overlap only one of them counts.
 PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
@@ -332,14 +341,6 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     }
   };
   const auto rests = [&](const Phase &phase) { return phase.material.is_rigid() && !phase.travels; };
-  const auto index_of = [&](const Phase &phase, int label) {
-    for (std::size_t index = 0; index < sources_.size(); ++index) {
-      const Species &species = species_[faces_.bodies[images * index].motion];
-      if (species.spec.name != phase.species) continue;
-      return static_cast<int>(index) + label - species.first_label;  // bodies of a species follow each other
-    }
-    return -1;
-  };
   std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
   for (const Segment &row : domain_.rows())
     for (int a = 0; a < dimension; ++a) {
@@ -362,7 +363,8 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
           }
           for (const Phase &phase : phases) {
             const double part = rests(phase) ? phase.fraction[0](i, row.j, row.k) : 0;
-            const int index = part > 0 && phase.label ? index_of(phase, int(phase.label[0](i, row.j, row.k))) : -1;
+            const int index =
+                part > 0 && phase.label ? index_of(phase.species, int(phase.label[0](i, row.j, row.k))) : -1;
             if (index >= 0 && index < faces_.count)
               add(image_of(index, {0, 0, 0}), a, cell, high, 0.5 * part * std::min(1.0, 1 / solid), true);
           }
@@ -371,15 +373,20 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     }
   std::vector<double> total(per_body * faces_.count);
   PetscCall(sums.reduce(domain_.comm(), total.data()));
-  faces_.gaps.assign(faces_.count, {});
-  for (int index = 0; index < faces_.count; ++index)
-    for (int a = 0; a < 3; ++a) {
-      const double *found = &total[per_body * index + per_component * a];
-      faces_.gaps[index].volume[a] = found[0] * domain_.cell_volume();
-      for (int d = 0; d < 3; ++d) faces_.gaps[index].first[a][d] = found[1 + d] * domain_.cell_volume();
-    }
+  set_gaps(total);
   PetscCall(measure_pistons());
   PetscFunctionReturn(0);
+}
+
+// From volume and first moments of every component of every body, in cells.
+void RigidBodies::set_gaps(const std::vector<double> &moments) {
+  faces_.gaps.assign(faces_.count, {});
+  const double *found = moments.data();
+  for (RigidGap &gap : faces_.gaps)
+    for (int a = 0; a < 3; ++a, found += 4) {
+      gap.volume[a] = found[0] * domain_.cell_volume();
+      for (int d = 0; d < 3; ++d) gap.first[a][d] = found[1 + d] * domain_.cell_volume();
+    }
 }
 
 // Where bodies are at a time.

@@ -59,6 +59,8 @@ private:
                           RigidMass *mass, std::string *wrong);
   BodyPlace place_of(const BodyPlace &start, const RigidMotion &motion, double time) const;
   void put(int index, const BodyPlace &place);
+  int index_of(const std::string &species, int label) const;
+  void set_gaps(const std::vector<double> &moments);
   PetscErrorCode measure_pistons();
   template <class Visit>
   void for_faces(int a, int index, const Visit &visit);
