@@ -32,8 +32,9 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
 }
 
 void EnergyBudget::see_made(double unknown) {
+  least_ = std::min(least_, last_[1]);
   made_.made = -lost();
-  made_.held = std::max(last_[0] + last_[1], 0.0) + unknown;
+  made_.held = last_[0] + (last_[1] - least_) + unknown;
 }
 
 // A share x was made since a row s if M = made - uncertain - x handled has grown by more than x times what was held at
@@ -77,8 +78,10 @@ void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
 }
 
 std::vector<double> EnergyBudget::made_numbers() const {
-  std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_};
-  for (const Made &m : {made_, since_[0], since_[1]}) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
+  // What is held now is found anew by the next row.
+  std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_,
+                          made_.made,  made_.uncertain, made_.handled,        least_};
+  for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
   return all;
 }
 
@@ -88,8 +91,10 @@ void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
   made_share_max_ = *next++;
   started_ = *next++ != 0;
   exchanged_ = *next++;
-  for (Made *m : {&made_, &since_[0], &since_[1]})
-    for (double *value : {&m->made, &m->uncertain, &m->handled, &m->held}) *value = *next++;
+  for (double *value : {&made_.made, &made_.uncertain, &made_.handled, &least_}) *value = *next++;
+  least_ = std::min(least_, 0.0);  // a checkpoint of before holds what was held
+  for (Made &m : since_)
+    for (double *value : {&m.made, &m.uncertain, &m.handled, &m.held}) *value = *next++;
 }
 
 }  // namespace eulastic

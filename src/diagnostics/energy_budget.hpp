@@ -63,7 +63,7 @@ private:
     double made = 0;       ///< -lost()
     double uncertain = 0;  ///< of it
     double handled = 0;    ///< without what the run held at the start
-    double held = 0;       ///< kinetic, elastic and surface energy, and EnergyState::unknown
+    double held = 0;       ///< kinetic energy, elastic and surface energy above least_, and EnergyState::unknown
   };
   void see_made(double unknown);
   void compare_made();
@@ -74,9 +74,10 @@ private:
   double time_ = -1;                               ///< of the last state; negative: none yet
   std::array<double, works> rate_{}, work_{};      ///< supplied, dissipated, elastic, elastic where extended
   std::array<double, energies> first_{}, last_{};  ///< kinetic, elastic, elastic where extended
-  double exchanged_ = 0;                           ///< sizes of the powers supplied, that of forces at its largest
-  Made made_;                                      ///< now
-  std::array<Made, shares.size()> since_;          ///< rows after which most was made beyond a share
+  double least_ = 0;      ///< the least elastic and surface energy of all rows, at most 0: below 0 where det B < 1
+  double exchanged_ = 0;  ///< sizes of the powers supplied, that of forces at its largest
+  Made made_;             ///< now
+  std::array<Made, shares.size()> since_;  ///< rows after which most was made beyond a share
   double made_share_ = 0, made_share_max_ = 0;
   bool started_ = false;     ///< there was a row after the start
   bool may_return_ = false;  ///< allow_return()

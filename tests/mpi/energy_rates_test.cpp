@@ -232,6 +232,30 @@ TEST(EnergyBudget, MakesNothingAtOnceAndNothingThatWasLent) {
   }
 }
 
+// Where det B is below 1 the elastic energy is below 0: what swings between it and the kinetic energy is held all the
+// same, though the sum passes through 0, and what is made is found.
+TEST(EnergyBudget, CountsElasticEnergyFromItsLeast) {
+  EnergyBudget whole, parts;
+  const auto advance = [&](int n, double made) {
+    EnergyState s;
+    s.kinetic = 0.5 * (1 + std::cos(n));
+    s.elastic = 0.01 * (n % 2) - s.kinetic;
+    s.kinetic += made;
+    for (EnergyBudget *budget : {&whole, &parts}) budget->advance(n, s);
+  };
+  for (int n = 0; n <= 40; ++n) {
+    advance(n, 0);
+    EnergyBudget resumed;
+    resumed.set_numbers(parts.numbers());
+    resumed.set_made_numbers(parts.made_numbers());
+    parts = resumed;
+  }
+  EXPECT_NEAR(whole.made_share_max(), 0.01, 1e-3);
+  for (int n = 41; n <= 44; ++n) advance(n, 0.5);
+  EXPECT_NEAR(whole.made_share_max(), 0.5, 0.02);
+  EXPECT_EQ(parts.made_share_max(), whole.made_share_max());
+}
+
 // What swings between rows may have any mean.
 TEST(EnergyBudget, MakesNothingThatRowsDoNotKnow) {
   EnergyBudget budget;

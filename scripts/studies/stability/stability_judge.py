@@ -15,7 +15,7 @@ MEMBRANES = ("membrane", "red_cell")  # B_s has the determinant 0
 # WENO5 bounds neither phi nor the volume: of classic this is reported, not judged.
 # Bodies of one species lie in boxes of their own; a snapshot holds the sum of their phi. Each is between 0 and 1
 # (planes), the sum need not be: where it is not, they overlap.
-REPORTED = {"fast": ("overlap",), "classic": ("volume", "phi", "det B", "overlap")}
+REPORTED = {"fast": ("overlap", "energy made"), "classic": ("volume", "phi", "det B", "overlap", "energy made")}
 
 
 def fields_of_b(snapshot, name):
@@ -97,6 +97,8 @@ def judge(directory, method):
     membranes = {name[:-len("_law")] for name, law in run.options.items() if name.endswith("_law") and law in MEMBRANES}
     if membranes:
         m["energy"] = max(m["energy"], 1 + surface_energy_made(run) - MADE)
+    verdict = next(v for v in summary["verdicts"] if v["of"] == "energy")
+    m["made"] = verdict["verdict"] == "do not trust" and "made energy" in verdict["why"]
     m["forgotten"] = summary["strain_forgotten"]
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0
@@ -118,8 +120,8 @@ def judge(directory, method):
         m["stretch"] = max(m["stretch"], largest)
     m["det"] = [min(det), max(det)] if det else None
     broken = [name for name, bad in (
-        ("energy", not m["energy"] <= 1 + GROWTH[method]), ("phi", m["phi"] > PHI[method]), ("overlap", m["overlap"] > PHI[method]),
-        ("volume", not m["volume"] <= DRIFT[method]),
+        ("energy", not m["energy"] <= 1 + GROWTH[method]), ("energy made", m["made"]), ("phi", m["phi"] > PHI[method]),
+        ("overlap", m["overlap"] > PHI[method]), ("volume", not m["volume"] <= DRIFT[method]),
         ("det B", bool(det) and not DETERMINANT[0] <= min(det) <= max(det) <= DETERMINANT[1])) if bad]
     died = [name for name in broken if name not in REPORTED[method]]
     return ", ".join(died), [name for name in broken if name not in died], m
