@@ -43,7 +43,7 @@ void BoxExchange::for_pieces(const Run &run, const Contribution &contribution, i
   }
 }
 
-PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes) {
+PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes, bool fetches_only) {
   PetscFunctionBeginUser;
   std::vector<PetscSFNode> roots, all;
   places_.clear();
@@ -53,6 +53,7 @@ PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes) {
     place.number = numbered.number;
     PetscCall(list_runs(*numbered.box, &place, &roots));
   }
+  if (domain_->ranks() == 1) PetscFunctionReturn(0);  // nothing is remote
   const Split &split = domain_->split();
   std::map<PetscInt, PetscInt> field_size;
   for (const PetscSFNode &root : roots) field_size[root.rank] = 0;
@@ -69,7 +70,7 @@ PetscErrorCode BoxExchange::connect(const std::vector<NumberedBox> &boxes) {
                             all.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(sf_.get()));
   buffer_.resize(components_ * buffer_size_);
-  PetscCall(sort_received());
+  if (!fetches_only) PetscCall(sort_received());
   PetscFunctionReturn(0);
 }
 
@@ -120,7 +121,7 @@ PetscErrorCode BoxExchange::sort_received() {
   PetscCall(PetscSFComputeDegreeEnd(sf_.get(), &degree));
   std::vector<PetscInt> offsets;
   for (PetscInt root = 0; root < components_ * static_cast<PetscInt>(domain_->layout().size); ++root)
-    offsets.insert(offsets.end(), degree[root], root);
+    if (degree[root] > 0) offsets.insert(offsets.end(), degree[root], root);
   std::vector<std::array<PetscInt, 2>> received(offsets.size());
   PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_2INT, sent.data(), received.data()));
   PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_2INT, sent.data(), received.data()));
@@ -169,6 +170,7 @@ std::size_t BoxExchange::bytes() const {
 PetscErrorCode BoxExchange::fetch(const Field &grid) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exchange);
+  if (domain_->ranks() == 1) PetscFunctionReturn(0);
   PetscCall(PetscSFBcastBegin(sf_.get(), MPIU_REAL, grid.data(), buffer_.data(), MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(sf_.get(), MPIU_REAL, grid.data(), buffer_.data(), MPI_REPLACE));
   PetscFunctionReturn(0);
@@ -185,6 +187,15 @@ void BoxExchange::copy_to_box(std::size_t b, const Field &grid, Field &to) const
   }
 }
 
+// The buffers of all ranks to those who own the points.
+PetscErrorCode BoxExchange::gather() {
+  PetscFunctionBeginUser;
+  if (domain_->ranks() == 1) PetscFunctionReturn(0);
+  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
                                 const std::vector<WeightedTarget> &targets) {
   PetscFunctionBeginUser;
@@ -199,8 +210,7 @@ PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
           std::copy_n(values, count, to + (first - run.i));
         });
       }
-  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
-  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  PetscCall(gather());
   const auto add_own = [&](std::size_t b) {
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].own)
@@ -238,8 +248,7 @@ PetscErrorCode BoxExchange::collect(const std::vector<const Field *> &fields, co
       for (const Run &run : places_[b].remote)
         std::copy_n((*fields[b])[f].row(run.j, run.k) + run.i, run.count,
                     buffer_.data() + f * buffer_size_ + run.elsewhere);
-  PetscCall(PetscSFGatherBegin(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
-  PetscCall(PetscSFGatherEnd(sf_.get(), MPIU_REAL, buffer_.data(), received_.data()));
+  PetscCall(gather());
   std::vector<double> values(components_);
   const auto visit_own = [&](std::size_t b) {
     for (const Run &run : places_[b].own)

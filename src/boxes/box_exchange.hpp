@@ -47,8 +47,8 @@ public:
   BoxExchange(const Domain &domain, int components) : domain_(&domain), components_(components) {}
 
   /// Sets the boxes of this rank. A box may cross periodic sides, and even be longer than the domain; it ends at sides
-  /// of any other kind. Collective.
-  PetscErrorCode connect(const std::vector<NumberedBox> &boxes);
+  /// of any other kind. `fetches_only`: nothing goes from the boxes to the grid. Collective.
+  PetscErrorCode connect(const std::vector<NumberedBox> &boxes, bool fetches_only = false);
 
   /// Fetches what the boxes of this rank need of the values that other ranks own. Collective.
   PetscErrorCode fetch(const Field &grid);
@@ -85,6 +85,7 @@ private:
   static void for_pieces(const Run &run, const Contribution &contribution, int component, const Work &work);
   PetscErrorCode list_runs(const Box &box, Place *place, std::vector<PetscSFNode> *roots);
   PetscErrorCode sort_received();
+  PetscErrorCode gather();
   /// visit_own(b) and visit_received(number, parcel) for all boxes that lie on this rank's grid, in the order of the
   /// numbers.
   template <class VisitOwn, class VisitReceived>

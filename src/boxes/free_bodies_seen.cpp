@@ -201,7 +201,8 @@ void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *fie
 
 PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
-  const int tensors = static_cast<int>(tensor_components(domain_->dimension()).size());
+  const std::vector<TensorComponent> &components = tensor_components(domain_->dimension());
+  const int tensors = static_cast<int>(components.size());
   const int part = tensor_shown + tensors, all = part + tensors;
   std::vector<Field> fields;
   std::vector<const Field *> shown;
@@ -231,7 +232,7 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
       if (phase.label) phase.label.data()[at] = number;
     }
     for (int c = 0; c < tensors; ++c) {
-      const double rest = phase.tensor.components()[c].rest(), tensor = values[tensor_shown + c];
+      const double rest = components[c].rest(), tensor = values[tensor_shown + c];
       double &B = phase.tensor.field.data()[c * size + at], &largest = best[(1 + c) * size];
       const bool first = largest == 0 && tensor != 0 && B == rest;
       if (!first && values[part + c] <= largest) continue;

@@ -52,18 +52,21 @@ inline double centre_stress(int dimension, const Phase &phase, int a, int i, int
   });
 }
 
-/// Viscous and elastic stress together, without the pressure.
+/// Viscous and elastic stress together, without the pressure: of phases on the grid.
 struct WholeStress {
   EdgeViscosity viscosity;
   const Field &velocity;
   const std::vector<Phase> &phases;
 
+  static bool bears_stress(const Phase &phase, const Int3 &cell) {
+    return phase.material.elastic() && !phase.boxed && phase.rows.holds(cell[0], cell[1], cell[2]);
+  }
   double normal(int a, const Int3 &cell) const {
     const ConstView u = velocity[a];
     const double *v = &u(cell[0], cell[1], cell[2]);
     double sum = 2 * viscosity.at_centre(cell) * (v[u.stride(a)] - v[0]) / viscosity.box.spacing()[a];
     for (const Phase &phase : phases)
-      if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
+      if (bears_stress(phase, cell))
         sum += centre_stress(viscosity.box.dimension(), phase, a, cell[0], cell[1], cell[2]);
     return sum;
   }
@@ -74,8 +77,7 @@ struct WholeStress {
     const Real3 &h = viscosity.box.spacing();
     double sum = viscosity.at(a, b, cell) * ((ua[0] - ua[-u.stride(b)]) / h[b] + (ub[0] - ub[-w.stride(a)]) / h[a]);
     for (const Phase &phase : phases)
-      if (phase.material.elastic() && phase.rows.holds(cell[0], cell[1], cell[2]))
-        sum += edge_stress(viscosity.box, phase, a, b, cell[0], cell[1], cell[2]);
+      if (bears_stress(phase, cell)) sum += edge_stress(viscosity.box, phase, a, b, cell[0], cell[1], cell[2]);
     return sum;
   }
 };

@@ -12,69 +12,93 @@ namespace {
 
 constexpr int per_body = 6;  // force, torque
 
+// phi of bodies that bear loads, and their labels.
+struct Surface {
+  const Box &box;
+  ConstView phi, label;
+  const OccupiedRows *rows = nullptr;  // of phi, where they are known
+};
+
 class SurfaceLoads {
 public:
-  SurfaceLoads(const EdgeViscosity &viscosity, const Field &velocity, const Field &pressure,
-               const std::vector<Phase> &phases, const std::vector<const Field *> &labels,
-               const std::vector<SurfaceLoad> &loads)
-      : box_(viscosity.box),
-        stress_{viscosity, velocity, phases},
-        pressure_(pressure),
-        phases_(phases),
-        labels_(labels),
-        loads_(loads) {
+  explicit SurfaceLoads(const std::vector<SurfaceLoad> &loads)
+      : loads_(loads), sums_(per_body * static_cast<int>(loads.size())) {
     for (std::size_t b = 0; b < loads.size(); ++b) {
       index_.resize(std::max<std::size_t>(index_.size(), loads[b].label + 1), -1);
       index_[loads[b].label] = static_cast<int>(b);
     }
   }
 
+  // Adds what a stress, normal(a, cell) at centres and shear(a, b, cell) on low edges, exerts on a surface.
+  template <class Normal, class Shear>
+  void add(const Surface &of, const Normal &normal, const Shear &shear) {
+    const Box &box = of.box;
+    const auto within = [&of](const Segment &row) { return of.rows ? of.rows->within(row) : row; };
+    const std::vector<Segment> rows = box.rows();
+    for (int a = 0; a < box.dimension(); ++a) {
+      for (const Segment &row : rows) add_centres(of, a, within(row), normal);
+      for (int b = a + 1; b < box.dimension(); ++b)
+        for (int k = 0; k < box.points_end(2, b == 2); ++k)
+          for (int j = 0; j < box.points_end(1, a == 1 || b == 1); ++j)
+            add_edges(of, a, b, within({0, box.points_end(0, a == 0), j, k}), shear);
+    }
+  }
+
+  ExactSums &sums() { return sums_; }
+
+private:
   // The forces along a that sigma_aa at the centres of a row are, by the phi of the cells on both sides.
-  void add_centres(std::size_t p, int a, const Segment &row, ExactSums *sums) {
-    const ConstView phi = phases_[p].fraction[0];
-    const std::ptrdiff_t step = phi.stride(a);
-    const double *q = phi.row(row.j, row.k);
+  template <class Normal>
+  void add_centres(const Surface &of, int a, const Segment &row, const Normal &normal) {
+    const std::ptrdiff_t step = of.phi.stride(a);
+    const double *q = of.phi.row(row.j, row.k);
     for_cut(
         row, [=](int i) { return q[i + step] != q[i - step]; },
         [&](int i) {
           const Int3 cell{i, row.j, row.k};
-          const double stress = stress_.normal(a, cell) - pressure_[0](i, row.j, row.k);
-          const double share = 0.5 * box_.cell_volume() / box_.spacing()[a] * stress;
+          const double share = 0.5 * of.box.cell_volume() / of.box.spacing()[a] * normal(a, cell);
+          if (share == 0) return;
           for (const int side : {1, -1}) {
+            const double part = q[i + side * step];
+            if (part == 0) continue;
             Int3 owner = cell;
             owner[a] += side;
-            Real3 place{};
-            for (int d = 0; d < box_.dimension(); ++d) place[d] = d == a ? -side : 0;
-            add(p, owner, place, a, -side * q[i + side * step] * share, sums);
+            Real3 place{}, force{};
+            place[a] = -side;
+            force[a] = -side * part * share;
+            add(of, owner, place, force);
           }
         });
   }
 
   // The forces along a and b that sigma_ab on the low edges of a row of cells are, by the phi of the four cells around.
-  void add_edges(std::size_t p, int a, int b, const Segment &row, ExactSums *sums) {
-    const ConstView phi = phases_[p].fraction[0];
-    const std::ptrdiff_t sa = phi.stride(a), sb = phi.stride(b);
-    const double *q = phi.row(row.j, row.k);
+  template <class Shear>
+  void add_edges(const Surface &of, int a, int b, const Segment &row, const Shear &shear) {
+    const Box &box = of.box;
+    const std::ptrdiff_t sa = of.phi.stride(a), sb = of.phi.stride(b);
+    const double *q = of.phi.row(row.j, row.k);
     const auto differs = [=](int i) { return (q[i] != q[i - sa]) | (q[i] != q[i - sb]) | (q[i] != q[i - sa - sb]); };
     for_cut(row, differs, [&](int i) {
       const Int3 cell{i, row.j, row.k};
-      const double whole = 0.5 * box_.cell_volume() * stress_.shear(a, b, cell);
+      const double whole = 0.5 * box.cell_volume() * shear(a, b, cell);
+      if (whole == 0) return;
       for (const int low_a : {0, 1})
         for (const int low_b : {0, 1}) {
+          const double part = q[i - low_a * sa - low_b * sb];
+          if (part == 0) continue;
           Int3 owner = cell;
           owner[a] -= low_a;
           owner[b] -= low_b;
-          Real3 place{};
+          Real3 place{}, force{};
           place[a] = low_a - 0.5;
           place[b] = low_b - 0.5;
-          const double part = whole * q[i - low_a * sa - low_b * sb];
-          add(p, owner, place, a, (low_b ? part : -part) * volume_of_face(a, cell) / box_.spacing()[b], sums);
-          add(p, owner, place, b, (low_a ? part : -part) * volume_of_face(b, cell) / box_.spacing()[a], sums);
+          force[a] = (low_b ? whole : -whole) * part * volume_of_face(box, a, cell) / box.spacing()[b];
+          force[b] = (low_a ? whole : -whole) * part * volume_of_face(box, b, cell) / box.spacing()[a];
+          add(of, owner, place, force);
         }
     });
   }
 
-private:
   // visit(i) where cut(i).
   template <class Cut, class Visit>
   void for_cut(const Segment &row, const Cut &cut, const Visit &visit) {
@@ -86,37 +110,33 @@ private:
   }
 
   // In cells: a face on a side of the box has half of one.
-  double volume_of_face(int a, const Int3 &cell) const {
-    const int at = box_.layout().begin[a] + cell[a];
-    return box_.is_wall(a) && (at == 0 || at == box_.domain_cells()[a]) ? 0.5 : 1;
+  static double volume_of_face(const Box &box, int a, const Int3 &cell) {
+    const int at = box.layout().begin[a] + cell[a];
+    return box.is_wall(a) && (at == 0 || at == box.domain_cells()[a]) ? 0.5 : 1;
   }
 
   // `place`: of the force, in cells from the centre of the cell whose phi it comes from.
-  void add(std::size_t phase, const Int3 &cell, const Real3 &place, int a, double push, ExactSums *sums) const {
-    const auto label = static_cast<std::size_t>((*labels_[phase])[0](cell[0], cell[1], cell[2]));
-    if (push == 0 || label >= index_.size() || index_[label] < 0) return;
+  void add(const Surface &of, const Int3 &cell, const Real3 &place, const Real3 &force) {
+    const Box &box = of.box;
+    const auto label = static_cast<std::size_t>(of.label(cell[0], cell[1], cell[2]));
+    if (force == Real3{} || label >= index_.size() || index_[label] < 0) return;
     const int first = per_body * index_[label];
-    Real3 arm{}, force{};
-    for (int d = 0; d < box_.dimension(); ++d) {
-      const double h = box_.spacing()[d], length = box_.domain_shape().length[d];
-      arm[d] = (box_.layout().begin[d] + cell[d] + 0.5) * h - loads_[index_[label]].centre[d];
-      if (!box_.is_wall(d)) arm[d] -= length * std::round(arm[d] / length);
+    Real3 arm{};
+    for (int d = 0; d < box.dimension(); ++d) {
+      const double h = box.spacing()[d], length = box.domain_shape().length[d];
+      arm[d] = (box.layout().begin[d] + cell[d] + 0.5) * h - loads_[index_[label]].centre[d];
+      if (!box.is_wall(d)) arm[d] -= length * std::round(arm[d] / length);
       arm[d] += place[d] * h;
     }
-    force[a] = push;
-    sums->add(first + a, push);
     for (int d = 0; d < 3; ++d) {
       const int e = (d + 1) % 3, g = (d + 2) % 3;
-      if (e == a || g == a) sums->add(first + 3 + d, arm[e] * force[g] - arm[g] * force[e]);
+      if (force[d] != 0) sums_.add(first + d, force[d]);
+      if (force[e] != 0 || force[g] != 0) sums_.add(first + 3 + d, arm[e] * force[g] - arm[g] * force[e]);
     }
   }
 
-  const Box &box_;
-  WholeStress stress_;
-  const Field &pressure_;
-  const std::vector<Phase> &phases_;
-  const std::vector<const Field *> &labels_;
   const std::vector<SurfaceLoad> &loads_;
+  ExactSums sums_;
   std::vector<int> index_;  ///< of every label
   std::vector<unsigned char> flags_;
 };
@@ -125,24 +145,34 @@ private:
 
 PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const Field &velocity,
                                      const Field &pressure, const std::vector<Phase> &phases,
-                                     const std::vector<const Field *> &labels, std::vector<SurfaceLoad> *loads) {
+                                     const std::vector<const Field *> &labels,
+                                     const std::vector<BodyAtSurfaces> &bodies, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   if (loads->empty()) PetscFunctionReturn(0);
   const VerbScope scope(Verb::sums);
-  const Box &box = viscosity.box;
-  SurfaceLoads surface(viscosity, velocity, pressure, phases, labels, *loads);
-  ExactSums sums(per_body * static_cast<int>(loads->size()));
-  const std::vector<Segment> rows = box.rows();
+  SurfaceLoads surfaces(*loads);
+  const WholeStress stress{viscosity, velocity, phases};
   for (std::size_t p = 0; p < phases.size(); ++p)
-    for (int a = 0; labels[p] && a < box.dimension(); ++a) {
-      for (const Segment &row : rows) surface.add_centres(p, a, phases[p].rows.within(row), &sums);
-      for (int b = a + 1; b < box.dimension(); ++b)
-        for (int k = 0; k < box.points_end(2, b == 2); ++k)
-          for (int j = 0; j < box.points_end(1, a == 1 || b == 1); ++j)
-            surface.add_edges(p, a, b, phases[p].rows.within({0, box.points_end(0, a == 0), j, k}), &sums);
-    }
+    if (labels[p])
+      surfaces.add(
+          {viscosity.box, phases[p].fraction[0], (*labels[p])[0], &phases[p].rows},
+          [&](int a, const Int3 &c) { return stress.normal(a, c) - pressure[0](c[0], c[1], c[2]); },
+          [&](int a, int b, const Int3 &c) { return stress.shear(a, b, c); });
+  for (const BodyAtSurfaces &body : bodies) {
+    const Int3 &o = body.first;
+    const int dimension = body.box.dimension();
+    for (const Field &surface : body.surfaces)
+      surfaces.add(
+          {body.box, surface[1], surface[0]},
+          [&](int a, const Int3 &c) {
+            return centre_stress(dimension, *body.phase, a, o[0] + c[0], o[1] + c[1], o[2] + c[2]);
+          },
+          [&](int a, int b, const Int3 &c) {
+            return edge_stress(body.box, *body.phase, a, b, o[0] + c[0], o[1] + c[1], o[2] + c[2]);
+          });
+  }
   std::vector<double> total(per_body * loads->size());
-  PetscCall(sums.reduce(comm, total.data()));
+  PetscCall(surfaces.sums().reduce(comm, total.data()));
   for (std::size_t b = 0; b < loads->size(); ++b)
     for (int d = 0; d < 3; ++d) {
       (*loads)[b].force[d] = total[per_body * b + d];

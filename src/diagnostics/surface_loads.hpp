@@ -15,10 +15,20 @@ struct SurfaceLoad {
   Real3 torque{};
 };
 
+/// An elastic body in a box of its own, with the surfaces that bear loads where it is.
+struct BodyAtSurfaces {
+  const Phase *phase;
+  Box box;                      ///< its cells and one around them
+  Int3 first;                   ///< the first of them in the box of the phase
+  std::vector<Field> surfaces;  ///< of every phase that bears loads: labels and phi, with one ghost behind sides
+};
+
 /// Measures the loads of bodies whose label and centre are given; `labels`: of every phase, null where none of them is
-/// in it, else one field. One ghost of velocity, pressure, phi, B and labels. Exact sums: the same bits on any ranks.
+/// in it, else one field; `bodies`: of this rank, whose stress comes on top of that of the phases. One ghost of
+/// velocity, pressure, phi, B and labels. Exact sums: the same bits on any ranks.
 PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosity, const Field &velocity,
                                      const Field &pressure, const std::vector<Phase> &phases,
-                                     const std::vector<const Field *> &labels, std::vector<SurfaceLoad> *loads);
+                                     const std::vector<const Field *> &labels,
+                                     const std::vector<BodyAtSurfaces> &bodies, std::vector<SurfaceLoad> *loads);
 
 }  // namespace eulastic

@@ -1,6 +1,8 @@
 #include "scene/vessels.hpp"
 
 #include "bodies/shapes.hpp"
+#include "boxes/box_exchange.hpp"
+#include "field/sides.hpp"
 #include "grid/domain.hpp"
 #include "solver/looks.hpp"
 
@@ -31,30 +33,70 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
 
 namespace {
 
+// Finds labels and phi of what bears loads, `surfaces`, where elastic bodies lie in boxes of their own.
+PetscErrorCode bring_surfaces(const Domain &domain, const std::vector<Field> &surfaces,
+                              const std::vector<BodyInBox> &boxed, std::vector<BodyAtSurfaces> *bodies) {
+  std::vector<BoxExchange::NumberedBox> boxes;
+  PetscFunctionBeginUser;
+  for (const BodyInBox &body : boxed) {
+    if (!body.phase->material.elastic()) continue;
+    const Box block = body.phase->block(*body.box, 1, 1);
+    const Layout &layout = block.layout();
+    bodies->push_back(
+        {body.phase, Box(block.domain_shape(), layout.begin, layout.cells, 1), first_in(*body.box, block), {}});
+    boxes.push_back({nullptr, body.number});
+  }
+  for (std::size_t b = 0; b < boxes.size(); ++b) boxes[b].box = &(*bodies)[b].box;
+  BoxExchange exchange(domain, 2);
+  PetscCall(exchange.connect(boxes, true));
+  for (const Field &surface : surfaces) {
+    if (!surface) continue;
+    PetscCall(exchange.fetch(surface));
+    for (std::size_t b = 0; b < bodies->size(); ++b) {
+      BodyAtSurfaces &body = (*bodies)[b];
+      Field &brought = body.surfaces.emplace_back(body.box, 2);
+      exchange.copy_to_box(b, surface, brought);
+      for (int c = 0; c < 2; ++c) fill_wall_ghosts_even(body.box, at_centre, brought[c], 1);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
 // Of the bodies in `loads`.
-PetscErrorCode measure_loads(const Config &config, const std::vector<Phase> &phases, Solver *solver,
-                             std::vector<SurfaceLoad> *loads) {
+PetscErrorCode measure_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   const Domain &domain = solver->domain();
   const Field *viscosity = nullptr;
+  const std::vector<Phase> *phases = nullptr;
+  PetscCall(solver->looks().phases(&phases));
   PetscCall(solver->viscosity_now(&viscosity));
-  std::vector<Field> labels(phases.size());
-  std::vector<const Field *> wanted(phases.size(), nullptr);
-  for (std::size_t p = 0; p < phases.size(); ++p) {
-    const Phase &phase = phases[p];
+  bool any_boxed = false;
+  std::vector<Field> surfaces(phases->size()), labels(phases->size());
+  std::vector<const Field *> wanted(phases->size(), nullptr);
+  for (std::size_t p = 0; p < phases->size(); ++p) {
+    const Phase &phase = (*phases)[p];
+    any_boxed = any_boxed || (phase.boxed && phase.material.elastic());
     const SpeciesSpec *spec = config.species_of(phase);
     if (!spec || !spec->bears_load() || spec->law == Law::rigid) continue;
-    labels[p] = Field(domain, 1);  // not one at rest: all of it is written
-    const Int3 &n = domain.cells();
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) std::copy_n(phase.label[0].row(j, k), n[0], labels[p][0].row(j, k));
+    surfaces[p] = Field(domain, 2);  // not one at rest: all of it is written
+    labels[p] = surfaces[p].part(0, 1);
+    for (const Segment &row : domain.rows()) {
+      std::copy_n(phase.label[0].row(row.j, row.k), row.size(), surfaces[p][0].row(row.j, row.k));
+      std::copy_n(phase.fraction[0].row(row.j, row.k), row.size(), surfaces[p][1].row(row.j, row.k));
+    }
     PetscCall(solver->exchange().update_ghosts(labels[p], 1));
     fill_wall_ghosts_even(domain, at_centre, labels[p][0], 1);
     wanted[p] = &labels[p];
   }
+  std::vector<BodyAtSurfaces> bodies;
+  std::vector<BodyInBox> boxed;
+  if (any_boxed) {
+    PetscCall(solver->looks().bodies(&boxed));
+    PetscCall(bring_surfaces(domain, surfaces, boxed, &bodies));
+  }
   const State &state = solver->state();
   PetscCall(measure_surface_loads(domain.comm(), {domain, config.fluid.viscosity, config.fluid.density, viscosity},
-                                  state.velocity, state.pressure, phases, wanted, loads));
+                                  state.velocity, state.pressure, *phases, wanted, bodies, loads));
   PetscFunctionReturn(0);
 }
 
@@ -80,8 +122,7 @@ PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::v
   }
   std::sort(loads->begin(), loads->end(), [](const auto &one, const auto &two) { return one.label < two.label; });
   if (loads->empty()) PetscFunctionReturn(0);
-  PetscCall(solver->looks().on_grid(
-      [&](const std::vector<Phase> &phases) { return measure_loads(config, phases, solver, loads); }));
+  PetscCall(measure_loads(config, solver, loads));
   PetscFunctionReturn(0);
 }
 

@@ -118,6 +118,24 @@ class Vessels(SceneCase):
                 numpy.testing.assert_array_equal(getattr(other.bodies, name), getattr(bodies, name))
             numpy.testing.assert_array_equal(other.snapshots[-1]["wall_shear_stress"], stress)
 
+    def test_cells_in_boxes_load_the_vessel_that_they_touch(self):
+        """Two stretched cells, one of them across the periodic side: the same in boxes of their own, on any ranks, as on the grid."""
+        def loads(name, *words, ranks=1, modulus="5"):
+            bodies = self.run_program(name, *scene, "-cell_shear_modulus", modulus, *words, ranks=ranks).bodies
+            return numpy.concatenate([bodies.force[:, 0], bodies.torque[:, 0]], axis=1)
+
+        places = self.room / "places.csv"
+        places.write_text("x,y,z\n.02,.8,.487\n.5,.513,.2\n")
+        scene = (*"-grid_cells 24,26,26 -grid_length .9230769,1,1".split(), *TUBE[4:TUBE.index("-species")], *"-species vessel,cell".split(),
+                 *TUBE[TUBE.index("-vessel_shape"):], *ELASTIC, "-cell_positions", places, *"-cell_shape ellipsoid -cell_placement list "
+                 "-cell_semi_axes .13,.0877,.0877 -cell_initial_stretch 1.3,.877,.877 -body_force 1,.2,0 -fluid_viscosity 1 -time_end 1 "
+                 "-series_interval 1e-9 -time_steps_max 3".split())
+        boxes, grid, soft = loads("boxes"), loads("grid", "-cell_contact", "merge"), loads("soft", modulus="1e-9")
+        self.assertGreater(abs(boxes - soft)[:, :3].max(), 1e-3, "the cells do not touch the vessel")
+        numpy.testing.assert_allclose(boxes, grid, rtol=0, atol=1e-12)
+        for ranks in 2, 3, 4:
+            numpy.testing.assert_array_equal(loads(f"boxes{ranks}", ranks=ranks), boxes)
+
     def test_torque_on_an_elastic_ring(self):
         """A rigid cylinder turns in an elastic one that is attached: 4 pi mu Omega / (1/a^2 - 1/b^2)."""
         bodies = self.run_with(*"-grid_cells 64,64,1 -boundary_x wall -boundary_y wall -species rotor,vessel -rotor_shape cylinder "
