@@ -12,43 +12,45 @@ namespace eulastic {
 namespace {
 
 constexpr double trace = 1e-3;  // of solid that makes no surface
-constexpr int most_terms = 10;
 
 // The surface in a cell: a point of it, from the cell's centre in cells, and its normal out of the solid.
 struct SurfacePlane {
   Real3 point{}, normal{};
 };
 
-// Terms of a quadratic, the linear ones first.
-int terms(int dimension, const Real3 &r, double *t) {
+// Terms of a linear function and of a quadratic.
+constexpr int linear_terms(int dimension) { return 1 + dimension; }
+constexpr int quadratic_terms(int dimension) { return 1 + dimension + dimension * (dimension + 1) / 2; }
+
+// Those of a quadratic, the linear ones first.
+template <int Dim>
+EULASTIC_INLINE void terms(const Real3 &r, double *t) {
   int n = 0;
   t[n++] = 1;
-  for (int d = 0; d < dimension; ++d) t[n++] = r[d];
-  for (int d = 0; d < dimension; ++d)
-    for (int e = d; e < dimension; ++e) t[n++] = r[d] * r[e];
-  return n;
+  for (int d = 0; d < Dim; ++d) t[n++] = r[d];
+  for (int d = 0; d < Dim; ++d)
+    for (int e = d; e < Dim; ++e) t[n++] = r[d] * r[e];
 }
 
-// Least squares: the normal equations of one fit.
+// Least squares: the normal equations of fits of some functions by as many terms, to values at the same points.
+template <int Terms, int Functions>
 struct Fit {
-  int count = 0;
-  double gram[most_terms][most_terms]{}, right[most_terms]{};
+  double gram[Terms][Terms]{}, right[Functions][Terms]{};
+  int determined = 0;  // coefficients that the points determine
 
-  void add(const double *t, int n, double weight, double value) {
-    count = n;
-    for (int a = 0; a < n; ++a) {
+  EULASTIC_INLINE void add(const double *t, double weight, const double *values) {
+    for (int a = 0; a < Terms; ++a) {
       const double scaled = weight * t[a];
-      right[a] += scaled * value;
+      for (int f = 0; f < Functions; ++f) right[f][a] += scaled * values[f];
       for (int b = 0; b <= a; ++b) gram[a][b] += scaled * t[b];
     }
   }
 
-  // Coefficients of the quadratic; where the points do not determine it those of a linear function, or 0.
-  void solve(int linear, double *x) {
+  // Cholesky's factor. Where the points do not determine all coefficients: those of a linear function, or none.
+  void factor(int linear) {
     constexpr double least = 1e-8;  // of a diagonal element that is left of it
-    std::fill_n(x, most_terms, 0.0);
     int n = 0;
-    for (; n < count; ++n) {
+    for (; n < Terms; ++n) {
       const double whole = gram[n][n];
       for (int b = 0; b <= n; ++b) {
         double sum = gram[n][b];
@@ -60,14 +62,19 @@ struct Fit {
       }
       if (gram[n][n] == 0) break;
     }
-    if (n < count) n = n >= linear ? linear : 0;
-    for (int a = 0; a < n; ++a) {
-      x[a] = right[a];
+    determined = n == Terms ? n : n >= linear ? linear : 0;
+  }
+
+  // The coefficients of a function, after factor().
+  void solve(int function, double *x) const {
+    std::fill_n(x, Terms, 0.0);
+    for (int a = 0; a < determined; ++a) {
+      x[a] = right[function][a];
       for (int b = 0; b < a; ++b) x[a] -= gram[a][b] * x[b];
       x[a] /= gram[a][a];
     }
-    for (int a = n - 1; a >= 0; --a) {
-      for (int b = a + 1; b < n; ++b) x[a] -= gram[b][a] * x[b];
+    for (int a = determined - 1; a >= 0; --a) {
+      for (int b = a + 1; b < determined; ++b) x[a] -= gram[b][a] * x[b];
       x[a] /= gram[a][a];
     }
   }
@@ -104,18 +111,19 @@ public:
       low[d] = std::max(low[d], at[d] - here);
       high[d] = std::min(high[d], box_.domain_cells()[d] - 1 - here);
     }
+    const auto away = [&](int d, int offset) {
+      return d < dimension_ ? offset - (at[d] ? 0.5 : 0) - plane.point[d] : 0.0;
+    };
     for (int k = low[2]; k <= high[2]; ++k)
-      for (int j = low[1]; j <= high[1]; ++j)
+      for (int j = low[1]; j <= high[1]; ++j) {
+        Real3 r{0, away(1, j), away(2, k)};
+        if (r[1] * r[1] + r[2] * r[2] > radius * radius) continue;
         for (int i = low[0]; i <= high[0]; ++i) {
-          const Int3 offset{i, j, k};
-          Real3 r{};
-          double square = 0;
-          for (int d = 0; d < dimension_; ++d) {
-            r[d] = offset[d] - (at[d] ? 0.5 : 0) - plane.point[d];
-            square += r[d] * r[d];
-          }
-          if (square <= radius * radius) visit(r, Int3{cell[0] + i, cell[1] + j, cell[2] + k});
+          r[0] = away(0, i);
+          if (r[0] * r[0] + r[1] * r[1] + r[2] * r[2] <= radius * radius)
+            visit(r, Int3{cell[0] + i, cell[1] + j, cell[2] + k});
         }
+      }
   }
 
 private:
@@ -171,64 +179,91 @@ private:
   Field known_;
 };
 
-}  // namespace
-
 // From the fluid's side: quadratics through its velocity, the closer the further from the surface it is.
-void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress) {
-  const VerbScope scope(Verb::sums);
-  const SurfaceCells cells(box, solid);
-  const int dimension = box.dimension();
+template <int Dim>
+Real3 rigid_traction(const SurfaceCells &cells, const Box &box, double viscosity, ConstView solid,
+                     const Field &velocity, const Int3 &cell, const SurfacePlane &plane) {
+  constexpr int count = quadratic_terms(Dim);
   const Real3 &h = box.spacing();
-  const double finest = dimension == 2 ? std::min(h[0], h[1]) : std::min({h[0], h[1], h[2]});
-  cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
-    double gradient[3][3]{};
-    for (int a = 0; a < dimension; ++a) {
-      Fit fit;
-      cells.for_places(at_face[a], 3, 3.5, cell, plane, [&](const Real3 &r, const Int3 &place) {
-        const double *q = &solid(place[0], place[1], place[2]);
-        double distance = 0;
-        for (int d = 0; d < dimension; ++d) distance += r[d] * h[d] * plane.normal[d] / finest;
-        if (distance <= 0 || q[0] + q[-solid.stride(a)] >= 1) return;
-        double t[most_terms];
-        const int n = terms(dimension, r, t);
-        fit.add(t, n, distance * distance, velocity[a](place[0], place[1], place[2]));
-      });
-      double x[most_terms];
-      fit.solve(dimension + 1, x);
-      for (int d = 0; d < dimension; ++d) gradient[a][d] = x[1 + d] / h[d];
-    }
-    Real3 traction{};
-    for (int a = 0; a < dimension; ++a)
-      for (int d = 0; d < dimension; ++d)
-        traction[a] += viscosity * (gradient[a][d] + gradient[d][a]) * plane.normal[d];
-    return traction;
-  });
+  const double finest = Dim == 2 ? std::min(h[0], h[1]) : std::min({h[0], h[1], h[2]});
+  double gradient[3][3]{};
+  for (int a = 0; a < Dim; ++a) {
+    Fit<count, 1> fit;
+    cells.for_places(at_face[a], 3, 3.5, cell, plane, [&](const Real3 &r, const Int3 &place) {
+      const double *q = &solid(place[0], place[1], place[2]);
+      double distance = 0;
+      for (int d = 0; d < Dim; ++d) distance += r[d] * h[d] * plane.normal[d] / finest;
+      if (distance <= 0 || q[0] + q[-solid.stride(a)] >= 1) return;
+      double t[count];
+      terms<Dim>(r, t);
+      fit.add(t, distance * distance, &velocity[a](place[0], place[1], place[2]));
+    });
+    double x[count];
+    fit.factor(linear_terms(Dim));
+    fit.solve(0, x);
+    for (int d = 0; d < Dim; ++d) gradient[a][d] = x[1 + d] / h[d];
+  }
+  Real3 traction{};
+  for (int a = 0; a < Dim; ++a)
+    for (int d = 0; d < Dim; ++d) traction[a] += viscosity * (gradient[a][d] + gradient[d][a]) * plane.normal[d];
+  return traction;
 }
 
 // Through the surface: what the momentum equation passes on there, viscous and elastic, goes from one side to the
 // other.
+template <int Dim>
+Real3 elastic_traction(const SurfaceCells &cells, KnownStress &known, const Int3 &cell, const SurfacePlane &plane) {
+  constexpr int count = linear_terms(Dim);
+  double stress[Dim][Dim], x[count];
+  Fit<count, Dim> normal;
+  cells.for_places(at_centre, 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+    const double t[] = {1, r[0], r[1], r[2]};
+    double values[Dim];
+    for (int a = 0; a < Dim; ++a) values[a] = known.at(a, a, place);
+    normal.add(t, 1, values);
+  });
+  normal.factor(count);
+  for (int a = 0; a < Dim; ++a) {
+    normal.solve(a, x);
+    stress[a][a] = x[0];
+    for (int b = a + 1; b < Dim; ++b) {
+      Fit<count, 1> shear;
+      cells.for_places(at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+        const double t[] = {1, r[0], r[1], r[2]}, value = known.at(a, b, place);
+        shear.add(t, 1, &value);
+      });
+      shear.factor(count);
+      shear.solve(0, x);
+      stress[a][b] = x[0];
+    }
+  }
+  Real3 traction{};
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b) {
+      traction[a] += stress[a][b] * plane.normal[b];
+      if (b != a) traction[b] += stress[a][b] * plane.normal[a];
+    }
+  return traction;
+}
+
+}  // namespace
+
+void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress) {
+  const VerbScope scope(Verb::sums);
+  const SurfaceCells cells(box, solid);
+  const auto traction = box.dimension() == 2 ? rigid_traction<2> : rigid_traction<3>;
+  cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
+    return traction(cells, box, viscosity, solid, velocity, cell, plane);
+  });
+}
+
 void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress) {
   const VerbScope scope(Verb::sums);
-  const Box &box = whole.viscosity.box;
-  const SurfaceCells cells(box, solid);
-  const int dimension = box.dimension();
+  const SurfaceCells cells(whole.viscosity.box, solid);
+  const auto traction = whole.viscosity.box.dimension() == 2 ? elastic_traction<2> : elastic_traction<3>;
   KnownStress known(whole);
-  cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
-    Real3 traction{};
-    for (int a = 0; a < dimension; ++a)
-      for (int b = a; b < dimension; ++b) {
-        Fit fit;
-        cells.for_places(a == b ? at_centre : at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
-          const double t[] = {1, r[0], r[1], r[2]};
-          fit.add(t, dimension + 1, 1, known.at(a, b, place));
-        });
-        double x[most_terms];
-        fit.solve(dimension + 1, x);
-        traction[a] += x[0] * plane.normal[b];
-        if (b != a) traction[b] += x[0] * plane.normal[a];
-      }
-    return traction;
-  });
+  cells.add_to(stress,
+               [&](const Int3 &cell, const SurfacePlane &plane) { return traction(cells, known, cell, plane); });
 }
 
 }  // namespace eulastic
