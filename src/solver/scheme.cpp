@@ -101,20 +101,22 @@ PetscErrorCode Scheme::predict_in_stages(const Fluid &fluid, const MomentumStep 
   PetscCall(add_local_viscous_force(1, rate.fields()));
   PetscCall(flow_.work.take("viscous stage before", dim, &before));
   SuperTimeStepping viscous{rate.part(0, dim), {}, flow_.velocity_star.part(0, dim), before.part(0, dim)};
-  std::vector<char> stressed;
+  const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
+  ViscousStep viscous_step{sides,
+                           now.time,
+                           step.dt,
+                           stages,
+                           now.velocity,
+                           flow_.fluid.kinematic_viscosity(),
+                           viscosity_ ? &viscosity_ : nullptr};
   if (flow_.slope) {
     viscous.slope = flow_.slope.part(0, dim);
-    stressed = stressed_rows(domain, now.phases);
-    for (const FlowPart *part : flow_.parts) part->mark_forced_rows(&stressed);
+    viscous_step.stressed = stressed_rows(domain, now.phases);
+    for (const FlowPart *part : flow_.parts) part->mark_forced_rows(&viscous_step.stressed);
   }
-  const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
-  if (viscosity_)
-    PetscCall(super_time_step(domain, flow_.exchange, sides, viscosity_, now.time, step.dt, stages, now.velocity,
-                              viscous, flow_.velocity_star, flow_.rigid, flow_.fluid.kinematic_viscosity(),
-                              flow_.rigid_means));
-  else
-    PetscCall(super_time_step(domain, flow_.exchange, sides, fluid.kinematic_viscosity(), now.time, step.dt, stages,
-                              stressed, now.velocity, viscous, flow_.velocity_star, flow_.rigid, flow_.rigid_means));
+  viscous_step.rigid = flow_.rigid;
+  viscous_step.means = flow_.rigid_means;
+  PetscCall(super_time_step(domain, flow_.exchange, viscous_step, viscous, flow_.velocity_star));
   stages_ += stages;
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 // Layers of viscosity 1 and lambda, along the grid and across it: steady shear, and the slowest mode.
 #include "flow/correction.hpp"
 #include "flow/divergence.hpp"
+#include "flow/super_time_stepping.hpp"
 #include "flow/viscous_stress.hpp"
 #include "pressure/smac.hpp"
 #include "support/polynomials.hpp"
@@ -145,7 +146,9 @@ ShearErrors shear_errors_across(double lambda, int cells) {
       });
     EXPECT_EQ(add_viscous_force(domain, viscosity, 1, linear, work.rate), 0);
     EXPECT_EQ(add_viscous_force(domain, viscosity, 1, v, work.rate), 0);
-    EXPECT_EQ(super_time_step(domain, exchange, {}, viscosity, 0, dt, rkl_stages(dt, viscous), v, work, star), 0);
+    const BoxSides sides{};
+    const ViscousStep step{sides, 0, dt, rkl_stages(dt, viscous), v, 1, &viscosity};
+    EXPECT_EQ(super_time_step(domain, exchange, step, work, star), 0);
     EXPECT_EQ(exchange.update_ghosts(star, 1), 0);
     EXPECT_EQ(compute_divergence(domain, 1, star, divergence), 0);
     EXPECT_EQ(exchange.update_ghosts(divergence, 1), 0);

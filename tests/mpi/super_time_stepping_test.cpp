@@ -77,9 +77,9 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
         work.rate[c](i, row.j, row.k) = first * mode(c, row, i);
         work.slope[c](i, row.j, row.k) = slope * mode(c, row, i);
       }
-  ASSERT_EQ(super_time_step(domain, exchange, {}, viscosity, 0, dt, stages, stressed_rows(domain, phases), velocity,
-                            work, result),
-            0);
+  const BoxSides sides{};
+  const ViscousStep step{sides, 0, dt, stages, velocity, viscosity, nullptr, stressed_rows(domain, phases)};
+  ASSERT_EQ(super_time_step(domain, exchange, step, work, result), 0);
   for (int c = 0; c < 3; ++c) {
     double eigenvalue = 0;
     for (const Wave &wave : waves[c]) eigenvalue += viscosity * wave.eigenvalue();

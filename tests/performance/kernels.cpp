@@ -56,7 +56,8 @@ EULASTIC_CLONES void rkl_stage(Block &b) {
   const InverseSquares h = b.domain.inverse_squares();
   const kernels::RklStage stage{0.5, 0.3, 1e-6, 0.01, 0};
   for (const Segment &s : b.rows)
-    kernels::rkl_stage<3, false>(s, stage, b.fields[0], b.fields[1], b.fields[1], h, b.fields[2]);
+    kernels::rkl_stage<false>(s, stage, b.fields[0], b.fields[1], b.fields[1],
+                              kernels::RowLaplacian<3>(b.fields[0], s, h), b.fields[2]);
 }
 
 // The sums of a sweep along D and the step before, whose Laplacian is D before - D; without what is done once a row.

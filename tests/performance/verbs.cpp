@@ -108,8 +108,8 @@ void rkl_stage(benchmark::State &state) {
     constexpr double stage = 8 + 16 + 8, ends = (8 + 16) + 16 + (8 + 8 + 16);
     SuperTimeStepping work{Field(s.domain, 3), {}, Field(s.domain, 3), Field(s.domain, 3)};
     measure(3 * (stage + ends / (stages - 1)), stages - 1, [&] {
-      return super_time_step(s.domain, s.exchange, s.box.scene.solver.spec().sides, 1, 0, 100 * s.box.dt, stages, {},
-                             s.now.velocity, work, s.velocity);
+      const ViscousStep step{s.box.scene.solver.spec().sides, 0, 100 * s.box.dt, stages, s.now.velocity, 1};
+      return super_time_step(s.domain, s.exchange, step, work, s.velocity);
     });
   });
 }
