@@ -5,6 +5,7 @@
 #include "grid/blocks.hpp"
 #include "kernels/height_curvature.hpp"
 #include "kernels/plane_area.hpp"
+#include "kernels/stencils.hpp"
 
 #include <algorithm>
 
@@ -86,15 +87,6 @@ EULASTIC_CLONES long from_heights_3d(const Curvature &c, const Segment *begin, c
   return from_heights<3>(c, begin, end);
 }
 
-// Sum over the 3^d cells around, the same to the bit of mirrored ones.
-template <int Dim>
-EULASTIC_INLINE double sum_around(const double *q, const std::ptrdiff_t *s) {
-  const auto along_x = [&](std::ptrdiff_t o) { return (q[o - 1] + q[o + 1]) + q[o]; };
-  const auto along_y = [&](std::ptrdiff_t o) { return (along_x(o - s[1]) + along_x(o + s[1])) + along_x(o); };
-  if constexpr (Dim == 2) return along_y(0);
-  return (along_y(-s[2]) + along_y(s[2])) + along_y(0);
-}
-
 struct Mended {
   std::ptrdiff_t at;
   double sum, weight;
@@ -108,8 +100,8 @@ EULASTIC_INLINE void mend(const Curvature &c, const Segment *begin, const Segmen
     for (int i = s->i_begin; i < s->i_end; ++i) {
       const std::ptrdiff_t at = q + i - c.phi.origin;
       if (!c.cut(q + i) || c.weight.origin[at] > 0) continue;
-      const double total = sum_around<Dim>(c.weight.origin + at, c.stride), w = Curvature::weight_of(q[i]);
-      if (total > 0) mended->push_back({at, w * (sum_around<Dim>(c.sum.origin + at, c.stride) / total), w});
+      const double total = kernels::sum_around<Dim>(c.weight.origin + at, c.stride), w = Curvature::weight_of(q[i]);
+      if (total > 0) mended->push_back({at, w * (kernels::sum_around<Dim>(c.sum.origin + at, c.stride) / total), w});
     }
   }
 }

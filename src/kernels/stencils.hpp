@@ -5,6 +5,12 @@
 
 namespace eulastic::kernels {
 
+/// The smaller one of two slopes; 0 where they differ in sign.
+EULASTIC_INLINE double minmod(double near, double far) noexcept {
+  const double smaller = __builtin_fabs(near) < __builtin_fabs(far) ? near : far;
+  return near * far > 0 ? smaller : 0;
+}
+
 /// Sum and mean of q over the 4 points {0, a} x {0, b}.
 EULASTIC_INLINE double sum4(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
   return (q[0] + q[a]) + (q[b] + q[a + b]);
@@ -16,6 +22,16 @@ EULASTIC_INLINE double average4(const double *q, std::ptrdiff_t a, std::ptrdiff_
 /// Mean of q over the 8 points {0, a} x {0, b} x {0, c}.
 EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_t b, std::ptrdiff_t c) noexcept {
   return 0.125 * (((q[0] + q[a]) + (q[b] + q[a + b])) + ((q[c] + q[c + a]) + (q[c + b] + q[c + a + b])));
+}
+
+/// Sum over the 3^d points around q[0], the same to the bit of mirrored ones.
+template <int Dim>
+EULASTIC_INLINE double sum_around(const double *q, const std::ptrdiff_t *s) noexcept {
+  const auto along_x = [&](std::ptrdiff_t o) EULASTIC_BODY { return (q[o - s[0]] + q[o + s[0]]) + q[o]; };
+  const auto along_y = [&](std::ptrdiff_t o)
+                           EULASTIC_BODY { return (along_x(o - s[1]) + along_x(o + s[1])) + along_x(o); };
+  if constexpr (Dim == 2) return along_y(0);
+  return (along_y(-s[2]) + along_y(s[2])) + along_y(0);
 }
 
 /// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.

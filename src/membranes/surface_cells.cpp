@@ -370,17 +370,7 @@ struct Around {
 // Fields side by side: whole vectors.
 constexpr int width = 8;
 
-// Values of the 3^d cells around one, in order, summed up so that mirrored ones give the same bits.
-template <int Dim>
-EULASTIC_INLINE double nested_sum(const double *v) {
-  double rows[9];
-  for (int r = 0; r < (Dim == 3 ? 9 : 3); ++r) rows[r] = (v[3 * r] + v[3 * r + 2]) + v[3 * r + 1];
-  double planes[3];
-  for (int p = 0; p < (Dim == 3 ? 3 : 1); ++p) planes[p] = (rows[3 * p] + rows[3 * p + 2]) + rows[3 * p + 1];
-  return Dim == 3 ? (planes[0] + planes[2]) + planes[1] : planes[0];
-}
-
-// The same of fields side by side, into the first; spoils the others.
+// kernels::sum_around() of the 3^d cells around one, of fields side by side, into the first; spoils the others.
 template <int Dim>
 EULASTIC_INLINE void nested_sums(double (*v)[width]) {
   const auto along = [&](int first, int s) EULASTIC_BODY {
@@ -418,10 +408,11 @@ EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around,
     plain[m] = known;
     towards[m] = along > 0 ? known * along : 0;
   }
-  double sum = nested_sum<Dim>(towards);
+  constexpr std::ptrdiff_t stride[3] = {1, 3, 9};
+  double sum = kernels::sum_around<Dim>(towards + count / 2, stride);
   const double *w = towards;
   if (!(sum > 0)) {
-    sum = nested_sum<Dim>(plain);
+    sum = kernels::sum_around<Dim>(plain + count / 2, stride);
     w = plain;
   }
   // Neighbours that count, side by side, and zeros to fill the last vector.

@@ -1,6 +1,7 @@
 #include "pressure/obstacles.hpp"
 
 #include "base/events.hpp"
+#include "field/extend_layer.hpp"
 #include "field/open_sides.hpp"
 #include "grid/sum_row_parts.hpp"
 #include "kernels/momentum.hpp"
@@ -303,47 +304,28 @@ constexpr double least_open = 0.03;  // that D* is divided by
 PetscErrorCode ObstacleSolver::extend(Field &pressure) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
-  WorkSpace::Lease taken;
-  PetscCall(work_->take("known pressure", 2, &taken));
-  Field known = taken.part(0, 1), next = taken.part(1, 1);
-  for (Field *block : {&known, &next}) block->fill(0, 1);
-  for_closed_cells(
-      [&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = next[0](cell[0], cell[1], cell[2]) = 0; });
-  PetscCall(extend_layer(known, next, pressure));
-  PetscCall(extend_layer(next, known, pressure));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ObstacleSolver::extend_layer(Field &known, Field &next, Field &pressure) const {
-  PetscFunctionBeginUser;
-  PetscCall(exchange_->update_ghosts(known, 1));
-  PetscCall(exchange_->update_ghosts(pressure, 1));
-  std::size_t at = 0;
-  const View p = pressure[0];
-  for (const Segment &row : domain_->rows()) {
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const Int3 cell{cells_[c].i, row.j, row.k};
-      const double *is_known = &known[0](cell[0], cell[1], cell[2]);
-      double *value = &p(cell[0], cell[1], cell[2]);
-      if (*is_known != 0) continue;
-      double sum = 0, count = 0;
-      for (int d = 0; d < domain_->dimension(); ++d) {
-        double pair[2] = {};
-        for (int high = 0; high < 2; ++high) {
-          const std::ptrdiff_t step = high ? p.stride(d) : -p.stride(d);
-          const int global = domain_->layout().begin[d] + cell[d] + (high ? 1 : -1);
-          if ((domain_->is_wall(d) && (global < 0 || global >= domain_->domain_cells()[d])) || is_known[step] == 0)
-            continue;
-          pair[high] = value[step];
-          ++count;
-        }
-        sum += pair[0] + pair[1];
-      }
-      if (count == 0) continue;
-      *value = sum / count;
-      next[0](cell[0], cell[1], cell[2]) = 1;
-    }
-    ++at;
+  const Layout &layout = domain_->layout();
+  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+  WorkSpace::Lease lease;
+  PetscCall(work_->take("known pressure", 1, &lease));
+  Field known = lease.part(0, 1);  // 1, else 0: behind sides of the box too
+  known.clear();
+  for (const Segment &row : domain_->rows()) std::fill_n(known[0].row(row.j, row.k), row.size(), 1.0);
+  for_closed_cells([&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = 0; });
+  for (int layer = 1; layer <= 2; ++layer) {
+    PetscCall(exchange_->update_ghosts(known, 1));
+    PetscCall(exchange_->update_ghosts(pressure, 1));
+    std::vector<LayerPoint> points;
+    for_closed_cells([&](const Int3 &cell) {
+      const std::ptrdiff_t at = layout.offset(cell[0], cell[1], cell[2]);
+      const double *is_known = known.data() + at;
+      const auto counts = [&](std::ptrdiff_t step) { return is_known[step] != 0; };
+      const unsigned neighbours = *is_known != 0 ? 0 : neighbour_bits(domain_->dimension(), stride, counts);
+      if (neighbours) points.emplace_back(at, neighbours, 0);
+    });
+    scope.flops(extend_layer<1>(points, Piece(points.size(), 0, 1), domain_->dimension(), stride, layout.size,
+                                pressure.data()));
+    for (const LayerPoint &point : points) known.data()[point.offset] = 1;
   }
   PetscFunctionReturn(0);
 }

@@ -52,7 +52,6 @@ private:
     double response = 0;  ///< r of docs/method.md, section 19
     bool closed() const;
   };
-  PetscErrorCode extend_layer(Field &known, Field &next, Field &pressure) const;
   void apply(double dt, const Field &q, Field &out) const;
   /// Calls work(cell) for every owned cell whose faces are all closed.
   template <class Work>

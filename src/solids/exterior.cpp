@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 
 namespace eulastic {
@@ -80,45 +79,6 @@ bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimensio
         for (const std::ptrdiff_t y : {-stride[b], stride[b]})
           if (!(kernels::average4(phi, x, y) >= least)) return false;
   return true;
-}
-
-// What the neighbour at `step` says of b[0]: its own value, or a line whose slope is the smaller one of the two behind
-// it, none if they differ in sign.
-double extended(const double *b, std::ptrdiff_t step, bool linear) {
-  if (!linear) return b[step];
-  const double near = b[step] - b[2 * step], far = b[2 * step] - b[3 * step];
-  return b[step] + (near * far > 0 ? (std::fabs(near) < std::fabs(far) ? near : far) : 0);
-}
-
-// Components on the same points, `size` doubles apart: the mean over the neighbours that count. Returns the flops: of
-// n values one each, seven more of a line.
-template <int Fields, class Entries>
-double extend_fields(const Entries &entries, Piece piece, int dimension, const std::ptrdiff_t *stride,
-                     std::ptrdiff_t size, double *B) {
-  std::int64_t flops = 0;
-  const std::ptrdiff_t slice = stride[dimension - 1];
-  for (std::size_t n = piece.begin; n < piece.end; ++n) {
-    const auto &entry = entries[n];
-    const double *later = B + entries[std::min(n + 32, piece.end - 1)].offset;
-    for (int f = 0; f < Fields; ++f)  // not foreseen by processors
-      for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
-    double *b = B + entry.offset;
-    double sum[Fields] = {};
-    for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
-      const unsigned pair = entry.neighbours >> (2 * d), linear = entry.lines >> (2 * d);
-      double both[Fields] = {};
-      if (pair & 1)
-        for (int f = 0; f < Fields; ++f) both[f] = extended(b + f * size, -stride[d], linear & 1);
-      if (pair & 2)
-        for (int f = 0; f < Fields; ++f) both[f] += extended(b + f * size, stride[d], linear >> 1 & 1);
-      for (int f = 0; f < Fields; ++f) sum[f] += both[f];
-    }
-    const int count = __builtin_popcount(entry.neighbours);
-    flops += count;
-    if (entry.lines) flops += 7 * __builtin_popcount(entry.lines);
-    for (int f = 0; f < Fields; ++f) b[f * size] = sum[f] / count;
-  }
-  return Fields * static_cast<double>(flops);
 }
 
 // What of a row in a box a body is near to: of owned rows that is known.
@@ -206,23 +166,17 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *la
   } rows[2];
   for (Row &row : rows) row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
   for (int L = 1; L <= layers; ++L) {
-    std::vector<Entry> &entries = location->layer[L - 1];
+    std::vector<LayerPoint> &entries = location->layer[L - 1];
     entries.clear();
     const auto mark = [&](Row &row) {
       for (int i = next_found(row.found.data(), 0, row.n); i < row.n; i = next_found(row.found.data(), i + 1, row.n)) {
         unsigned char *here = row.mask + i;
         *here = static_cast<unsigned char>(L);
         if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
-        unsigned neighbours = 0, lines = 0;
-        for (int d = 0; d < box.dimension(); ++d) {
-          const unsigned low = 1u << (2 * d), high = 2u << (2 * d);
-          if (here[-stride[d]] < L) neighbours |= low;
-          if (here[stride[d]] < L) neighbours |= high;
-          if (!linear_) continue;
-          if (neighbours & low && leads_in(here, -stride[d])) lines |= low;
-          if (neighbours & high && leads_in(here, stride[d])) lines |= high;
-        }
-        entries.emplace_back(here - mask, neighbours, lines);
+        const auto counts = [=](std::ptrdiff_t step) { return here[step] < L; };
+        const auto has_line = [=](std::ptrdiff_t step) { return here[step] < L && leads_in(here, step); };
+        entries.emplace_back(here - mask, neighbour_bits(box.dimension(), stride, counts),
+                             linear_ ? neighbour_bits(box.dimension(), stride, has_line) : 0);
       }
       row.n = 0;
     };
@@ -248,18 +202,17 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *la
 }
 
 // Part `part` of what a layer holds. Returns the flops.
-double ExteriorLayers::extend_layer(int dimension, const Layout &layout, int layer, int part, int parts,
-                                    double *B) const {
-  const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
+double ExteriorLayers::extend_part(const Box &box, int layer, int part, int parts, double *B) const {
+  const std::ptrdiff_t stride[3] = {1, box.layout().sy, box.layout().sz}, size = box.layout().size;
+  const int dimension = box.dimension();
   double flops = 0;
   for (const Location &location : locations_) {  // the diagonals, which share their points, then the others
-    const std::vector<Entry> &entries = location.layer[layer - 1];
-    const Piece piece(entries.size(), part, parts);
+    const std::vector<LayerPoint> &points = location.layer[layer - 1];
+    const Piece piece(points.size(), part, parts);
     const int fields = &location == &locations_[0] ? dimension : 1;
-    if (fields == 1) flops += extend_fields<1>(entries, piece, dimension, stride, layout.size, B);
-    if (fields == 2) flops += extend_fields<2>(entries, piece, dimension, stride, layout.size, B);
-    if (fields == 3) flops += extend_fields<3>(entries, piece, dimension, stride, layout.size, B);
-    B += fields * layout.size;
+    const auto extend = fields == 1 ? extend_layer<1> : fields == 2 ? extend_layer<2> : extend_layer<3>;
+    flops += extend(points, piece, dimension, stride, size, B);
+    B += fields * size;
   }
   return flops;
 }
@@ -271,9 +224,7 @@ PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, Gho
   const int parts = row_parts(box);
   std::vector<double> flops(parts);
   for (int L = 1; L <= layers; ++L) {
-    in_parallel(parts, parts, [&](int part) {
-      flops[part] = extend_layer(box.dimension(), box.layout(), L, part, parts, tensor.data());
-    });
+    in_parallel(parts, parts, [&](int part) { flops[part] = extend_part(box, L, part, parts, tensor.data()); });
     for (const double some : flops) scope.flops(some);
     clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
     if (linear_ && exchange && L < layers) PetscCall(exchange->update_ghosts(tensor, 3));

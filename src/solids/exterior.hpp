@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/extend_layer.hpp"
 #include "field/fluid.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
@@ -43,23 +44,13 @@ public:
   double points() const noexcept;
 
 private:
-  struct Entry {
-    PetscInt offset;           ///< from the field's first double
-    unsigned char neighbours;  ///< bits: low x, high x, low y, high y, low z, high z
-    unsigned char lines;       ///< those of them with two points more behind: there linear extension is possible
-    /// Written in place: parts put on the stack and read in one would wait for the caches.
-    Entry(std::ptrdiff_t at, unsigned from, unsigned along) noexcept
-        : offset(static_cast<PetscInt>(at)),
-          neighbours(static_cast<unsigned char>(from)),
-          lines(static_cast<unsigned char>(along)) {}
-  };
   struct Location {
     Staggering staggering{};
-    std::array<std::vector<Entry>, layers> layer;
+    std::array<std::vector<LayerPoint>, layers> layer;
   };
   using Mask = std::vector<unsigned char>;
   void build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const;
-  double extend_layer(int dimension, const Layout &layout, int layer, int part, int parts, double *B) const;
+  double extend_part(const Box &box, int layer, int part, int parts, double *B) const;
 
   bool linear_ = false;
   std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component

@@ -177,16 +177,14 @@ struct FullPoints {
   std::ptrdiff_t stride[3];
   static constexpr auto full = SurfaceCorrection::full;
 
-  // Of the smaller one of the two slopes behind it, none if they differ in sign or lie beyond the ghosts.
+  // Of the minmod slope behind it, none if that lies beyond the ghosts.
   template <int Away>
   EULASTIC_INLINE void add_line(std::ptrdiff_t o, std::ptrdiff_t in, Sum<Fields> &one) const {
     if constexpr (Away > 0 && Away + 2 <= SurfaceCorrection::ghosts) {
       if (kind[o + in] != full || kind[o + 2 * in] != full) return;
       for (int f = 0; f < Fields; ++f) {
         const double *q = field[f] + o;
-        const double near = q[0] - q[in], far = q[in] - q[2 * in];
-        const double slope = __builtin_fabs(near) < __builtin_fabs(far) ? near : far;
-        one.value[f] += near * far > 0 ? Away * slope : 0;
+        one.value[f] += Away * kernels::minmod(q[0] - q[in], q[in] - q[2 * in]);
       }
     }
   }
