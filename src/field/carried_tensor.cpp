@@ -13,6 +13,11 @@ const std::vector<TensorComponent> &tensor_components(int dimension, bool centre
   return centred ? full_centred : full;
 }
 
+std::vector<TensorComponent> tensor_locations(int dimension) {
+  const std::vector<TensorComponent> &all = tensor_components(dimension);
+  return {all.begin() + (dimension - 1), all.end()};  // the last diagonal one stands for the centres
+}
+
 Field tensor_at_rest(const Box &box) {
   const int dimension = box.dimension();
   return Field::at_rest(box, static_cast<int>(tensor_components(dimension).size()), dimension);

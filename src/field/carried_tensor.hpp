@@ -27,6 +27,8 @@ struct TensorComponent {
 /// In the order of their field: xx, yy, xy in 2-D (zz stays 1) and xx, yy, zz, yz, xz, xy in 3-D; off-diagonals lie on
 /// edges, or all of it is `centred`.
 const std::vector<TensorComponent> &tensor_components(int dimension, bool centred = false);
+/// One component of every place where those of a solid live: centres, then the edges in the order of the field.
+std::vector<TensorComponent> tensor_locations(int dimension);
 
 /// Where a tensor evolves, and what is outside: I, or an extension; by that also what of it counts as unresolved
 /// (solids/unresolved.hpp).

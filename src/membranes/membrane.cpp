@@ -90,7 +90,7 @@ EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std
   Tensor<Dim> rate;
   for (int x = 0; x < Dim; ++x)
     for (int y = x; y < Dim; ++y) {
-      const double *q = B[x == y ? x : Dim == 2 ? 2 : 6 - x - y].origin + at;
+      const double *q = B[kernels::position<Dim>(x, y)].origin + at;
       double carried = 0, stretched = 0;
       for (int d = 0; d < Dim; ++d) {
         carried = kernels::fma(flow.v[d] * local.inverse[d], kernels::upwind5_difference(q, local.stride[d], flow.v[d]),
@@ -259,7 +259,7 @@ EULASTIC_INLINE void divergence_row(const Field &T, int a, const Real3 &inverse,
   for (int i = 0; i < n; ++i) out[i] = inverse[a] * (aa[i] - aa[i - sa]);
   for (int e = 1; e < Dim; ++e) {
     const int b = (a + e) % Dim;
-    const double *ab = T[Dim == 2 ? 2 : 6 - a - b].row(j, k);
+    const double *ab = T[kernels::position<Dim>(a, b)].row(j, k);
     const double ib = inverse[b];
     const std::ptrdiff_t sb = q.stride(b);
 #pragma omp simd

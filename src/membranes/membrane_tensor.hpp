@@ -8,18 +8,16 @@ namespace eulastic {
 
 template <int Dim>
 EULASTIC_INLINE kernels::Tensor<Dim> tensor_at(const Field &B, std::ptrdiff_t at) {
-  const auto value = [&](int f) { return B[f].origin[at]; };
-  if constexpr (Dim == 2) {
-    return {{{value(0), value(2)}, {value(2), value(1)}}};
-  } else {
-    return {{{value(0), value(5), value(4)}, {value(5), value(1), value(3)}, {value(4), value(3), value(2)}}};
-  }
+  kernels::Tensor<Dim> t;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) t[a][b] = B[kernels::position<Dim>(a, b)].origin[at];
+  return t;
 }
 
 template <int Dim>
 EULASTIC_INLINE void set_tensor(Field &B, std::ptrdiff_t at, const kernels::Tensor<Dim> &t) {
   for (int a = 0; a < Dim; ++a)
-    for (int b = a; b < Dim; ++b) B[a == b ? a : Dim == 2 ? 2 : 6 - a - b].origin[at] = t[a][b];
+    for (int b = a; b < Dim; ++b) B[kernels::position<Dim>(a, b)].origin[at] = t[a][b];
 }
 
 template <int Dim>

@@ -132,14 +132,8 @@ bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, 
 PetscErrorCode ExteriorLayers::build(const Box &box, const Phase &phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::exterior);
-  if (locations_.empty()) {
-    locations_.emplace_back();
-    for (const TensorComponent &c : tensor_components(box.dimension()))
-      if (c.a != c.b) {
-        locations_.emplace_back();
-        locations_.back().staggering = c.at;
-      }
-  }
+  if (locations_.empty())
+    for (const TensorComponent &c : tensor_locations(box.dimension())) locations_.push_back({c.at, {}});
   linear_ = phase.tensor.rule.linear;
   const int team = row_parts(box);
   masks_.resize(team > 1 ? locations_.size() : 1);

@@ -243,7 +243,7 @@ template <int Dim>
 void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured,
                                 Piece piece, Location *location) const {
   const Terms terms(box, step, phase, measured);
-  const bool centre = location->a == location->b;
+  const bool centre = !location->on_edge();
   const int own = static_cast<int>(location - locations_.data()), components = centre ? Dim : 1;
   const int first = centre ? 0 : Dim + own - 1;
   std::ptrdiff_t around[4][4] = {};  // of every location, where its four points lie
@@ -295,17 +295,8 @@ PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step,
   if (!phase.material.elastic()) PetscFunctionReturn(0);
   VerbScope scope(Verb::left_cauchy_green);
   const int dimension = box.dimension(), team = row_parts(box);
-  if (locations_.empty()) {
-    locations_.emplace_back();
-    for (const TensorComponent &c : tensor_components(dimension))
-      if (c.a != c.b) {
-        locations_.emplace_back();
-        Location &edges = locations_.back();
-        edges.a = c.a;
-        edges.b = c.b;
-        edges.at = c.at;
-      }
-  }
+  if (locations_.empty())
+    for (const TensorComponent &c : tensor_locations(dimension)) locations_.push_back({c, {}, {}, {}});
   in_parallel(team, static_cast<int>(locations_.size()) - 1,
               [&](int l) { find_points(box, step.sides, phase, &locations_[l + 1]); });
   find_points(box, step.sides, phase, &locations_[0]);  // by the edges
@@ -321,7 +312,7 @@ PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step,
   const std::ptrdiff_t size = box.layout().size;
   int first = 0;
   for (const Location &location : locations_) {
-    const int fields = location.a == location.b ? dimension : 1;
+    const int fields = location.on_edge() ? 1 : dimension;
     const double *next = location.next.data();
     double *B = phase.tensor.field.data() + first * size;
     for (const PetscInt p : location.points)
@@ -406,7 +397,7 @@ void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
   const Staggering &at = location->at;
-  const bool centre = location->a == location->b;
+  const bool centre = !location->on_edge();
   location->kind.assign(layout.size, outside);
   location->points.clear();
   Box::Range range[3];
@@ -429,7 +420,7 @@ void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const
         Edges edges[3];
         int count = 0;
         for (const Location &other : locations_)
-          if (other.a != other.b) edges[count++] = {other.kind.data() + first, stride[other.a], stride[other.b]};
+          if (other.on_edge()) edges[count++] = {other.kind.data() + first, stride[other.a], stride[other.b]};
         flag_centres(end - begin, phi.row(j, k) + begin, edges, count, row);
       } else {
         flag_edges(end - begin, phi.row(j, k) + begin, stride[location->a], stride[location->b], row);

@@ -32,9 +32,7 @@ public:
   enum Kind : unsigned char { full, surface, outside };
 
 private:
-  struct Location {
-    int a = 0, b = 0;  ///< of the component on these edges; the same: centres
-    Staggering at{};
+  struct Location : TensorComponent {
     std::vector<unsigned char> kind;  ///< of every point
     std::vector<PetscInt> points;     ///< of the surface, owned: offsets from the field's first double
     std::vector<double> next;         ///< their components, corrected, one after the other
