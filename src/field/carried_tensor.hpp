@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 namespace eulastic {
@@ -33,16 +34,17 @@ std::vector<TensorComponent> tensor_locations(int dimension);
 /// Where a tensor evolves, and what is outside: I, or an extension; by that also what of it counts as unresolved
 /// (solids/unresolved.hpp).
 struct EvolveRule {
-  double centre = 2, edge = 2;  ///< least solid fraction, at centres and (mean of four) on edges; 2: nowhere
-  double stressed = 2;          ///< least solid fraction that makes stress
-  int layers = 0;               ///< how far it is extended outside, in points
+  static constexpr double nowhere = std::numeric_limits<double>::infinity(), everywhere = -nowhere;  ///< of any phi
+  double centre = nowhere, edge = nowhere;  ///< least solid fraction, at centres and (mean of four) on edges
+  double stressed = nowhere;                ///< least solid fraction that makes stress
+  int layers = 0;                           ///< how far it is extended outside, in points
   int reach = 2;                ///< how far from such solid faces feel stress, that of a step before included
   bool linear = false;          ///< extended linearly, else as a constant
   double viscosity_excess = 0;  ///< mu_s/mu_f - 1, where the edge stress goes with the viscosity; docs/method.md, (29b)
 };
 
 /// Of membranes: nothing inside evolves; faces feel forces four cells around the body (bending), and one more.
-inline constexpr EvolveRule around_membranes{1e300, 1e300, 1e-30, 0, 5};
+inline constexpr EvolveRule around_membranes{EvolveRule::nowhere, EvolveRule::nowhere, 1e-30, 0, 5};
 
 /// use(viscosity) with what the kernels of the elastic stress ask of the viscosities of solid and fluid.
 template <class Use>

@@ -36,7 +36,7 @@ struct ViscousStep {
   const Field &velocity;
   double viscosity;                   ///< kinematic, of the fluid
   LocalViscosity *local = nullptr;    ///< where it varies: its stress replaces the Laplacian, except at cut faces
-  std::vector<char> stressed{};       ///< stressed_rows(); M_1 vanishes in the others
+  std::vector<char> stressed{};       ///< stressed_rows(), with a slope: M_1 vanishes in the others
   const RigidFaces *rigid = nullptr;  ///< whose surfaces rate and slope have seen
   RigidMeans *means = nullptr;        ///< begin with values at `time`, become those the viscous term has acted with
 };

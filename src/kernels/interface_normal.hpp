@@ -47,8 +47,7 @@ EULASTIC_INLINE InterfaceNormal interface_normal(const double *q, std::ptrdiff_t
   const double ba = slope(b, a), bc = Dim == 3 ? slope(b, c) : 0;
   const double ca = Dim == 3 ? slope(c, a) : 0, cb = Dim == 3 ? slope(c, b) : 0;
   const auto inclination = [](double g, double s, double t) {
-    constexpr double none = 1e300;
-    return g != 0 ? __builtin_fabs(s) + __builtin_fabs(t) : none;
+    return g != 0 ? __builtin_fabs(s) + __builtin_fabs(t) : __builtin_huge_val();
   };
   const double ia = inclination(ga, ab, ac), ib = inclination(gb, ba, bc), ic = inclination(gc, ca, cb);
   const bool use_b = ib < ia;

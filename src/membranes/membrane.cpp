@@ -126,10 +126,7 @@ PetscErrorCode MembraneMechanics::start(Phase *phase) {
         for (double &entry : row) entry *= stretch;
       set_tensor<dim>(phase->tensor.field, cell.at, value);
     };
-    if (place_.box->dimension() == 2)
-      set(std::integral_constant<int, 2>());
-    else
-      set(std::integral_constant<int, 3>());
+    place_.box->dimension() == 2 ? set(std::integral_constant<int, 2>()) : set(std::integral_constant<int, 3>());
   }
   PetscCall(surface_.extend(*phase, phase->tensor.field));
   PetscFunctionReturn(0);
@@ -220,10 +217,7 @@ void MembraneMechanics::recall(const std::vector<SurfaceMarkers::Strain> &strain
       set_tensor<dim>(tensor, cell.at, value);
     }
   };
-  if (place_.box->dimension() == 2)
-    each(std::integral_constant<int, 2>());
-  else
-    each(std::integral_constant<int, 3>());
+  place_.box->dimension() == 2 ? each(std::integral_constant<int, 2>()) : each(std::integral_constant<int, 3>());
 }
 
 PetscErrorCode MembraneMechanics::move(double dt, const Field &velocity,

@@ -19,6 +19,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   // What is held and where, whether any leave whole, whether any flow out; of bodies in boxes, whether any leave.
   int found[4] = {-1, 0, 0, 0};
   std::vector<std::size_t> leaving;
+  // Phase, direction and side in one number, as ranks have to agree on one of several places in one reduction.
   const auto hold = [&](int phase, int d, bool high) { found[0] = std::max(found[0], phase * 6 + 2 * d + high); };
   PetscFunctionBeginUser;
   const std::vector<BodyInBox> boxed = boxed_.list();

@@ -544,7 +544,7 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
     inside_[a] = {};
     level_[a] = {};
   }
-  const double count = faces_.count;
+  const double count = faces_.count;  // in one number two indices have an order, so that all ranks name the same pair
   std::array<double, 4> most{faces_.speed[0], faces_.speed[1], faces_.speed[2], contact_[0] * count + contact_[1]};
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), 4, MPI_DOUBLE, MPI_MAX, domain_.comm()));
   std::copy_n(most.begin(), 3, faces_.speed.begin());

@@ -124,20 +124,18 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
   PetscFunctionReturn(0);
 }
 
-// The first of the pairs that ranks have found.
+// The first of the pairs that ranks have found, those at the same place before all others.
 PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
   PetscFunctionBeginUser;
-  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-  const std::int64_t later = std::int64_t{!first->same_place} << 62;  // than those at the same place
-  const std::int64_t mine = first->body > 0 ? later + (std::int64_t{first->body} << 32) + first->other : none;
-  std::int64_t pair = mine;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &pair, 1, MPI_INT64_T, MPI_MIN, comm));
-  double volume = mine == pair ? first->volume : 0;
+  const std::array<int, 4> mine{first->body == 0, !first->same_place, first->body, first->other};
+  int ranks;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  std::vector<std::array<int, 4>> all(ranks);
+  PetscCallMPI(MPI_Allgather(mine.data(), 4, MPI_INT, all.data(), 4, MPI_INT, comm));
+  const std::array<int, 4> least = *std::min_element(all.begin(), all.end());
+  double volume = mine == least ? first->volume : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
-  if (pair == none) PetscFunctionReturn(0);
-  const bool same_place = (pair >> 62) == 0;
-  pair &= (std::int64_t{1} << 62) - 1;
-  *first = {static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), volume, same_place};
+  *first = {least[2], least[3], volume, least[1] == 0};
   PetscFunctionReturn(0);
 }
 

@@ -40,7 +40,7 @@ EvolveRule evolve_rule(const Flow &flow, const Material &material) {
   const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
   if (!flow.staggered() && !edges) rule.reach = 1;
   if (!reset && flow.spec.interface == InterfaceScheme::weno5)
-    rule.stressed = -1e300;  // smeared everywhere, and below 0
+    rule.stressed = EvolveRule::everywhere;  // smeared everywhere, and below 0
   // In cut cells B of a free body follows the velocity of the mixture, and is not that of the solid alone.
   const bool alone = linear || material.viscosity < flow.fluid.viscosity;
   if (!reset && material.viscosity > 0 && alone) rule.viscosity_excess = material.viscosity / flow.fluid.viscosity - 1;
