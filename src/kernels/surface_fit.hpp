@@ -33,12 +33,41 @@ EULASTIC_INLINE double sum_of_lanes(const double *v) noexcept {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
+/// L L^T = L, the lower half of a symmetric matrix. False where it is as good as singular.
+template <int N>
+EULASTIC_INLINE bool factorise(double (&L)[N][N]) noexcept {
+  constexpr double least = 1e-4;  // of a pivot, of what it was
+  for (int c = 0; c < N; ++c) {
+    const double whole = L[c][c];
+    for (int k = 0; k < c; ++k) L[c][c] -= L[c][k] * L[c][k];
+    if (!(L[c][c] > least * whole)) return false;
+    L[c][c] = __builtin_sqrt(L[c][c]);
+    for (int r = c + 1; r < N; ++r) {
+      for (int k = 0; k < c; ++k) L[r][c] -= L[r][k] * L[c][k];
+      L[r][c] /= L[c][c];
+    }
+  }
+  return true;
+}
+
+/// Column q of x becomes the solution of L L^T x = itself.
+template <int N, int Values>
+EULASTIC_INLINE void solve_column(const double (&L)[N][N], int q, double (&x)[N][Values]) noexcept {
+  for (int r = 0; r < N; ++r) {
+    for (int k = 0; k < r; ++k) x[r][q] -= L[r][k] * x[k][q];
+    x[r][q] /= L[r][r];
+  }
+  for (int r = N - 1; r >= 0; --r) {
+    for (int k = r + 1; k < N; ++k) x[r][q] -= L[k][r] * x[k][q];
+    x[r][q] /= L[r][r];
+  }
+}
+
 /// Of points that are filled up. False, and nothing of use, where they do not determine it.
 template <int Dim, int Values>
 EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim, Values> *fit) noexcept {
   using Fit = SurfaceFit<Dim, Values>;
   constexpr int terms = Fit::terms, lanes = SurfacePoints<Values>::lanes;
-  constexpr double least = 1e-4;  // of a pivot, of what it was
   alignas(64) double moments[Fit::pairs][lanes] = {}, sums[terms][Values][lanes] = {}, squares[lanes] = {};
   for (int first = 0; first < p.count; first += lanes) {
     alignas(64) double f[terms][lanes], wf[terms][lanes];
@@ -77,28 +106,10 @@ EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim,
     for (int q = 0; q < Values; ++q) right[i][q] = fit->coefficient[i][q] = sum_of_lanes(sums[i][q]);
   }
   const double weight = L[0][0];
-  for (int c = 0; c < terms; ++c) {  // Cholesky
-    const double whole = L[c][c];
-    for (int k = 0; k < c; ++k) L[c][c] -= L[c][k] * L[c][k];
-    if (!(L[c][c] > least * whole)) return false;
-    L[c][c] = __builtin_sqrt(L[c][c]);
-    for (int r = c + 1; r < terms; ++r) {
-      for (int k = 0; k < c; ++k) L[r][c] -= L[r][k] * L[c][k];
-      L[r][c] /= L[c][c];
-    }
-  }
+  if (!factorise(L)) return false;
   double left = sum_of_lanes(squares);
   for (int q = 0; q < Values; ++q) {
-    for (int r = 0; r < terms; ++r) {
-      double &x = fit->coefficient[r][q];
-      for (int k = 0; k < r; ++k) x -= L[r][k] * fit->coefficient[k][q];
-      x /= L[r][r];
-    }
-    for (int r = terms - 1; r >= 0; --r) {
-      double &x = fit->coefficient[r][q];
-      for (int k = r + 1; k < terms; ++k) x -= L[k][r] * fit->coefficient[k][q];
-      x /= L[r][r];
-    }
+    solve_column(L, q, fit->coefficient);
     for (int r = 0; q < Dim && r < terms; ++r) left -= right[r][q] * fit->coefficient[r][q];
   }
   fit->residual = left > 0 ? left / weight : 0;

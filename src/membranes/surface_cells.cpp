@@ -244,13 +244,30 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   PetscFunctionReturn(0);
 }
 
+namespace {
+
+constexpr unsigned char in_no_layer = 0;
+
+// Cells of a row that are in no layer and beside one that is marked are taken; whether there are any.
+bool take_neighbours(const unsigned char *marked, const Box::Range &x, unsigned char taken, unsigned char *row) {
+  unsigned char found = 0;
+  for (int i = x.begin; i < x.end; ++i) {
+    const bool in = row[i] == in_no_layer && (marked[i - 1] | marked[i] | marked[i + 1]);
+    row[i] = in ? taken : row[i];
+    found |= in;
+  }
+  return found;
+}
+
+}  // namespace
+
 // Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order
 // of memory.
 void SurfaceCells::find_layers(const Phase &phase) {
   const Layout &layout = place_.box->layout();
   const int deep = place_.box->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
-  enum : unsigned char { nothing, first };  // first + L: of layer L
-  std::vector<unsigned char> layer(layout.size, nothing);
+  constexpr unsigned char first = in_no_layer + 1;  // first + L: of layer L
+  std::vector<unsigned char> layer(layout.size, in_no_layer);
   std::vector<int> last_layer(std::size_t(rows_y) * (layout.cells[2] + 2 * layout.ghosts[2]), -1);  // of every row
   const auto row_of = [&](int j, int k) { return layer.data() + layout.origin + j * layout.sy + k * layout.sz; };
   const auto last_of = [&](int j, int k) -> int & {
@@ -285,14 +302,7 @@ void SurfaceCells::find_layers(const Phase &phase) {
           const unsigned char *from = row_of(j + o, k + m), before = first + l - 1;
           for (int i = x.begin - 1; i < x.end + 1; ++i) around[i] |= from[i] == before;
         }
-      if (!any) return;
-      unsigned char *own = row_of(j, k), found = 0;
-      for (int i = x.begin; i < x.end; ++i) {
-        const bool in = own[i] == nothing && (around[i - 1] | around[i] | around[i + 1]);
-        own[i] = in ? first + l : own[i];
-        found |= in;
-      }
-      if (found) last_of(j, k) = l;
+      if (any && take_neighbours(around, x, first + l, row_of(j, k))) last_of(j, k) = l;
     });
     each_row([&](int j, int k) {
       if (last_of(j, k) < l) return;

@@ -10,7 +10,7 @@ LEVELS = [{"base"}, {"grid"}, {"kernels"}, {"field"}, {"bodies", "io", "pressure
           {"output"}, {"run"}]
 LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
 ROOMS = ["src", "tests", "options", "scripts", "python", "packaging", "docs", "tools", "cmake", ".ci", ".github"]
-LINES_MAX = 600
+LINES_MAX, FUNCTION_LINES_MAX, REACH_MAX = 600, 60, 40
 
 
 def files(*rooms):
@@ -29,6 +29,19 @@ def includes(path):
 
 def may_include(room, other):
     return room == other or LEVEL[other] < LEVEL[room]
+
+
+def long_functions(text):
+    """Lines of functions at the margin that have more than FUNCTION_LINES_MAX, by the line where they begin."""
+    found, start = {}, None
+    for line, words in enumerate(text.split("\n"), 1):
+        if words.endswith("{") and re.match(r"[A-Za-z]", words) and not re.match(r"(namespace|class|struct|enum|union)\b", words):
+            start = line
+        if words == "}" and start:
+            if line - start > FUNCTION_LINES_MAX:
+                found[start] = line - start
+            start = None
+    return found
 
 
 def name(path):
@@ -94,6 +107,23 @@ class Structure(unittest.TestCase):
                   if path.suffix != ".csv"}
         self.assertTrue(counts)
         self.assertEqual({path: lines for path, lines in counts.items() if lines > LINES_MAX}, {})
+
+    def test_functions_are_short(self):
+        self.assertEqual(long_functions("int f() {\n" + "  ++n;\n" * 60 + "}\n"), {1: 61})
+        long = {f"{name(path)}:{line}": lines for path in files("src") if path.suffix in (".cpp", ".hpp")
+                for line, lines in long_functions(path.read_text()).items()}
+        self.assertEqual(long, {})
+
+    def test_headers_of_the_step_reach_few_others(self):
+        headers = {name(path)[len("src/"):]: includes(path) for path in files("src") if path.suffix == ".hpp"}
+        for header in (header for header in headers if header.startswith(("solver/", "parts/"))):
+            reached, todo = set(), list(headers[header])
+            while todo:
+                target = todo.pop()
+                if target in headers and target not in reached:
+                    reached.add(target)
+                    todo += headers[target]
+            self.assertLessEqual(len(reached), REACH_MAX, header)
 
     def test_sources_begin_with_what_they_are(self):
         headers = [path for path in files("src") if path.suffix == ".hpp"]
