@@ -187,7 +187,7 @@ void BoxExchange::copy_to_box(std::size_t b, const Field &grid, Field &to) const
   }
 }
 
-// The buffers of all ranks to those who own the points.
+// Sends the buffers to the ranks that own their points.
 PetscErrorCode BoxExchange::gather() {
   PetscFunctionBeginUser;
   if (domain_->ranks() == 1) PetscFunctionReturn(0);

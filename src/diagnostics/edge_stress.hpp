@@ -52,7 +52,7 @@ inline double centre_stress(int dimension, const Phase &phase, int a, int i, int
   });
 }
 
-/// Viscous and elastic stress together, without the pressure: of phases on the grid.
+/// Viscous and elastic stress together, without the pressure. Bodies in boxes of their own are not part of it.
 struct WholeStress {
   EdgeViscosity viscosity;
   const Field &velocity;

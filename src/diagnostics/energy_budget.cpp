@@ -78,7 +78,7 @@ void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
 }
 
 std::vector<double> EnergyBudget::made_numbers() const {
-  // What is held now is found anew by the next row.
+  // Of made_ without what is held, which the next row computes again.
   std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_,
                           made_.made,  made_.uncertain, made_.handled,        least_};
   for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
@@ -92,7 +92,7 @@ void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
   started_ = *next++ != 0;
   exchanged_ = *next++;
   for (double *value : {&made_.made, &made_.uncertain, &made_.handled, &least_}) *value = *next++;
-  least_ = std::min(least_, 0.0);  // a checkpoint of before holds what was held
+  least_ = std::min(least_, 0.0);  // older checkpoints have the energy held here
   for (Made &m : since_)
     for (double *value : {&m.made, &m.uncertain, &m.handled, &m.held}) *value = *next++;
 }

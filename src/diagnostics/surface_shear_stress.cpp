@@ -32,11 +32,11 @@ EULASTIC_INLINE void terms(const Real3 &r, double *t) {
     for (int e = d; e < Dim; ++e) t[n++] = r[d] * r[e];
 }
 
-// Least squares: the normal equations of fits of some functions by as many terms, to values at the same points.
+// Least-squares fits of several functions that are known at the same points: their normal equations.
 template <int Terms, int Functions>
 struct Fit {
   double gram[Terms][Terms]{}, right[Functions][Terms]{};
-  int determined = 0;  // coefficients that the points determine
+  int determined = 0;  // number of coefficients that the points determine
 
   EULASTIC_INLINE void add(const double *t, double weight, const double *values) {
     for (int a = 0; a < Terms; ++a) {
@@ -46,7 +46,8 @@ struct Fit {
     }
   }
 
-  // Cholesky's factor. Where the points do not determine all coefficients: those of a linear function, or none.
+  // Replaces the matrix by its Cholesky factor. If the points do not determine all coefficients, solve() finds those of
+  // a linear function, or none.
   void factor(int linear) {
     constexpr double least = 1e-8;  // of a diagonal element that is left of it
     int n = 0;

@@ -33,7 +33,8 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
 
 namespace {
 
-// Finds labels and phi of what bears loads, `surfaces`, where elastic bodies lie in boxes of their own.
+// Copies `surfaces`, labels and phi of every phase that bears loads, to blocks around the elastic bodies that lie in
+// boxes of their own.
 PetscErrorCode bring_surfaces(const Domain &domain, const std::vector<Field> &surfaces,
                               const std::vector<BodyInBox> &boxed, std::vector<BodyAtSurfaces> *bodies) {
   std::vector<BoxExchange::NumberedBox> boxes;
