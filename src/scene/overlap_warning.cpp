@@ -128,11 +128,12 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
 PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
   PetscFunctionBeginUser;
   const std::array<int, 4> mine{first->body == 0, !first->same_place, first->body, first->other};
-  int ranks;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  std::vector<std::array<int, 4>> all(ranks);
-  PetscCallMPI(MPI_Allgather(mine.data(), 4, MPI_INT, all.data(), 4, MPI_INT, comm));
-  const std::array<int, 4> least = *std::min_element(all.begin(), all.end());
+  std::array<int, 4> least{};
+  for (std::size_t n = 0; n < mine.size(); ++n) {  // of the ranks that have the least of all before it
+    const bool last = !std::equal(mine.begin(), mine.begin() + n, least.begin());
+    const int value = last ? std::numeric_limits<int>::max() : mine[n];
+    PetscCallMPI(MPI_Allreduce(&value, &least[n], 1, MPI_INT, MPI_MIN, comm));
+  }
   double volume = mine == least ? first->volume : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
   *first = {least[2], least[3], volume, least[1] == 0};
