@@ -12,8 +12,7 @@ class SurfaceTension final : public FlowPart {
 public:
   explicit SurfaceTension(Flow *flow) : flow_(*flow), capillary_(flow->domain, &flow->exchange) {}
   static bool exists(const std::vector<Phase> &phases);
-  static constexpr int fields = CapillaryForce::work_fields;
-  int work_fields() const override { return fields; }
+  static constexpr int fields = CapillaryForce::work_fields;  ///< of the work space, during each call
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,

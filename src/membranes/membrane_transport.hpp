@@ -11,14 +11,13 @@ namespace eulastic {
 
 class MembraneTransport final : public FlowPart {
 public:
-  static constexpr int fields = MembraneMechanics::work_fields;
+  static constexpr int fields = MembraneMechanics::work_fields;  ///< of the work space, during each call
 
   explicit MembraneTransport(Flow *flow)
       : flow_(*flow),
         membrane_(flow->place_of_phases()),
         markers_(flow->domain),
         force_(flow->domain, flow->domain.dimension()) {}
-  int work_fields() const override { return fields; }
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
   PetscErrorCode settle(Phase *phase) override;

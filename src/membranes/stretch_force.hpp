@@ -12,7 +12,7 @@ namespace eulastic {
 class StretchForces final : public FlowPart {
 public:
   explicit StretchForces(Flow *flow) : flow_(*flow) {}
-  int work_fields() const override { return 1; }
+  static constexpr int fields = 1;  ///< of the work space, during each call
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode add_power(const FlowLook &look, double *power) override;

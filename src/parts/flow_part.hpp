@@ -56,8 +56,6 @@ class FlowPart {
 public:
   virtual ~FlowPart() = default;
 
-  /// Fields of the work space that its functions need, beside those that a step holds.
-  virtual int work_fields() const { return 0; }
   /// Bytes of its own fields on this rank.
   virtual std::size_t bytes() const { return 0; }
   /// Names all that it carries from one step to the next.

@@ -64,8 +64,8 @@ double fields(const Config &config) {
   }
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
-  const Solver::Parts parts{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, parts);
+  const Solver::Contents contents{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, contents);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
   if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {

@@ -18,7 +18,6 @@ public:
   explicit GridBodies(Flow *flow) : flow_(*flow), solids_(flow->spec.exterior == SolidExterior::extrapolate) {}
   /// Fields of the work space that transport needs.
   static int work_fields(const Method &method, int dimension);
-  int work_fields() const override { return work_fields(flow_.spec, flow_.domain.dimension()); }
   std::size_t bytes() const override;
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;

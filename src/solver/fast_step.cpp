@@ -3,6 +3,7 @@
 #include "field/open_sides.hpp"
 #include "flow/momentum.hpp"
 #include "flow/projection.hpp"
+#include "flow/super_time_stepping.hpp"
 #include "solids/elastic_force.hpp"
 
 #include <algorithm>
@@ -79,7 +80,45 @@ PetscErrorCode FastStep::predict(double dt) {
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
   WeightedTarget slope;
   if (flow_.slope) slope = {&flow_.slope, 1 / (0.5 * (now.dt + dt))};
-  PetscCall(predict_in_stages(fluid, step, slope));
+  PetscCall(take_stages(fluid, step, slope));
+  PetscFunctionReturn(0);
+}
+
+// v* by super time stepping around all else of the rate of momentum.
+PetscErrorCode FastStep::take_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope) {
+  const Domain &domain = flow_.domain;
+  const BoxSides &sides = flow_.spec.sides;
+  State &now = flow_.now;
+  const int dim = domain.dimension();
+  WorkSpace::Lease rate, before;
+  PetscFunctionBeginUser;
+  PetscCall(flow_.work.take("rate of momentum", dim, &rate));
+  PetscCall(
+      momentum_rate(domain, fluid, step, now.velocity, now.pressure, now.phases, now.advection, rate.fields(), slope));
+  const MomentumRate all{
+      step, 1, rate.fields(), now.advection ? &now.advection : nullptr, slope, fluid.kinematic_viscosity()};
+  for (FlowPart *part : flow_.parts) PetscCall(part->add_rate(all));
+  for (FlowPart *part : flow_.parts) PetscCall(part->close_rate(all));
+  PetscCall(add_local_viscous_force(1, rate.fields()));
+  PetscCall(flow_.work.take("viscous stage before", dim, &before));
+  SuperTimeStepping viscous{rate.part(0, dim), {}, flow_.velocity_star.part(0, dim), before.part(0, dim)};
+  const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
+  ViscousStep viscous_step{sides,
+                           now.time,
+                           step.dt,
+                           stages,
+                           now.velocity,
+                           flow_.fluid.kinematic_viscosity(),
+                           viscosity_ ? &viscosity_ : nullptr};
+  if (flow_.slope) {
+    viscous.slope = flow_.slope.part(0, dim);
+    viscous_step.stressed = stressed_rows(domain, now.phases);
+    for (const FlowPart *part : flow_.parts) part->mark_forced_rows(&viscous_step.stressed);
+  }
+  viscous_step.rigid = flow_.rigid;
+  viscous_step.means = flow_.rigid_means;
+  PetscCall(super_time_step(domain, flow_.exchange, viscous_step, viscous, flow_.velocity_star));
+  stages_ += stages;
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,7 @@ private:
   PetscErrorCode begin_slope(double dt);
   void expect_pressure(double dt);
   PetscErrorCode predict(double dt);
+  PetscErrorCode take_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   PressureRotation rotation() const;
 };
 

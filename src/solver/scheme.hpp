@@ -42,8 +42,6 @@ protected:
   PetscErrorCode find_viscosity(Fluid *fluid);
   PetscErrorCode add_local_viscous_force(double scale, Field &to);
   PetscErrorCode move_bodies(double dt);
-  /// v* by RKL2 around all else of the rate of momentum.
-  PetscErrorCode predict_in_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   /// From the prediction to the end of the step.
   PetscErrorCode project(double dt, const PressureRotation &rotation, const Look &with_pressure);
   /// Labels follow their bodies, and the state is that of the end of the step.

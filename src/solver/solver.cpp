@@ -26,11 +26,11 @@ Solver::Solver(Solver &&) noexcept = default;
 Solver &Solver::operator=(Solver &&) noexcept = default;
 Solver::~Solver() = default;
 
-int Solver::work_fields(const Method &method, int dimension, const Parts &parts) {
-  const int tension = parts.surface_tension ? SurfaceTension::fields : 0;
-  return std::max({Projection::work_fields(method, parts.open, parts.rigid),
-                   Scheme::work_fields(method, dimension, tension), parts.membranes ? MembraneTransport::fields : 0,
-                   parts.bodies ? GridBodies::work_fields(method, dimension) : 0});
+int Solver::work_fields(const Method &method, int dimension, const Contents &scene) {
+  const int tension = scene.surface_tension ? SurfaceTension::fields : 0;
+  return std::max({Projection::work_fields(method, scene.open, scene.rigid),
+                   Scheme::work_fields(method, dimension, tension), scene.membranes ? MembraneTransport::fields : 0,
+                   scene.bodies ? GridBodies::work_fields(method, dimension) : 0});
 }
 
 PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {

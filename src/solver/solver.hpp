@@ -21,11 +21,11 @@ struct SurfaceMeasure;
 class Solver {
 public:
   /// What a scene has on the grid.
-  struct Parts {
+  struct Contents {
     bool open = false, bodies = false, surface_tension = false, membranes = false, rigid = false;
   };
   /// Fields of the work space that the method needs for it.
-  static int work_fields(const Method &method, int dimension, const Parts &parts);
+  static int work_fields(const Method &method, int dimension, const Contents &scene);
   Solver();
   Solver(Solver &&) noexcept;
   Solver &operator=(Solver &&) noexcept;

@@ -97,7 +97,13 @@ def makes_sense(values):
         return False
     if values["x"] == "feeder" and values["dimension"] == "3-D" and values["others"] == "rigid post":
         return False  # the lumen must be the same all along a feeder
+    driven = (values["start"] != "rest" or values["forces"] != "none" or values["x"] not in ("periodic", "walls") or
+              values["y"] in ("moving wall", "pressure") or values["bodies"] != "none" or values["others"] != "none")
+    if values["outputs"] == "exact" and not driven:
+        return False  # nothing limits the step, in which there would be thousands of snapshots
     crossed = values["x"] not in ("periodic", "walls") or values["y"] == "pressure"
+    if crossed and values["others"] == "solid" and values["outputs"] == "no names" and values["method"] in ("classic", "weno5"):
+        return False  # the tails that WENO5 makes come to the side, and what has no label cannot leave
     return not (crossed and values["others"] in ("slab", "tube", "from a file"))
 
 

@@ -27,7 +27,7 @@ struct Pulled : InterfaceScene {
     set_fraction(ball(centre, radius, dim, true));
     flow = std::make_unique<Flow>(domain, SolverSpec{});
     forces = std::make_unique<StretchForces>(flow.get());
-    EXPECT_EQ(flow->work.reserve(forces->work_fields()), 0);
+    EXPECT_EQ(flow->work.reserve(StretchForces::fields), 0);
     flow->now.phases.resize(1);
     Phase &phase = flow->now.phases[0];
     phase.fraction = std::move(fraction);
