@@ -26,27 +26,31 @@ double phase_fields(const Config &config, bool carries_tensor) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
 }
 
-/// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity.
+/// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity,
+/// of bodies without a surface that exerts forces in the cells alone that FreeBodies::look() keeps.
 double boxed_values(const Config &config) {
   const int dimension = dimension_of(config);
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!config.lies_in_boxes(s)) continue;
-    const int tensor = config.species[s].material().carries_tensor() ? tensor_fields(config) : 0;
+    const Material material = config.species[s].material();
+    const int tensor = material.carries_tensor() ? tensor_fields(config) : 0;
+    const bool has_surface = material.is_membrane() || material.surface_tension > 0;
     const Surface surface(config.species[s], dimension);
-    double reach = 0, cells = 1, around = 1;
+    double reach = 0, cells = 1, around = 1, kept = 1;
     for (int d = 0; d < dimension; ++d) {
       Real3 along{};
       along[d] = 1;
       reach = std::max(reach, surface.support(along));
     }
     for (int d = 0; d < dimension; ++d) {
-      const double own = 2 * reach * config.grid.cells[d] / config.grid.length[d] +
-                         2 * FreeBodies::margin(config.species[s].material());
+      const double bare = 2 * reach * config.grid.cells[d] / config.grid.length[d];
+      const double own = bare + 2 * FreeBodies::margin(material);
       cells *= own;
       around *= own + 2 * config.grid.ghosts;
+      kept *= has_surface ? own + 2 * config.grid.ghosts : bare + FreeBodies::seen_around;
     }
-    sum += config.places[s].count * (around * (2 * (1 + tensor) + dimension) + cells * dimension);
+    sum += config.places[s].count * (around * (1 + tensor) + kept * (1 + tensor + dimension) + cells * dimension);
   }
   return sum;
 }
