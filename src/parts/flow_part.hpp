@@ -63,9 +63,9 @@ public:
 
   /// Once, when the owned cells of all fields are set and the ghosts of velocity and pressure are known.
   virtual PetscErrorCode start() { return 0; }
-  /// After start(), when a state has been read in place of that of the start: before the ghosts behind sides are set,
+  /// A state has been read in place of that of the start(): before ghosts of the velocity behind sides are set.
   virtual PetscErrorCode recall() { return 0; }
-  /// and after that.
+  /// The same, when all ghosts of velocity and pressure are known.
   virtual PetscErrorCode resume() { return 0; }
 
   /// Gives owned faces whose velocity is prescribed their values at `time`.
@@ -77,6 +77,7 @@ public:
 
   // In the order of a step.
 
+  /// Before anything of a step.
   virtual PetscErrorCode begin_step() { return 0; }
   /// slope -= force / dt: the force per mass of its bodies where they are, before move(dt).
   virtual PetscErrorCode begin_slope(double /*dt*/, Field & /*slope*/) { return 0; }
@@ -118,9 +119,10 @@ public:
 
   // At any time between the steps.
 
-  /// Owned cells of a phase of the grid have been set and its rows are known: Flow::settle().
+  /// Owned cells of a phase of the grid have been set (Flow::settle()): makes what the part keeps of it consistent.
+  /// GridBodies, the first of all parts, finds its rows.
   virtual PetscErrorCode settle(Phase *) { return 0; }
-  /// A body has come into a phase of the grid, by number, which is settled.
+  /// A body with this label has come into a phase of the grid, whose number is given and which is settled.
   virtual PetscErrorCode see_new_body(const Phase &, int /*number*/, int /*label*/) { return 0; }
   /// Bodies have been taken out of phases of the grid.
   virtual PetscErrorCode see_bodies_leave() { return 0; }
