@@ -249,9 +249,8 @@ PetscErrorCode BoxedBodies::add_surface_energy(const FlowLook &look, SurfaceEner
                                                std::vector<SurfaceSample> *) {
   PetscFunctionBeginUser;
   const std::vector<Phase> &phases = flow_.now.phases;
-  if (std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-        return phase.boxed && (phase.material.is_membrane() || phase.material.surface_tension > 0);
-      }))
+  if (std::any_of(phases.begin(), phases.end(),
+                  [](const Phase &phase) { return phase.boxed && phase.material.has_surface(); }))
     PetscCall(bodies_.measure_surfaces(look.boxed, phases, measured, &samples_));
   PetscFunctionReturn(0);
 }

@@ -16,7 +16,7 @@ PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field 
   const Body &body = bodies_[b];
   const Material &material = body.phase.material;
   const int dimension = body.box.dimension(), tensors = body.phase.tensor.field.count();
-  const bool has_surface = material.is_membrane() || material.surface_tension > 0;
+  const bool has_surface = material.has_surface();
   Seen &own = seen_[b];
   if (step.dt == 0) {
     own.velocity = Field(body.box, dimension);
@@ -246,17 +246,8 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
 std::size_t FreeBodies::bytes() const {
   std::size_t sum = exchange_.bytes();
   for (const Tools &own : tools_) sum += own.memory.size() * sizeof(double);
-  const auto add = [&sum](const Phase &phase) {
-    sum += phase.fraction.bytes() + (phase.material.carries_tensor() ? phase.tensor.field.bytes() : 0);
-  };
-  for (const Body &body : bodies_) {
-    add(body.phase);
-    sum += body.force.bytes();
-  }
-  for (const Seen &own : seen_) {
-    if (own.moved.fraction) add(own.moved);
-    sum += own.velocity.bytes();
-  }
+  for (const Body &body : bodies_) sum += body.phase.bytes() + body.force.bytes();
+  for (const Seen &own : seen_) sum += own.moved.bytes() + own.velocity.bytes();
   return sum;
 }
 

@@ -92,7 +92,7 @@ void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
   started_ = *next++ != 0;
   exchanged_ = *next++;
   for (double *value : {&made_.made, &made_.uncertain, &made_.handled, &least_}) *value = *next++;
-  least_ = std::min(least_, 0.0);  // older checkpoints have the energy held here
+  least_ = std::min(least_, 0.0);  // by its definition, whatever a file holds
   for (Made &m : since_)
     for (double *value : {&m.made, &m.uncertain, &m.handled, &m.held}) *value = *next++;
 }

@@ -16,7 +16,6 @@ struct LayerPoint {
   PetscInt offset;           ///< from the field's first double
   unsigned char neighbours;  ///< neighbour_bits()
   unsigned char lines;       ///< those of them with two points more behind: there the extrapolation is linear
-  /// Written in place: parts put on the stack and read in one would wait for the caches.
   LayerPoint(std::ptrdiff_t at, unsigned from, unsigned along) noexcept
       : offset(static_cast<PetscInt>(at)),
         neighbours(static_cast<unsigned char>(from)),
@@ -50,7 +49,7 @@ double extend_layer(const std::vector<LayerPoint> &points, Piece piece, int dime
   for (std::size_t n = piece.begin; n < piece.end; ++n) {
     const LayerPoint &point = points[n];
     const double *later = values + points[std::min(n + 32, piece.end - 1)].offset;
-    for (int f = 0; f < Fields; ++f)  // not foreseen by processors
+    for (int f = 0; f < Fields; ++f)
       for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
     double *b = values + point.offset;
     double sum[Fields] = {};

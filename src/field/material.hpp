@@ -37,6 +37,8 @@ struct Material {
 
   bool is_rigid() const { return law == Law::rigid; }
   bool is_membrane() const { return law == Law::membrane; }
+  /// Whether its surface exerts forces.
+  bool has_surface() const { return is_membrane() || surface_tension > 0; }
   /// false: a marked part of the fluid, or a drop; its B is I.
   bool elastic() const { return shear_modulus > 0 || c3 > 0; }
   /// Whether anything is remembered beside phi: B, or B_s of a membrane.

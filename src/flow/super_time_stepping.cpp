@@ -36,8 +36,8 @@ struct StageSides : Sides {
   }
 };
 
-// Most stages in one pass over memory, the first one not counted. Five took 3 % less time than four on one rank, and
-// exchange more.
+// Most stages in one pass over memory, the first one not counted: each more is a layer of ghosts to exchange and to
+// compute again.
 constexpr int deepest = 4;
 
 // Stages number ... number + depth - 1; before them the first one, W_1, and after them v*, where the pass starts and

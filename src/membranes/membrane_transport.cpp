@@ -11,16 +11,18 @@ namespace {
 
 bool is_on_grid(const Phase &phase) { return phase.material.is_membrane() && !phase.boxed; }
 
+bool has_markers(const Phase &phase) {
+  return is_on_grid(phase) && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
+}
+
 }  // namespace
 
 bool MembraneTransport::exists(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(), is_on_grid);
 }
 
-bool MembraneTransport::marks(const std::vector<Phase> &phases) {
-  return std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-    return is_on_grid(phase) && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
-  });
+bool MembraneTransport::marks() const {
+  return std::any_of(flow_.now.phases.begin(), flow_.now.phases.end(), has_markers);
 }
 
 PetscErrorCode MembraneTransport::find(const Phase &phase, WorkSpace::Lease *work) {
@@ -73,36 +75,30 @@ PetscErrorCode MembraneTransport::settle(Phase *phase) {
 }
 
 PetscErrorCode MembraneTransport::move(double dt, std::vector<Phase> *phases) {
-  Memory memory{&flow_.now.markers};
+  State &now = flow_.now;
+  const bool of_state = phases == &now.phases;
   PetscFunctionBeginUser;
-  PetscCall(flow_.update_velocity_ghosts(flow_.now.velocity, flow_.now.time, MembraneMechanics::velocity_ghosts));
-  PetscCall(advance(dt, flow_.now.velocity, phases == &flow_.now.phases ? &memory : nullptr, phases));
-  flow_.now.forgotten += memory.unresolved;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MembraneTransport::advance(double dt, const Field &velocity, Memory *memory,
-                                          std::vector<Phase> *phases) {
-  PetscFunctionBeginUser;
-  long unresolved = 0;
-  NetForce net(flow_.domain, memory && drives_all(*phases));
-  if (memory) begin_force();
-  if (memory && marks(*phases)) PetscCall(markers_.move(dt, velocity, memory->markers));
+  PetscCall(flow_.update_velocity_ghosts(now.velocity, now.time, MembraneMechanics::velocity_ghosts));
+  long unresolved = 0, all = 0;
+  NetForce net(flow_.domain, of_state && drives_all(*phases));
+  if (of_state) begin_force();
+  if (of_state && marks()) PetscCall(markers_.move(dt, now.velocity, &now.markers));
   for (std::size_t p = 0; p < phases->size(); ++p) {
     Phase &phase = (*phases)[p];
     if (!is_on_grid(phase)) continue;
     WorkSpace::Lease work;
     PetscCall(find(phase, &work));
-    const bool marked = memory && phase.material.membrane.scheme == kernels::MembraneScheme::markers;
+    const bool marked = of_state && has_markers(phase);
     std::vector<SurfaceMarkers::Strain> strains;
     if (marked) markers_.find_strain(membrane_.surface(), static_cast<int>(p), &strains);
-    PetscCall(membrane_.move(dt, velocity, strains, &phase, &unresolved));
-    if (marked) markers_.settle(membrane_.surface(), membrane_.surface_fields(), static_cast<int>(p), memory->markers);
-    if (memory) PetscCall(gather_force(phase, &net));
+    PetscCall(membrane_.move(dt, now.velocity, strains, &phase, &unresolved));
+    if (marked) markers_.settle(membrane_.surface(), membrane_.surface_fields(), static_cast<int>(p), &now.markers);
+    if (of_state) PetscCall(gather_force(phase, &net));
   }
-  if (!memory) PetscFunctionReturn(0);
+  if (!of_state) PetscFunctionReturn(0);
   PetscCall(end_force(&net));
-  PetscCallMPI(MPI_Allreduce(&unresolved, &memory->unresolved, 1, MPI_LONG, MPI_SUM, flow_.domain.comm()));
+  PetscCallMPI(MPI_Allreduce(&unresolved, &all, 1, MPI_LONG, MPI_SUM, flow_.domain.comm()));
+  now.forgotten += all;
   PetscFunctionReturn(0);
 }
 
@@ -111,21 +107,21 @@ PetscErrorCode MembraneTransport::place_markers() {
   PetscFunctionBeginUser;
   flow_.now.markers.clear();
   for (std::size_t p = 0; p < phases.size(); ++p)
-    if (is_on_grid(phases[p])) PetscCall(place_markers(phases[p], static_cast<int>(p), 0, &flow_.now.markers));
+    if (is_on_grid(phases[p])) PetscCall(place_markers(phases[p], static_cast<int>(p), 0));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MembraneTransport::set_markers(const std::vector<SurfaceMarker> &markers) {
   PetscFunctionBeginUser;
   flow_.now.markers = markers;
-  if (marks(flow_.now.phases)) PetscCall(markers_.send_home(&flow_.now.markers));
+  if (marks()) PetscCall(markers_.send_home(&flow_.now.markers));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, int label,
-                                                std::vector<SurfaceMarker> *markers) {
+PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, int label) {
+  std::vector<SurfaceMarker> *markers = &flow_.now.markers;
   PetscFunctionBeginUser;
-  if (phase.material.membrane.scheme != kernels::MembraneScheme::markers) PetscFunctionReturn(0);
+  if (!has_markers(phase)) PetscFunctionReturn(0);
   WorkSpace::Lease work;
   PetscCall(find(phase, &work));
   markers_.place(membrane_.surface(), membrane_.surface_fields(), phase, number, label, markers);
@@ -138,7 +134,7 @@ PetscErrorCode MembraneTransport::follow() {
   std::vector<Phase> &phases = flow_.now.phases;
   std::vector<WantedGhosts> labels;
   PetscFunctionBeginUser;
-  if (!marks(phases)) PetscFunctionReturn(0);
+  if (!marks()) PetscFunctionReturn(0);
   for (Phase &phase : phases)
     if (is_on_grid(phase) && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
   if (labels.empty()) PetscFunctionReturn(0);

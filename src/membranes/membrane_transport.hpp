@@ -22,44 +22,37 @@ public:
   PetscErrorCode resume() override;
   PetscErrorCode settle(Phase *phase) override;
   PetscErrorCode begin_slope(double dt, Field &slope) override;
+  /// B_s; phi has moved. Leaves layers and ghosts filled. Of the state also the markers and the force of add_force().
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode follow() override;
   PetscErrorCode see_new_body(const Phase &phase, int number, int label) override {
-    return place_markers(phase, number, label, &flow_.now.markers);
+    return place_markers(phase, number, label);
   }
   PetscErrorCode see_bodies_leave() override { return follow(); }
   PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
   /// Whether the grid has any.
   static bool exists(const std::vector<Phase> &phases);
-  static bool marks(const std::vector<Phase> &phases);  ///< whether any of those has markers
   std::size_t bytes() const override { return force_.bytes(); }
 
   /// Where walls are: solid sides of the box, and `rigid` bodies, which do not travel; before any force.
   PetscErrorCode find_walls(const std::vector<const Phase *> &rigid);
   /// Markers for all bodies, which keep the strain that they have, in place of those of the state. Collective.
   PetscErrorCode place_markers();
-  /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
-  /// Collective.
-  PetscErrorCode place_markers(const Phase &phase, int number, int label, std::vector<SurfaceMarker> *markers);
   /// Those of a state that was read, each on any rank. Collective.
   PetscErrorCode set_markers(const std::vector<SurfaceMarker> &markers);
-  /// What a state has beside its phases, and what advance() finds of it.
-  struct Memory {
-    std::vector<SurfaceMarker> *markers;
-    long unresolved = 0;  ///< MembraneMechanics::move(), of all ranks
-  };
-  /// B_s of all membranes over dt with the flow; their phi has moved. Leaves layers and ghosts filled. `memory`: that
-  /// of the state whose force add_force() adds; null: copies of its phases, without markers. Collective.
-  PetscErrorCode advance(double dt, const Field &velocity, Memory *memory, std::vector<Phase> *phases);
   /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
-  /// advance(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
+  /// move(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
   /// divergence of a stress adds up to nothing.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const WeightedTarget &slope = {});
 
 private:
+  /// Whether any membrane on the grid has markers.
+  bool marks() const;
+  /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
+  PetscErrorCode place_markers(const Phase &phase, int number, int label);
   /// `work`: the memory that membrane_ uses.
   PetscErrorCode find(const Phase &phase, WorkSpace::Lease *work);
   void begin_force();

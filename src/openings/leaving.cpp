@@ -12,7 +12,7 @@ bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers,
 }
 
 bool leave_whole(const Material &material) {
-  return material.is_membrane() || material.surface_tension > 0 || material.viscosity > 0;
+  return material.has_surface() || material.viscosity > 0;
 }
 
 namespace {

@@ -22,10 +22,11 @@ std::uint64_t hash_name(const std::string &name) { return mix_bits(checksum(name
 // Bodies in boxes of their own: their heads (FreeBodies::packed), and what follows them, one body after the other.
 constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
 
-std::vector<CheckpointRecords> boxes_of(Solver &solver) {
+std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
   CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
-  for (std::size_t b = 0; b < solver.boxed().list().size(); ++b) {
-    const std::vector<double> packed = solver.boxed().bodies().packed(b);
+  const FreeBodies &boxed = solver.boxed().bodies();
+  for (std::size_t b = 0; b < boxed.bodies().size(); ++b) {
+    const std::vector<double> packed = boxed.packed(b);
     heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeBodies::head);
     values.values.insert(values.values.end(), packed.begin() + FreeBodies::head, packed.end());
   }

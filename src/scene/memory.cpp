@@ -35,7 +35,6 @@ double boxed_values(const Config &config) {
     if (!config.lies_in_boxes(s)) continue;
     const Material material = config.species[s].material();
     const int tensor = material.carries_tensor() ? tensor_fields(config) : 0;
-    const bool has_surface = material.is_membrane() || material.surface_tension > 0;
     const Surface surface(config.species[s], dimension);
     double reach = 0, cells = 1, around = 1, kept = 1;
     for (int d = 0; d < dimension; ++d) {
@@ -48,7 +47,7 @@ double boxed_values(const Config &config) {
       const double own = bare + 2 * FreeBodies::margin(material);
       cells *= own;
       around *= own + 2 * config.grid.ghosts;
-      kept *= has_surface ? own + 2 * config.grid.ghosts : bare + FreeBodies::seen_around;
+      kept *= material.has_surface() ? own + 2 * config.grid.ghosts : bare + FreeBodies::seen_around;
     }
     sum += config.places[s].count * (around * (1 + tensor) + kept * (1 + tensor + dimension) + cells * dimension);
   }

@@ -134,13 +134,13 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
   const Domain &domain = flow_.domain;
   const Field &velocity = flow_.now.velocity;
   const int ghosts = domain.spec().ghosts;
-  const bool plic = flow_.spec.interface == InterfaceScheme::plic, swaps = !flow_.staggered() || !plic;
+  const bool plic = flow_.spec.interface == InterfaceScheme::plic;
   std::vector<MovedRows> rows(phases.size());
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     if (!moves_on_grid(phase)) continue;
-    if ((rows[p].swaps = swaps)) {
+    if ((rows[p].swaps = !plic)) {
       rows[p].swapped_in = next_rows_;
       if (phase.material.elastic())
         next_rows_ = phase.rows;

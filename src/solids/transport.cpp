@@ -32,8 +32,8 @@ EULASTIC_INLINE double fraction_at(const double *phi, bool diagonal, std::ptrdif
   return diagonal ? *phi : kernels::average4(phi, -a, -b);
 }
 
-// One component at the points of a batch: advection, then stretching and the stage. One loop for both would need more
-// registers than there are: a fifth slower.
+// One component at the points of a batch: advection, then stretching and the stage, in two loops as one would need more
+// registers than there are.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
                                        const Field &B, int a, int b, kernels::Batch &batch,

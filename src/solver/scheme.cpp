@@ -47,7 +47,7 @@ TimeStepLimits Scheme::limits(const FlowExtremes &extremes) const {
   return limits;
 }
 
-PetscErrorCode Scheme::viscosity_of(const std::vector<Phase> &phases, const Field **viscosity) {
+PetscErrorCode Scheme::find_viscosity_of(const std::vector<Phase> &phases, const Field **viscosity) {
   PetscFunctionBeginUser;
   *viscosity = nullptr;
   if (!viscosity_) PetscFunctionReturn(0);
@@ -60,7 +60,7 @@ PetscErrorCode Scheme::find_viscosity(Fluid *fluid) {
   const Field *fields = nullptr;
   PetscFunctionBeginUser;
   *fluid = flow_.fluid;
-  PetscCall(viscosity_of(flow_.now.phases, &fields));
+  PetscCall(find_viscosity_of(flow_.now.phases, &fields));
   if (fields) fluid->viscosity = 0;
   PetscFunctionReturn(0);
 }

@@ -31,7 +31,7 @@ public:
 
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Kinematic viscosities (flow/local_viscosity.hpp) of phases; null where all are the fluid's.
-  PetscErrorCode viscosity_of(const std::vector<Phase> &phases, const Field **viscosity);
+  PetscErrorCode find_viscosity_of(const std::vector<Phase> &phases, const Field **viscosity);
   long stages() const { return stages_; }  ///< viscous ones, since the start
   void set_stages(long stages) { stages_ = stages; }
 

@@ -162,7 +162,7 @@ PetscErrorCode Solver::viscosity_now(const Field **viscosity) {
   const std::vector<Phase> *phases = nullptr;
   PetscFunctionBeginUser;
   PetscCall(looks_->phases(&phases));
-  PetscCall(scheme_->viscosity_of(*phases, viscosity));
+  PetscCall(scheme_->find_viscosity_of(*phases, viscosity));
   PetscFunctionReturn(0);
 }
 
