@@ -11,9 +11,7 @@ bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers,
   return any;
 }
 
-bool leave_whole(const Material &material) {
-  return material.has_surface() || material.viscosity > 0;
-}
+bool leave_whole(const Material &material) { return material.has_surface() || material.viscosity > 0; }
 
 namespace {
 
