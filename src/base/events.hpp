@@ -23,6 +23,7 @@ enum class Verb {
   exterior,
   bodies,
   boxes,
+  threads,
   sums,
   write,
   count

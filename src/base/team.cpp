@@ -1,12 +1,102 @@
 #include "base/team.hpp"
 
+#include <immintrin.h>
+#include <sched.h>
+#include <utility>
+
 namespace eulastic {
 namespace {
 
+// With a core of its own a thread looks for work for some ten milliseconds, longer than what lies between two parallel
+// regions of a step; without, for some microseconds.
+constexpr int spins_of_own_core = 1000000, spins_of_shared_core = 100;
+
+thread_local bool is_inside = false;
 thread_local int own_number = 0;
-thread_local double *own_flops = nullptr;  // null: in no team
+thread_local double *own_flops = nullptr;  // null: no TeamMember
 
 }  // namespace
+
+ThreadTeam &ThreadTeam::of_rank() noexcept {
+  static ThreadTeam team;
+  return team;
+}
+
+bool ThreadTeam::is_in_region() noexcept { return is_inside; }
+
+void ThreadTeam::set_waiting(Waiting how) noexcept {
+  spins_ = how == Waiting::spin ? spins_of_own_core : spins_of_shared_core;
+}
+
+void ThreadTeam::resize(int size) {
+  if (size == this->size()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    ++region_;
+  }
+  wake_.notify_all();
+  for (std::thread &other : others_) other.join();
+  others_.clear();
+  ends_ = false;
+  region_ = 0;
+  for (int thread = 1; thread < size; ++thread) others_.emplace_back([this, thread] { serve(thread); });
+}
+
+void ThreadTeam::run(int members, Call call, const void *work) {
+  call_ = call;
+  work_ = work;
+  running_.store(members - 1, std::memory_order_relaxed);
+  region_ = (((region_ >> members_bits) + 1) << members_bits) | static_cast<std::uint64_t>(members);
+  if (asleep_ > 0) {
+    // With the lock no thread is between its last look at region_ and its sleep.
+    { const std::lock_guard lock(mutex_); }
+    wake_.notify_all();
+  }
+  do_part(0);
+  for (int spin = 0; running_.load(std::memory_order_acquire) > 0; ++spin) {
+    if (spin < spins_.load(std::memory_order_relaxed))
+      _mm_pause();
+    else
+      sched_yield();
+  }
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+void ThreadTeam::do_part(int thread) noexcept {
+  is_inside = true;
+  try {
+    call_(work_, thread);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    thrown_ = std::current_exception();
+  }
+  is_inside = false;
+}
+
+// The region after `last`, which this thread has seen.
+std::uint64_t ThreadTeam::wait_for_region(std::uint64_t last) {
+  for (int spin = spins_.load(std::memory_order_relaxed); spin > 0; --spin) {
+    const std::uint64_t region = region_.load(std::memory_order_acquire);
+    if (region != last) return region;
+    _mm_pause();
+  }
+  std::unique_lock lock(mutex_);
+  ++asleep_;
+  wake_.wait(lock, [&] { return region_ != last; });
+  --asleep_;
+  return region_;
+}
+
+void ThreadTeam::serve(int thread) {
+  for (std::uint64_t region = 0;;) {
+    region = wait_for_region(region);
+    if (ends_) return;
+    if (thread >= static_cast<int>(region & ((1 << members_bits) - 1))) continue;
+    do_part(thread);
+    running_.fetch_sub(1, std::memory_order_release);
+  }
+}
 
 TeamMember::TeamMember(int number, double *flops) noexcept {
   own_number = number;

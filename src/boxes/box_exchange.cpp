@@ -1,6 +1,7 @@
 #include "boxes/box_exchange.hpp"
 
 #include "base/events.hpp"
+#include "grid/threads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,22 @@ namespace {
 // Adding 0 would make +0 of -0: no value is touched where a box has nothing to add, whoever owns it.
 void add_values(const double *values, int count, double factor, double *to) {
   for (int m = 0; m < count; ++m) to[m] = values[m] == 0 ? to[m] : to[m] + factor * values[m];
+}
+
+/// Offsets, in a component of a field, of the rows of one thread.
+struct OffsetRange {
+  std::ptrdiff_t begin, end;
+  bool has(std::ptrdiff_t offset) const { return offset >= begin && offset < end; }
+};
+
+OffsetRange offsets_of(const Box &box, int part, int parts) {
+  const Layout &layout = box.layout();
+  const auto start = [&](int p) {
+    const RowPart rows = row_part(box, p, parts);
+    return box.dimension() == 2 ? layout.offset(-layout.ghosts[0], rows.j_begin, 0)
+                                : layout.offset(-layout.ghosts[0], -layout.ghosts[1], rows.k_begin);
+  };
+  return {part == 0 ? 0 : start(part), part == parts - 1 ? layout.size : start(part + 1)};
 }
 
 }  // namespace
@@ -211,18 +228,25 @@ PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
         });
       }
   PetscCall(gather());
-  const auto add_own = [&](std::size_t b) {
-    for (int f = 0; f < components_; ++f)
+  // Each thread adds what all boxes have for the rows of its own.
+  const int parts = row_parts(*domain_);
+  in_parallel(parts, parts, [&](int part) {
+    const OffsetRange own = offsets_of(*domain_, part, parts);
+    const auto add_own = [&](std::size_t b) {
       for (const Run &run : places_[b].own)
-        for_pieces(run, contributions[b], f, [&](int first, const double *values, int count) {
-          for (const WeightedTarget &target : targets)
-            add_values(values, count, target.factor, target.field->data() + f * size + run.elsewhere + (first - run.i));
-        });
-  };
-  in_order(add_own, [&](int, const Parcel &parcel) {
-    for (const WeightedTarget &target : targets)
-      for (std::size_t n = 0; n < parcel.slots.size(); ++n)
-        add_values(&received_[parcel.slots[n]], 1, target.factor, target.field->data() + parcel.offsets[n]);
+        for (int f = 0; own.has(run.elsewhere) && f < components_; ++f)
+          for_pieces(run, contributions[b], f, [&](int first, const double *values, int count) {
+            const std::ptrdiff_t at = f * size + run.elsewhere + (first - run.i);
+            for (const WeightedTarget &target : targets)
+              add_values(values, count, target.factor, target.field->data() + at);
+          });
+    };
+    in_order(add_own, [&](int, const Parcel &parcel) {
+      for (const WeightedTarget &target : targets)
+        for (std::size_t n = 0; n < parcel.slots.size(); ++n)
+          if (own.has(parcel.offsets[n] % size))
+            add_values(&received_[parcel.slots[n]], 1, target.factor, target.field->data() + parcel.offsets[n]);
+    });
   });
   PetscFunctionReturn(0);
 }

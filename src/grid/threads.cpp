@@ -1,14 +1,6 @@
 #include "grid/threads.hpp"
 
 namespace eulastic {
-namespace {
-
-int count_of_threads = 1;
-
-}  // namespace
-
-void set_threads(int count) noexcept { count_of_threads = count; }
-int threads() noexcept { return count_of_threads; }
 
 int row_parts(const Box &box) {
   constexpr double least = 512;  // cells: in parallel, fewer gain nothing

@@ -1,45 +1,38 @@
-// Threads of a rank, which share the rows of a verb. The first alone calls MPI and PETSc.
+// How the threads of a rank share the rows of a routine.
 #pragma once
 
+#include "base/events.hpp"
 #include "base/team.hpp"
 #include "grid/box.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <numeric>
-#ifdef __SANITIZE_THREAD__
-#include <thread>
-#endif
 
 namespace eulastic {
 
-/// Threads per rank, at least 1; to be set before there are fields, whose pages then lie near who works on them.
-void set_threads(int count) noexcept;
-int threads() noexcept;
+/// Sets the number of threads per rank, at least 1. Fields that are made afterwards have their pages near the thread
+/// that works on them.
+inline void set_threads(int count) { ThreadTeam::of_rank().resize(count); }
+inline int threads() noexcept { return ThreadTeam::of_rank().size(); }
 
-/// work(n) for every 0 <= n < count: thread t of `team` does t, t + team ..., so that it comes back to the same planes.
-/// A member of a team does all of them.
+/// work(n) for every 0 <= n < count: thread t of `team`, at most all of the rank, does t, t + team ..., so that it
+/// comes back to the same planes. Within a parallel region the calling thread does all of them.
 template <class Work>
 void in_parallel(int team, int count, const Work &work) {
-  if (team <= 1 || TeamMember::is_here()) {
+  team = std::min(team, count);
+  if (team <= 1 || ThreadTeam::is_in_region()) {
     for (int n = 0; n < count; ++n) work(n);
     return;
   }
-#ifdef __SANITIZE_THREAD__  // which does not know how the threads of OpenMP wait for each other
-  std::vector<std::thread> all;
-  for (int t = 0; t < team; ++t)
-    all.emplace_back([&, t] {
-      for (int n = t; n < count; n += team) work(n);
-    });
-  for (std::thread &one : all) one.join();
-#else
-#pragma omp parallel for schedule(static, 1) num_threads(team)
-  for (int n = 0; n < count; ++n) work(n);
-#endif
+  const VerbScope scope(Verb::threads);
+  ThreadTeam::of_rank().run(team, [&](int thread) {
+    for (int n = thread; n < count; n += team) work(n);
+  });
 }
 
-/// work(n) for every 0 <= n < count, each of them all on one thread, as members of a team that take one after the
-/// other. Returns the flops of the verbs in them.
+/// work(n) for every 0 <= n < count, each of them whole on one thread; whoever is free takes the next one. Returns the
+/// flops of the routines in them.
 template <class Work>
 double in_team(int count, const Work &work) {
   std::vector<double> flops(threads(), 0.0);

@@ -15,6 +15,7 @@
 #include "output/time_step_control.hpp"
 #include "output/verdict.hpp"
 #include "run/last_word.hpp"
+#include "run/waiting.hpp"
 #include "scene/balance.hpp"
 #include "scene/lumens.hpp"
 #include "scene/memory.hpp"
@@ -24,8 +25,8 @@
 #include "scene/scene_warnings.hpp"
 #include "scene/wall_distance_warning.hpp"
 
-#include <sched.h>
 #include <cstdio>
+#include <cstdlib>
 
 namespace eulastic {
 namespace {
@@ -44,6 +45,7 @@ struct Run {
   std::string exit_reason;
   Stop stop;              ///< by a guard
   std::string noted;      ///< newest checkpoint that summary.json knows of
+  std::string waiting;    ///< how threads wait
   bool accepted = false;  ///< summary.json is that of this run
   bool summary_failed = false;
 };
@@ -60,15 +62,22 @@ void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(warning).c_str());
 }
 
-// Threads that would take turns: Open MPI binds a rank to one core unless told otherwise.
-std::string thread_warning(int threads) {
-  cpu_set_t allowed;
-  if (threads == 1 || sched_getaffinity(0, sizeof allowed, &allowed) != 0) return "";
-  const int processors = CPU_COUNT(&allowed);
-  if (processors >= threads) return "";
-  return "-threads " + std::to_string(threads) + ": this rank may use " + std::to_string(processors) +
-         " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
-         " gives a rank as many as it has threads";
+// Starts the threads of this rank. `line`: how they wait.
+PetscErrorCode start_threads(int threads, std::string *line, std::string *refusal) {
+  PetscFunctionBeginUser;
+  const std::string wanted = on_rank_0([] {
+    const char *given = std::getenv("EULASTIC_WAIT");
+    return std::string(given ? given : "");
+  });
+  WaitingChoice waiting;
+  PetscCall(choose_waiting(run_communicator(), threads, wanted, &waiting));
+  *refusal = waiting.error;
+  if (!refusal->empty()) PetscFunctionReturn(0);
+  set_threads(threads);
+  ThreadTeam::of_rank().set_waiting(waiting.how);
+  print_warning(run_communicator(), waiting.warning);
+  *line = waiting.line;
+  PetscFunctionReturn(0);
 }
 
 // Of the scene at the start.
@@ -272,7 +281,8 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   PetscCall(PetscPrintf(domain.comm(), "%s\n", first_word(config, domain.ranks()).c_str()));
   for (const auto &lines : {red_cell_lines(config), side_lines(config)})
     for (const std::string &line : lines) PetscCall(PetscPrintf(domain.comm(), "%s\n", line.c_str()));
-  if (!balanced.empty()) PetscCall(PetscPrintf(domain.comm(), "%s\n", balanced.c_str()));
+  for (const std::string &line : {balanced, run->waiting})
+    if (!line.empty()) PetscCall(PetscPrintf(domain.comm(), "%s\n", line.c_str()));
   (void)std::fflush(stdout);
   run->checkpoints.start(parsed, run->directory.path(), &run->solver, &run->outputs, &run->guards, run->in_place);
   run->outputs.start(config, domain, &run->solver, run->position.outputs);
@@ -316,12 +326,13 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   catch_signals();
   PetscCall(check_sizes(run_communicator(), config, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
-  set_threads(config.threads);
-  print_warning(run_communicator(), thread_warning(config.threads));
+  std::string waiting;
+  PetscCall(start_threads(config.threads, &waiting, refusal));
+  if (!refusal->empty()) PetscFunctionReturn(0);
   Domain domain;
   PetscCall(domain.create(run_communicator(), config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);
-  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}};
+  Run run{parsed, in_place, {}, {}, {}, {}, Guards(config), {}, begin, 0, {}, {}, {}, waiting};
   PetscCall(begin_run(&domain, &run, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
   const State &state = run.solver.state();

@@ -224,30 +224,44 @@ class CommandLine(unittest.TestCase):
         free = self.run_program(*scene, "260", "-a_attached", "false", "-check_only")
         self.assertNotIn(text, free.stdout)
 
-    def test_more_threads_than_processors_are_a_warning(self):
+    def test_how_threads_wait(self):
+        """Threads spin on processors of their own and sleep where they share them, unless EULASTIC_WAIT says otherwise."""
         allowed = os.sched_getaffinity(0)
         self.addCleanup(os.sched_setaffinity, 0, allowed)
-        os.sched_setaffinity(0, {min(allowed)})
-        for threads in 1, 2:
-            done = self.run_program(*SCENE, "-threads", str(threads), "-output_dir", str(threads))
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(done.stderr, "" if threads == 1 else "eulastic: warning: -threads 2: this rank may use 1 "
-                             "processor(s); with Open MPI, mpiexec --map-by slot:PE=2 gives a rank as many as it has "
-                             "threads\n")
+        free = {"EULASTIC_WAIT": "", "OMPI_MCA_hwloc_base_binding_policy": "none"}
 
-    def test_who_waits_gives_up_the_core(self):
-        """With the settings of scripts/environment, as the run times of OpenMP and MPI themselves say; what the environment says
-        before stays."""
-        plain = {"OMP_DISPLAY_ENV": "true", "OMPI_MCA_mpi_show_mca_params": "enviro"}
-        active = {"OMP_WAIT_POLICY": "active", "OMPI_MCA_mpi_yield_when_idle": "0"}
-        settings = str(ROOT / "scripts/lib/in_environment")
-        for given, threads, ranks in ({}, "PASSIVE", "true"), (active, "ACTIVE", "false"):
-            bare = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "OMPI_MCA_mpi_yield_when_idle"} - set(given)
-            variables = ["env", *(word for name in bare for word in ("-u", name)), *(f"{k}={v}" for k, v in (plain | given).items())]
-            done = subprocess.run([*variables, settings, *launcher(2), BINARY, "-version"], capture_output=True, text=True, timeout=120)
-            said = done.stdout + done.stderr
-            self.assertEqual(re.findall(r"OMP_WAIT_POLICY = '(\w+)'", said)[-1], threads)
-            self.assertIn(f"mpi_yield_when_idle={ranks}", said)
+        def says(threads, ranks, processors, wanted=""):
+            os.sched_setaffinity(0, set(sorted(allowed)[:processors]))
+            done = self.run_program(*SCENE, "-threads", str(threads), "-output_dir", "run", "-output_overwrite", ranks=ranks,
+                                    environment=free | {"EULASTIC_WAIT": wanted})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            warning = (f"eulastic: warning: -threads {threads}: this rank may use {processors} processor(s); with Open MPI, "
+                       f"mpiexec --map-by slot:PE={threads} gives a rank as many as it has threads\n")
+            self.assertEqual(done.stderr, warning if threads > processors else "")
+            line = re.findall(rf"^{max(ranks, 1) * threads} threads on {processors} processor\(s\) of this node (\w+) while they "
+                              r"wait(?:, as EULASTIC_WAIT says)?$", done.stdout, re.MULTILINE)
+            self.assertEqual(len(line), threads > 1, done.stdout)
+            self.assertEqual("EULASTIC_WAIT" in done.stdout, bool(wanted))
+            return line and line[0]
+
+        self.assertFalse(says(1, 0, 1))
+        self.assertEqual(says(2, 0, 1), "sleep")
+        self.assertEqual(says(2, 0, 1, "spin"), "spin")
+        if len(allowed) > 1:
+            self.assertEqual(says(2, 0, 2), "spin")
+            self.assertEqual(says(2, 0, 2, "sleep"), "sleep")
+            self.assertEqual(says(2, 2, 2), "sleep")
+        self.refused(*SCENE, "-threads", "2", "-output_dir", "wrong", environment={"EULASTIC_WAIT": "yield"},
+                     says=["EULASTIC_WAIT", "yield", "spin, sleep"])
+
+    def test_ranks_that_wait_give_up_the_core(self):
+        """With the settings of scripts/environment, as MPI itself says; what the environment says before stays."""
+        for given, yields in ({}, "true"), ({"OMPI_MCA_mpi_yield_when_idle": "0"}, "false"):
+            environment = {k: v for k, v in os.environ.items() if k != "OMPI_MCA_mpi_yield_when_idle"}
+            environment.update(given, OMPI_MCA_mpi_show_mca_params="enviro")
+            done = subprocess.run([str(ROOT / "scripts/lib/in_environment"), *launcher(2), BINARY, "-version"],
+                                  capture_output=True, text=True, timeout=120, env=environment)
+            self.assertIn(f"mpi_yield_when_idle={yields}", done.stdout + done.stderr)
 
     def test_errors_on_several_ranks_are_printed_once(self):
         result = self.run_program(*SCENE, "-nonsense", ranks=3)

@@ -18,11 +18,12 @@ from restart_case import ENDLESS, FLAT, OFTEN, ROOT, Restart  # noqa: E402
 
 LIBRARY = os.environ["EULASTIC_FAULT_LIBRARY"]
 VERBS = re.findall(r'"(Eul[A-Z]\w+)"', (ROOT / "src/base/events.cpp").read_text().split("stage_names")[0])
+IN_BOXES = "-threads 2 -cell_placement lattice -cell_count 2,2,1".split()
 # What a verb needs besides a fluid with bodies and the fast method.
 NEEDS = {"EulSMAC": ["-pressure_solver", "smac"], "EulTension": ["-cell_surface_tension", "0.5"],
          "EulMembrane": ["-cell_law", "membrane", "-cell_surface_shear_modulus", "1"],
-         "EulRigid": ["-cell_law", "rigid"], "EulBoxes": "-threads 2 -cell_placement lattice -cell_count 2,2,1".split()}
-WITHOUT = {"EulMembrane": "-cell_shear_modulus", "EulRigid": "-cell_shear_modulus", "EulBoxes": "-cell_centre"}
+         "EulRigid": ["-cell_law", "rigid"], "EulBoxes": IN_BOXES, "EulThreads": IN_BOXES}
+WITHOUT = {"EulMembrane": "-cell_shear_modulus", "EulRigid": "-cell_shear_modulus", "EulBoxes": "-cell_centre", "EulThreads": "-cell_centre"}
 SECONDS = 300  # far more than it takes on a busy machine, far less than for ever
 
 

@@ -1,0 +1,54 @@
+#include "run/waiting.hpp"
+
+#include <sched.h>
+
+namespace eulastic {
+namespace {
+
+struct Node {
+  int ranks = 0;
+  int processors = 0;      ///< that any of its ranks may use
+  int own_processors = 0;  ///< that this rank may use
+};
+
+PetscErrorCode look_at_node(MPI_Comm comm, Node *node) {
+  PetscFunctionBeginUser;
+  MPI_Comm on_node;
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &on_node));
+  cpu_set_t own, all;
+  CPU_ZERO(&own);
+  if (sched_getaffinity(0, sizeof own, &own) != 0) CPU_SET(0, &own);
+  PetscCallMPI(MPI_Allreduce(&own, &all, sizeof own, MPI_BYTE, MPI_BOR, on_node));
+  PetscCallMPI(MPI_Comm_size(on_node, &node->ranks));
+  PetscCallMPI(MPI_Comm_free(&on_node));
+  node->processors = CPU_COUNT(&all);
+  node->own_processors = CPU_COUNT(&own);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode choose_waiting(MPI_Comm comm, int threads, const std::string &wanted, WaitingChoice *choice) {
+  PetscFunctionBeginUser;
+  *choice = {};
+  if (wanted != "" && wanted != "spin" && wanted != "sleep") {
+    choice->error = "EULASTIC_WAIT: '" + wanted + "'; accepted: spin, sleep";
+    PetscFunctionReturn(0);
+  }
+  if (threads == 1) PetscFunctionReturn(0);
+  Node node;
+  PetscCall(look_at_node(comm, &node));
+  const bool fit = node.own_processors >= threads && node.processors >= node.ranks * threads;
+  choice->how = wanted == "spin" || (wanted == "" && fit) ? Waiting::spin : Waiting::sleep;
+  choice->line = std::to_string(node.ranks * threads) + " threads on " + std::to_string(node.processors) +
+                 " processor(s) of this node " + (choice->how == Waiting::spin ? "spin" : "sleep") +
+                 " while they wait" + (wanted == "" ? "" : ", as EULASTIC_WAIT says");
+  if (node.own_processors < threads)
+    choice->warning = "-threads " + std::to_string(threads) + ": this rank may use " +
+                      std::to_string(node.own_processors) +
+                      " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
+                      " gives a rank as many as it has threads";
+  PetscFunctionReturn(0);
+}
+
+}  // namespace eulastic
