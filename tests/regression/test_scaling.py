@@ -180,7 +180,7 @@ class Node(WithFolder):
     node = load("studies/scaling/node")
 
     def row(self, part, method, ranks, seconds, speed_up, wait=.25):
-        return {"part": part, "cells": "4x2x2", "method": method, "ranks": ranks, "seconds_per_step": seconds,
+        return {"part": part, "case": part, "cells": "4x2x2", "method": method, "ranks": ranks, "threads": 1, "seconds_per_step": seconds,
                 "ns_per_cell_step": 1, "speed_up": speed_up, "exchange": .5, "wait": wait}
 
     def test_table_by_hand(self):
@@ -202,14 +202,24 @@ class Node(WithFolder):
 
     def test_speed_ups_are_of_work_done(self):
         # Medians on one, two and four ranks: 8, 5 and 2 s a step; copies and weak scaling have twice and four times the cells.
-        found = {4: [(2, .5, .25)] * 3, 1: [(8, 0, 0)] * 3, 2: [(9, .5, .25), (5, .6, .4), (4, .7, .1)]}
+        found = {(4, 1): [(2, .5, .25)] * 3, (1, 1): [(8, 0, 0)] * 3, (2, 1): [(9, .5, .25), (5, .6, .4), (4, .7, .1)]}
         for part, expected in ("channel_rbc", [1, 1.6, 4]), ("weak", [1, 3.2, 16]), ("copies", [1, 3.2, 16]):
             rows = self.node.rows_of(self.node.Series(part, "fast", (8, 4, 4), 3), found)
             self.assertEqual([row["speed_up"] for row in rows], expected)
             self.assertEqual([(row["exchange"], row["wait"]) for row in rows], [(0, 0), (.6, .25), (.5, .25)])
-        later = self.node.rows_of(self.node.Series("weak", "fast", (8, 4, 4), 3), {n: found[n] for n in (2, 4)})
+        later = self.node.rows_of(self.node.Series("weak", "fast", (8, 4, 4), 3), {(n, 1): found[n, 1] for n in (2, 4)})
         self.assertEqual([row["speed_up"] for row in later], [2, 10])
         self.assertEqual([row["ns_per_cell_step"] for row in later], [1e9 * 5 / 256, 1e9 * 2 / 512])
+
+    def test_ranks_times_threads(self):
+        series = self.node.Series("hybrid", "fast", (8, 4, 4), 3, "capillary_h20")
+        self.assertEqual(series.shapes([1, 2, 4]), [(4, 1), (2, 2), (1, 4)])
+        self.assertEqual(series.shapes([1, 6]), [(6, 1), (3, 2)])
+        rows = self.node.rows_of(series, {(4, 1): [(1, .5, .2)], (2, 2): [(2, 0, 0)], (1, 4): [(.5, 0, 0)]})
+        self.assertEqual([row["speed_up"] for row in rows], [4, 2, 8])
+        self.assertEqual(self.node.table(rows), "")
+        self.assertEqual(self.node.hybrid_table(rows).splitlines(), [
+            "| ms a step | cells | 4 x 1 | 2 x 2 | 1 x 4 |", "|---|---|---|---|---|", "| capillary_h20 | 8 x 4 x 4 | 1000 | 2000 | 500 |"])
 
     def test_what_it_refuses(self):
         cores = len(self.node.cores())
@@ -225,7 +235,7 @@ class Node(WithFolder):
 
     def test_real_runs(self):
         done = start(SCRIPTS / "studies/scaling/node", "--quick", "--ranks", "2,1", "--steps", 1, "--method", "classic", "--only", "copies",
-                     "weak", "channel_rbc", "--csv", self.folder / "new/x.csv", *["--oversubscribe"] * (len(self.node.cores()) < 2))
+                     "weak", "channel_rbc", "hybrid", "--csv", self.folder / "new/x.csv", *["--oversubscribe"] * (len(self.node.cores()) < 2))
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.folder / "new/x.csv") as file:
             self.assertRegex(next(file), r"^# Made with eulastic .* cores? could be used, of \d+ GB of memory; load ")
@@ -241,6 +251,12 @@ class Node(WithFolder):
             self.assertTrue(0 <= wait <= exchange, row)
         self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("| ")]), 4)
         self.assertIn("of the copies' speed-up on 2", done.stdout)
+
+    def test_real_hybrid_runs(self):
+        done = start(SCRIPTS / "studies/scaling/node", "--quick", "--ranks", "2", "--steps", 1, "--only", "hybrid", "--csv", self.folder / "x.csv",
+                     *["--oversubscribe"] * (len(self.node.cores()) < 2))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"\A\| ms a step \| cells \| 2 x 1 \| 1 x 2 \|\n\|(---\|)+\n(\| [^|]+\| [^|]+\| [\d.]+ \| [\d.]+ \|\n){3}")
 
 
 if __name__ == "__main__":
