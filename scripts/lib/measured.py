@@ -1,5 +1,6 @@
 """Pages of evidence say once with which program, when and on what machine they were made, and by which script."""
 import datetime
+import hashlib
 import os
 import pathlib
 import re
@@ -22,20 +23,28 @@ def machine():
     return f"{os.cpu_count()} cores of {name[1] if name else 'an unknown processor'}{wide}"
 
 
-def git(*words):
-    return subprocess.run(["git", "-C", ROOT, *words], capture_output=True, text=True).stdout.strip()
+def sources(folder=None):
+    """A short hash of all files below `folder`, src/ if it is None: which program made a number, whatever docs and scripts were."""
+    folder = pathlib.Path(folder or ROOT / "src")
+    digest = hashlib.sha256()
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        digest.update(f"{path.relative_to(folder)}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+    return digest.hexdigest()[:8]
+
+
+def version(program=None):
+    """The program's own version, as 1.0.0; ? if it cannot be run."""
+    says = subprocess.run([program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic"), "-version"], capture_output=True,
+                          text=True).stdout
+    found = re.search(r"eulastic ([\d.]+)", says)
+    return found[1] if found else "?"
 
 
 def made_with(program=None):
     """The sentence: with which program, when, where and by which script."""
-    program = program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
-    says = subprocess.run([program, "-version"], capture_output=True, text=True).stdout
-    version = re.search(r"eulastic ([\d.]+)", says)
-    commit = git("rev-parse", "--short", "HEAD")
-    commit += "-dirty" if commit and git("diff", "--name-only", "HEAD", "--", ":!docs") else ""  # the page itself may be new
     script = pathlib.Path(sys.argv[0]).resolve()
-    return (f"Made with eulastic {version[1] if version else '?'}{f' ({commit})' if commit else ''}, {datetime.date.today()}, on "
-            f"{machine()}, by `{script.relative_to(ROOT)}`.")
+    return (f"Made with eulastic {version(program)} (sources {sources()}), {datetime.date.today()}, on {machine()}, by "
+            f"`{script.relative_to(ROOT)}`.")
 
 
 def stamp(path, program=None):

@@ -2,6 +2,7 @@
 """Every command of README.md and, with scripts/test --full, of docs/ as written, in a copy of the project. The runs are shortened from outside,
 through PETSC_OPTIONS (which wins over options files): few cells and few steps; what the commands write, and that they
 end well, is what is tested. Commands that install, compile or test everything are named in NOT_RUN."""
+import json
 import os
 import pathlib
 import re
@@ -16,9 +17,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 from full import FULL  # noqa: E402
+from load_script import load  # noqa: E402
 from program import BINARY  # noqa: E402
 from read_page import blocks, commands, file_name, is_python  # noqa: E402
 
+evidence = load("evidence")
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
 FLAT = SHORT.replace("16,16,16", "16,16,1")
 OTHERS = {"python.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
@@ -179,7 +182,7 @@ class Docs(unittest.TestCase):
         self.assertEqual(tables_by_hand("a\n| 1 |\n<!-- table x -->\n| 2 |\n<!-- end -->\n"), ["| 1 |"])
         for name in EVIDENCE:
             text = (ROOT / f"docs/{name}.md").read_text()
-            stamps = re.findall(r"^> Made with eulastic [\d.]+ \(\w[\w-]*\), \d{4}-\d\d-\d\d, on .+, by `(scripts/[\w/]+)`", text, re.M)
+            stamps = re.findall(r"^> Made with eulastic [\d.]+ \((?:sources )?\w[\w-]*\), \d{4}-\d\d-\d\d, on .+, by `(scripts/[\w/]+)`", text, re.M)
             self.assertEqual(len(stamps), 1, name)
             self.assertTrue((ROOT / stamps[0]).exists(), stamps)
             script = re.search(r"^Written by `(scripts/[\w/]+)`.*?; do not edit\.", text, re.M)
@@ -188,6 +191,67 @@ class Docs(unittest.TestCase):
             else:
                 self.assertEqual(tables_by_hand(text), [], name)
                 self.assertEqual(numbers_by_hand(text) - set(GIVEN[name].split()), set(), f"{name}.md: is it measured?")
+
+    def test_every_table_and_picture_has_a_step_of_scripts_evidence(self):
+        steps, elsewhere = evidence.STEPS, evidence.ELSEWHERE
+        for step in steps:
+            self.assertTrue((ROOT / "docs" / step.page).exists() or (ROOT / step.page).exists(), step)
+            for command in step.commands:
+                self.assertTrue(command.startswith(("cp ", "scripts/")) and (command.startswith("cp ") or (ROOT / command.split()[0]).exists()))
+        marks = [(str(page.relative_to(ROOT / "docs")), name) for page in pages() if page.name != "README.md"
+                 for name in re.findall(r"<!-- table ?(\w*) ?-->", page.read_text()) if name not in elsewhere]
+        self.assertEqual(sorted(marks), sorted((step.page, table) for step in steps for table in step.tables))
+        for picture in sorted((ROOT / "docs/images").iterdir()):
+            makers = [step.name for step in steps for pattern in step.pictures if picture.match(pattern)]
+            self.assertEqual(len(makers), picture.name not in elsewhere, f"{picture.name}: {makers}")
+        shown = set(re.findall(r"images/([\w.]+)\)", "".join(page.read_text() for page in pages())))
+        self.assertEqual({picture.name for picture in (ROOT / "docs/images").iterdir()}, shown)
+
+    def test_evidence_is_of_the_release(self):
+        """Once CHANGELOG.md ends with a release, all steps and stamps have its version and the same sources."""
+        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[-1]
+        known = json.loads((ROOT / "docs/evidence.json").read_text()) if (ROOT / "docs/evidence.json").exists() else {}
+        self.assertEqual(set(known) - {step.name for step in evidence.STEPS}, set())
+        if newest == "Unreleased":
+            return
+        self.assertEqual(set(known), {step.name for step in evidence.STEPS})
+        made = {(step["version"], step["sources"]) for step in known.values()}
+        for page in pages():
+            made |= set(re.findall(r"Made with eulastic ([\d.]+) \((?:sources )?(\w[\w-]*)\)", page.read_text()))
+        self.assertEqual({version for version, _ in made}, {newest.split()[0]})
+        self.assertEqual(len(made), 1, made)
+
+    def test_steps_of_evidence(self):
+        """A step is done once, and again when the sources have changed; what it makes lies in docs/."""
+        for folder in "docs/images", "src":
+            (self.room / folder).mkdir(parents=True, exist_ok=True)
+        (self.room / "src/solver.cpp").write_text("int one;\n")
+        script = [self.room / "scripts/evidence", "--only", "grid.md"]
+        environment = dict(os.environ, EULASTIC=str(BINARY))
+
+        def says(*more):
+            done = subprocess.run([*script, *more], capture_output=True, text=True, env=environment)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            return done.stdout
+        self.assertIn("not made by this script yet\n0 of 1 steps", says("--list"))
+        self.assertIn("evidence: grid, about", says())
+        self.assertTrue((self.room / "docs/images/domain.png").exists())
+        self.assertIn("evidence: grid is up to date\nevidence: 1 of 1 steps are of these sources", says())
+        self.assertIn("evidence: grid, about", says("--again"))
+        (self.room / "docs/grid.md").write_text("A page is no source.\n")
+        self.assertIn("up to date: ", says("--list"))
+        (self.room / "src/solver.cpp").write_text("int two;\n")
+        self.assertIn("older: ", says("--list"))
+        record = json.loads((self.room / "docs/evidence.json").read_text())["grid"]
+        (self.room / "scripts/dev/draw_grid").write_text("#!/bin/sh\nexit 3\n")
+        done = subprocess.run(script, capture_output=True, text=True, env=environment)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("evidence: 0 of 1 steps are of these sources; failed: grid\n", done.stdout)
+        self.assertEqual(json.loads((self.room / "docs/evidence.json").read_text())["grid"], record)
+        shutil.copy(ROOT / "scripts/dev/draw_grid", self.room / "scripts/dev/draw_grid")
+        done = subprocess.run([script[0], "--only", "nowhere"], capture_output=True, text=True, env=environment)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, r"\Aevidence: --only nowhere: accepted: grid, .*\n\Z")
 
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""
