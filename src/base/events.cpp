@@ -10,9 +10,9 @@ namespace {
 constexpr int verb_count = static_cast<int>(Verb::count);
 constexpr int stage_count = static_cast<int>(Stage::count);
 constexpr std::array<const char *, verb_count> verb_names = {
-    "EulExchange", "EulWait",       "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension",  "EulMembrane",
-    "EulRigid",    "EulDivergence", "EulACM",        "EulSMAC",     "EulCorrect", "EulFraction", "EulLeftCauchy",
-    "EulExterior", "EulBodies",     "EulBoxes",      "EulThreads",  "EulSums",    "EulWrite"};
+    "EulExchange",   "EulWait",     "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension", "EulMembrane",
+    "EulAdhesion",   "EulRigid",    "EulDivergence", "EulACM",      "EulSMAC",    "EulCorrect", "EulFraction",
+    "EulLeftCauchy", "EulExterior", "EulBodies",     "EulBoxes",    "EulThreads", "EulSums",    "EulWrite"};
 constexpr std::array<const char *, stage_count> stage_names = {"Setup", "Step", "Output"};
 constexpr std::array<const char *, stage_count> stage_events = {"EulSetup", "EulStep", "EulOutput"};
 

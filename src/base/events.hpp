@@ -13,6 +13,7 @@ enum class Verb {
   viscous,
   surface_tension,
   membrane,
+  adhesion,
   rigid,
   divergence,
   acm,

@@ -1,5 +1,7 @@
 #include "base/team.hpp"
 
+#include "base/events.hpp"
+
 #include <immintrin.h>
 #include <sched.h>
 #include <utility>
@@ -44,6 +46,7 @@ void ThreadTeam::resize(int size) {
 }
 
 void ThreadTeam::run(int members, Call call, const void *work) {
+  const VerbScope scope(Verb::threads);
   call_ = call;
   work_ = work;
   running_.store(members - 1, std::memory_order_relaxed);

@@ -1,7 +1,6 @@
 // How the threads of a rank share the rows of a routine.
 #pragma once
 
-#include "base/events.hpp"
 #include "base/team.hpp"
 #include "grid/box.hpp"
 
@@ -25,7 +24,6 @@ void in_parallel(int team, int count, const Work &work) {
     for (int n = 0; n < count; ++n) work(n);
     return;
   }
-  const VerbScope scope(Verb::threads);
   ThreadTeam::of_rank().run(team, [&](int thread) {
     for (int n = thread; n < count; n += team) work(n);
   });

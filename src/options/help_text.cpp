@@ -24,11 +24,14 @@ const char *introduction =
     "spaces. Units are any consistent set. Wrong input ends the program with exit code 2, before anything is "
     "written.\n";
 
-// One species stands for all.
+// One species stands for all, and one pair of them.
 Config example() {
   Config config;
   config.species.resize(1);
   config.species[0].name = "NAME";
+  config.adhesion.pairs.resize(1);
+  config.adhesion.pairs[0].name = "NAME1-NAME2";
+  config.adhesion.pairs[0].second = AdhesionPair::wall;
   return config;
 }
 

@@ -1,5 +1,6 @@
 #include "options/option_table.hpp"
 
+#include "options/adhesion_options.hpp"
 #include "options/opening_options.hpp"
 #include "options/option_rows.hpp"
 #include "options/petsc_options.hpp"
@@ -292,6 +293,7 @@ std::vector<Option> option_table(Config &config) {
   add_openings(rows, config);
   add_flow(rows, config);
   add_bodies(rows, config);
+  add_adhesion(rows, config);
   add_method(rows, config);
   add_running(rows, config);
   return std::move(rows.rows);

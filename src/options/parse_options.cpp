@@ -2,6 +2,7 @@
 
 #include "base/one_line.hpp"
 #include "io/option_values.hpp"
+#include "options/adhesion_options.hpp"
 #include "options/help_text.hpp"
 #include "options/not_supported.hpp"
 #include "options/option_source.hpp"
@@ -48,6 +49,16 @@ std::string read_species(const std::vector<Source> &sources, Config *config) {
     config->species.emplace_back().name = name;
   }
   return wrong.empty() ? wrong : "-species: " + wrong + given->where;
+}
+
+// Pairs of -adhesion, when the species are known.
+std::string read_pairs(const std::vector<Source> &sources, Config *config) {
+  const Entry *given = last_given(sources, "adhesion");
+  if (!given || given->value.empty()) return {};
+  const std::string wrong = read_adhesion(given->value, config);
+  if (wrong.empty()) return wrong;
+  return "-adhesion: " + wrong + "; accepted: a list without spaces of NAME1-NAME2 or NAME-wall, NAME of -species" +
+         given->where;
 }
 
 // An option that a file gives and whose meaning a higher source has taken.
@@ -175,6 +186,7 @@ std::string check_petsc_entries(const std::vector<Source> &sources, const Config
 // Reads all sources into `config`. `lost`: options that are to be removed, after which all is read once more.
 std::string read_sources_once(std::vector<Source> *sources, Config *config, std::vector<Lost> *lost) {
   if (std::string wrong = read_species(*sources, config); !wrong.empty()) return wrong;
+  if (std::string wrong = read_pairs(*sources, config); !wrong.empty()) return wrong;
   if (const Entry *method = last_given(*sources, "method"))
     (void)read_method(method->value, config);  // what is wrong with it is reported later
   if (const Entry *state = last_given(*sources, "initial_state")) {

@@ -50,6 +50,8 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
+  if (solver_->part<Adhesion>())
+    PetscCall(bond_files_.open(comm, directory, same_directory ? position.bonds : BondFiles::Position{}));
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
     snapshots_ = std::make_unique<SnapshotOutput>(*domain_, directory, config_.output.snapshot_format);
@@ -63,6 +65,7 @@ void Outputs::moved_to(const std::string &directory) {
   series_.moved_to(directory + "/series.csv");
   samples_.moved_to(directory);
   if (bodies_file_) bodies_file_->moved_to(directory + "/bodies.h5");
+  if (solver_->part<Adhesion>()) bond_files_.moved_to(directory);
   if (snapshots_) snapshots_->moved_to(directory);
 }
 
@@ -124,6 +127,10 @@ PetscErrorCode Outputs::write_due(bool last) {
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
+  if (Adhesion *adhesion = solver_->part<Adhesion>()) {
+    if (series) PetscCall(bond_files_.write_bodies(state.time, adhesion));
+    if (snapshot) PetscCall(bond_files_.write_bonds(state.time, *adhesion));
+  }
   if (samples)
     PetscCall(solver_->looks().on_grid([&](const std::vector<Phase> &phases) {
       return samples_.write(state.time, probes, last, {state.velocity, state.pressure, phases});
@@ -142,6 +149,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscCall(series_.sync());
   PetscCall(samples_.sync());
   if (bodies_file_) PetscCall(bodies_file_->flush());
+  if (solver_->part<Adhesion>()) PetscCall(bond_files_.sync(&position->bonds));
   position->series_rows = series_.rows();
   position->bodies_rows = bodies_rows_;
   position->snapshots = snapshots_ ? snapshots_->count() : snapshots_before_;

@@ -9,6 +9,7 @@
 #include "io/series.hpp"
 #include "io/summary.hpp"
 #include "membranes/surface_measures.hpp"
+#include "output/bond_files.hpp"
 #include "output/due.hpp"
 #include "output/guards.hpp"
 #include "output/sample_files.hpp"
@@ -27,6 +28,7 @@ struct OutputsPosition {
   double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
   EnergyBudget energy;
   double mach_max = 0;
+  BondFiles::Position bonds;
 };
 
 class Outputs {
@@ -109,6 +111,7 @@ private:
   Series series_;
   SampleFiles samples_;
   std::unique_ptr<BodiesFile> bodies_file_;
+  BondFiles bond_files_;  ///< of a scene with adhesion
   std::unique_ptr<SnapshotOutput> snapshots_;
   Due series_due_, snapshot_due_;
   Row now_;           ///< as of the last measure()

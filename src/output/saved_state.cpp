@@ -1,5 +1,6 @@
 #include "output/saved_state.hpp"
 
+#include "adhesion/adhesion.hpp"
 #include "base/deliver.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "diagnostics/state_hash.hpp"
@@ -51,13 +52,14 @@ void take_numbers(const CheckpointNumbers &numbers, const CarriedState &state) {
 }
 
 // What a run carries beside the solver, its numbers of energy not included.
-void add_position(RunPosition *position, CarriedState *state) {
+void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   OutputsPosition &o = position->outputs;
   state->reals["time_step"].push_back(&position->dt);
   state->reals["wall_seconds"] = {&position->wall_seconds, &position->wall_seconds_total};
   state->reals["output_times"] = {&o.series_time, &o.snapshot_time, &o.profile_time};
   state->reals["mach_max"] = {&o.mach_max};
   state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
+  if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bodies, &o.bonds.bonds, &o.bonds.events};
 }
 
 // All numbers of a checkpoint but those of single bodies.
@@ -260,7 +262,7 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &run_position, const
   CarriedState state;
   PetscFunctionBeginUser;
   PetscCall(solver->carry(&state));
-  add_position(&position, &state);
+  add_position(solver->part<Adhesion>() != nullptr, &position, &state);
   CheckpointNumbers numbers = numbers_of(*solver, state, position);
   PetscCall(gather_numbers(*solver, &numbers));
   std::vector<CheckpointRecords> records = boxes_of(*solver);
@@ -285,7 +287,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
   CarriedState state;
   PetscCall(solver->carry(&state));
-  add_position(position, &state);
+  add_position(solver->part<Adhesion>() != nullptr, position, &state);
   const CheckpointNumbers expected = numbers_of(*solver, state, *position);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
@@ -299,7 +301,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   state = {};
   PetscCall(solver->carry(&state));  // the phases lie elsewhere now
   PetscCall(file->read_fields(domain, state.fields));
-  add_position(position, &state);
+  add_position(solver->part<Adhesion>() != nullptr, position, &state);
   take_numbers(numbers, state);
   position->outputs.energy.set_numbers(numbers.reals["energy_budget"]);
   position->outputs.energy.set_made_numbers(numbers.reals["energy_made"]);

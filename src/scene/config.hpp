@@ -1,6 +1,7 @@
 // Everything the user may choose, validated. The member initialisers are the defaults that -help shows.
 #pragma once
 
+#include "adhesion/adhesion_pair.hpp"
 #include "bodies/placement.hpp"
 #include "field/fluid.hpp"
 #include "field/open_sides.hpp"
@@ -125,6 +126,7 @@ struct Config {
   bool body_series = true;            ///< bodies are named, followed and measured
   std::vector<Places> places;         ///< of the bodies of every species, walls and posts everywhere; by validate()
   std::vector<double> solid_volumes;  ///< of every species, 0 if not from a file; by validate()
+  AdhesionSpec adhesion;
   Method method = method_preset(MethodKind::fast);
   TimeControl time;
   OutputControl output;
@@ -148,9 +150,16 @@ struct Config {
   bool boxes(const SpeciesSpec &spec) const { return spec.contact != Contact::merge && why_no_boxes(spec).empty(); }
   /// What the bodies of a species would need to lie in boxes; empty if nothing.
   std::string why_no_boxes(const SpeciesSpec &spec) const;
-  /// Whether the bodies of a species do so: one alone stays on the grid. After `places` are known.
-  bool lies_in_boxes(std::size_t which) const {
-    return boxes(species[which]) && (places[which].count > 1 || has_feeders(sides));
+  /// Whether so many bodies of a species do so: one alone stays on the grid, unless it adheres.
+  bool lie_in_boxes(std::size_t which, int count) const {
+    return boxes(species[which]) && (count > 1 || has_feeders(sides) || adheres(which));
+  }
+  /// Whether all of them do. After `places` are known.
+  bool lies_in_boxes(std::size_t which) const { return lie_in_boxes(which, places[which].count); }
+  bool adheres(std::size_t which) const {
+    for (const AdhesionPair &pair : adhesion.pairs)
+      if (pair.has(static_cast<int>(which))) return true;
+    return false;
   }
 };
 

@@ -73,7 +73,7 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
       PetscCall(fill_phase(domain, species, near, next_label, &phase));
       if (species.shape == Shape::voxels) PetscCall(fill_voxels(domain, species, next_label, &phase, &placed));
       PetscCall(file.read_phase(species, next_label, &phase, &placed));
-      phase.boxed = config.boxes(species) && (placed.count > 1 || has_feeders(config.sides));  // those of the file, too
+      phase.boxed = config.lie_in_boxes(s, placed.count);  // those of the file, too
     }
     if (species.law == Law::rigid) {
       std::string wrong;
@@ -107,6 +107,7 @@ PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *s
   PetscCall(shape_profiles(config, domain, solver->rigid(), solver->state().phases, &sides, reason));
   if (!reason->empty()) PetscFunctionReturn(0);
   solver->set_profiles(sides);
+  solver->set_adhesion(config.adhesion);
   PetscCall(solver->prepare());
   *reason = solver->crowded();
   PetscFunctionReturn(0);

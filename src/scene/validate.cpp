@@ -7,6 +7,7 @@
 #include "io/option_values.hpp"
 #include "openings/leaving.hpp"
 #include "pressure/smac.hpp"
+#include "scene/adhesion_checks.hpp"
 #include "scene/open_parts.hpp"
 #include "scene/rigid_paths.hpp"
 #include "scene/voxels.hpp"
@@ -340,6 +341,7 @@ std::string validate(Config *whole) {
     return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
   if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
+  if (const std::string wrong = check_adhesion(config); !wrong.empty()) return wrong;
   return check_paths(config);
 }
 

@@ -1,5 +1,6 @@
 #include "solver/solver.hpp"
 
+#include "adhesion/adhesion.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "drops/surface_tension.hpp"
 #include "field/open_sides.hpp"
@@ -64,6 +65,10 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   PetscFunctionReturn(0);
 }
 
+void Solver::set_adhesion(const AdhesionSpec &spec) {
+  adhesion_ = spec.pairs.empty() ? nullptr : std::make_unique<AdhesionSpec>(spec);
+}
+
 // The parts of the flow, in the order of a step. A new capability of a scene is a folder with its part, and a line
 // here.
 PetscErrorCode Solver::make_parts() {
@@ -86,6 +91,7 @@ PetscErrorCode Solver::make_parts() {
   if (MembraneTransport::exists(phases)) add(std::make_unique<MembraneTransport>(flow));
   if (SpeciesForces::exist(phases)) add(std::make_unique<SpeciesForces>(flow));
   if (StretchForces::exist(phases)) add(std::make_unique<StretchForces>(flow));
+  if (adhesion_) add(std::make_unique<Adhesion>(flow, boxed_.get(), *adhesion_));
   if (LoadedOutlets::exist(sides)) add(std::make_unique<LoadedOutlets>(flow, projection_.get()));
   if (feeders) add(std::move(feeders));
   PetscFunctionReturn(0);

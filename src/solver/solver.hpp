@@ -15,6 +15,7 @@ class Projection;
 class RigidBodies;
 class RigidFlow;
 class Scheme;
+struct AdhesionSpec;
 struct RigidLoad;
 struct SurfaceMeasure;
 
@@ -48,6 +49,8 @@ public:
 
   /// Before prepare(). Collective.
   PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
+  /// Bonds between surfaces; before prepare().
+  void set_adhesion(const AdhesionSpec &spec);
   /// Sides with profiles that know the bodies; before prepare().
   void set_profiles(const BoxSides &sides) { flow_->spec.sides = sides; }
   /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
@@ -107,7 +110,8 @@ private:
   std::vector<std::unique_ptr<FlowPart>> others_;
   std::unique_ptr<Scheme> scheme_;
   std::unique_ptr<Looks> looks_;
-  long sweeps_before_ = 0;  ///< a restart
+  std::unique_ptr<AdhesionSpec> adhesion_;  ///< null: nothing adheres
+  long sweeps_before_ = 0;                  ///< a restart
 };
 
 template <class Part>

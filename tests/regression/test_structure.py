@@ -6,7 +6,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LEVELS = [{"base"}, {"grid"}, {"kernels"}, {"field"}, {"bodies", "io", "pressure"}, {"parts"}, {"solids", "rigid"},
-          {"drops", "membranes"}, {"flow"}, {"boxes", "diagnostics"}, {"openings"}, {"solver"}, {"scene"}, {"options"},
+          {"drops", "membranes"}, {"flow"}, {"boxes", "diagnostics"}, {"adhesion", "openings"}, {"solver"}, {"scene"}, {"options"},
           {"output"}, {"run"}]
 LEVEL = {room: level for level, rooms in enumerate(LEVELS) for room in rooms}
 ROOMS = ["src", "tests", "options", "scripts", "python", "packaging", "docs", "tools", "cmake", ".ci", ".github"]

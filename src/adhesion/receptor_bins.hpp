@@ -1,0 +1,59 @@
+// Receptors in bins at least as wide as bonds reach, so that partners are looked for in the bins around one alone.
+#pragma once
+
+#include "adhesion/receptors.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace eulastic {
+
+class ReceptorBins {
+public:
+  /// Of the whole domain, whose periodic sides they know.
+  ReceptorBins(const Domain &domain, double reach) : domain_(domain) {
+    for (int d = 0; d < domain.dimension(); ++d) count_[d] = std::max(1, static_cast<int>(length(d) / reach));
+  }
+  void add(std::size_t which, const Receptor &receptor) { bins_[bin_of(receptor)].push_back(which); }
+  /// visit(which) for those in the bins around a receptor, each once, in an order that depends on their places alone.
+  template <class Visit>
+  void for_near(const Receptor &receptor, const Visit &visit) const;
+
+private:
+  double length(int d) const { return domain_.spacing()[d] * domain_.domain_cells()[d]; }
+  std::array<int, 3> bin_of(const Receptor &receptor) const {
+    std::array<int, 3> bin{};
+    for (int d = 0; d < domain_.dimension(); ++d) {
+      const int plain = static_cast<int>(std::floor(receptor.place[d] / length(d) * count_[d]));
+      bin[d] = domain_.is_wall(d) ? std::clamp(plain, 0, count_[d] - 1) : (plain % count_[d] + count_[d]) % count_[d];
+    }
+    return bin;
+  }
+  // Bins beside one along d, itself included.
+  std::vector<int> near(int d, int bin) const {
+    std::vector<int> found;
+    for (int step = -1; step <= 1; ++step) {
+      const int at = domain_.is_wall(d) ? bin + step : (bin + step + count_[d]) % count_[d];
+      if (at >= 0 && at < count_[d] && std::find(found.begin(), found.end(), at) == found.end()) found.push_back(at);
+    }
+    return found;
+  }
+
+  const Domain &domain_;
+  std::array<int, 3> count_{1, 1, 1};
+  std::map<std::array<int, 3>, std::vector<std::size_t>> bins_;
+};
+
+template <class Visit>
+void ReceptorBins::for_near(const Receptor &receptor, const Visit &visit) const {
+  const std::array<int, 3> own = bin_of(receptor);
+  for (const int x : near(0, own[0]))
+    for (const int y : near(1, own[1]))
+      for (const int z : near(2, own[2]))
+        if (const auto bin = bins_.find({x, y, z}); bin != bins_.end())
+          for (const std::size_t which : bin->second) visit(which);
+}
+
+}  // namespace eulastic

@@ -1,0 +1,105 @@
+#include "options/adhesion_options.hpp"
+
+namespace eulastic {
+namespace {
+
+void add_region(Rows &rows, AdhesionPair &pair) {
+  Option &region = rows.add("region", "length", "the box, by its low and high corner, in which a wall is adhesive");
+  region.accepted = several(6, "number", any_number);
+  region.default_note = "all walls";
+  region.only_with = "-adhesion NAME-wall";
+  region.applies = [&pair] { return pair.to_wall(); };
+  region.read = [&pair](const std::string &value) {
+    double corners[6];
+    std::string wrong = read_reals(value, any_number, corners, 6);
+    for (int d = 0; d < 3 && wrong.empty(); ++d) {
+      pair.low[d] = corners[d];
+      pair.high[d] = corners[3 + d];
+      if (!(pair.low[d] <= pair.high[d])) wrong = "the low corner must be below the high one";
+    }
+    return wrong;
+  };
+  region.text = [&pair] {
+    if (pair.low[0] == -HUGE_VAL) return std::string();
+    Names items;
+    for (const Real3 *corner : {&pair.low, &pair.high})
+      for (const double place : *corner) items.push_back(to_text(place));
+    return join(items, ",");
+  };
+}
+
+}  // namespace
+
+std::string read_adhesion(const std::string &value, Config *config) {
+  Names words;
+  std::string wrong = read_words(value, {}, &words);
+  for (const std::string &word : words) {
+    const std::size_t dash = word.find('-');
+    const std::string names[2] = {word.substr(0, dash), dash == std::string::npos ? "" : word.substr(dash + 1)};
+    int found[2] = {-2, -2};
+    for (int n = 0; n < 2; ++n) {
+      if (n == 1 && names[n] == "wall") found[n] = AdhesionPair::wall;
+      for (std::size_t s = 0; s < config->species.size(); ++s)
+        if (config->species[s].name == names[n]) found[n] = static_cast<int>(s);
+    }
+    if (found[0] < 0 || found[1] == -2) return "\"" + word + "\" is no pair of species, or of a species and wall";
+    for (const AdhesionPair &pair : config->adhesion.pairs)
+      if ((pair.first == found[0] && pair.second == found[1]) || (pair.first == found[1] && pair.second == found[0]))
+        return "\"" + word + "\" is named twice";
+    AdhesionPair &pair = config->adhesion.pairs.emplace_back();
+    pair.name = word;
+    pair.first = found[0];
+    pair.second = found[1];
+  }
+  return wrong;
+}
+
+void add_adhesion(Rows &rows, Config &config) {
+  rows.group = "Adhesion";
+  Option &pairs = rows.add("adhesion", "",
+                           "which surfaces bind to which; each pair has the options of adhesion "
+                           "NAME1-NAME2");
+  pairs.accepted = "a list without spaces of NAME1-NAME2, two species or twice the same, or NAME-wall";
+  pairs.default_note = "none";
+  pairs.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
+  pairs.text = [&config] {
+    Names names;
+    for (const AdhesionPair &pair : config.adhesion.pairs) names.push_back(pair.name);
+    return join(names, ",");
+  };
+  Option &seed = rows.integer("adhesion_seed", config.adhesion.seed, {0, false, 4294967295.},
+                              "another seed is another chance for every bond");
+  seed.only_with = "-adhesion";
+  seed.applies = [&config] { return !config.adhesion.pairs.empty(); };
+  for (AdhesionPair &pair : config.adhesion.pairs) {
+    rows.group = "Adhesion " + pair.name;
+    std::string name = pair.name;
+    name[name.find('-')] = '_';
+    rows.prefix = "adhesion_" + name + "_";
+    kernels::BondLaw &law = pair.law;
+    rows.real("density", pair.density, positive, "1/area", "receptors per area on the bodies; in 2-D per length")
+        .required = true;
+    rows.real("reach", law.reach, positive, "length", "a free receptor binds to what is as near as this").required =
+        true;
+    rows.real("rate_on", law.rate_on, not_negative, "1/time", "rate at which a receptor within reach binds").required =
+        true;
+    rows.real("rate_off", law.rate_off, not_negative, "1/time", "rate at which a bond without tension breaks")
+        .required = true;
+    rows.real("bond_stiffness", law.stiffness, positive, "force/length", "stiffness of the spring that a bond is")
+        .required = true;
+    rows.real("bond_length", law.length, not_negative, "length", "length of a bond without tension");
+    rows.real("reactive_compliance", law.reactive_compliance, not_negative, "1/force",
+              "x/kT of Bell's law: the tension F multiplies the rate of rupture by exp(F x/kT)");
+    rows.real("catch_rate_off", law.catch_rate_off, not_negative, "1/time",
+              "rate of a second path of rupture, which tension closes: catch bonds");
+    rows.real("catch_compliance", law.catch_compliance, not_negative, "1/force",
+              "the tension F multiplies that rate by exp(-F c)");
+    rows.real(
+        "thermal_energy", law.thermal_energy, not_negative, "energy",
+        "kT, with which a stretched bond forms more seldom, in detailed balance; 0: at the same rate within reach");
+    add_region(rows, pair);
+    rows.prefix.clear();
+  }
+}
+
+}  // namespace eulastic
