@@ -203,6 +203,13 @@ void Adhesion::break_bonds(double dt) {
   }
 }
 
+// Receptors that may bind in this step: those that were free when it began.
+std::vector<char> Adhesion::find_free() const {
+  std::vector<char> free;
+  for (const Receptor &receptor : receptors_) free.push_back(receptor.alive() && !receptor.is_bound());
+  return free;
+}
+
 // The nearest wall that adheres to its species.
 bool Adhesion::bind_to_wall(double dt, std::size_t r) {
   const Domain &domain = flow_.domain;
@@ -265,17 +272,17 @@ Adhesion::Candidate Adhesion::nearest_partner(std::size_t r, const ReceptorBins 
   return nearest;
 }
 
-void Adhesion::form_bonds_of_bodies(double dt) {
+void Adhesion::form_bonds_of_bodies(double dt, const std::vector<char> &free) {
   double reach = 0;
   for (const AdhesionPair &pair : spec_.pairs)
     if (!pair.to_wall()) reach = std::max(reach, pair.law.reach);
   if (!(reach > 0)) return;
   ReceptorBins bins(flow_.domain, reach);
   for (std::size_t r = 0; r < receptors_.size(); ++r)
-    if (receptors_[r].alive() && !receptors_[r].is_bound()) bins.add(r, receptors_[r]);
+    if (free[r] && !receptors_[r].is_bound()) bins.add(r, receptors_[r]);
   for (std::size_t r = 0; r < receptors_.size(); ++r) {
     Receptor &receptor = receptors_[r];
-    if (!receptor.alive() || receptor.is_bound()) continue;
+    if (!free[r] || receptor.is_bound()) continue;
     const Candidate found = nearest_partner(r, bins);
     if (found.pair < 0) continue;
     if (random(r, 2) >= kernels::probability(spec_.pairs[found.pair].law.on_rate(found.distance), dt)) continue;
@@ -297,12 +304,10 @@ void Adhesion::note_formed(std::size_t r) {
                      static_cast<int>(receptor.pair), 0, 0});
 }
 
-void Adhesion::form_bonds(double dt) {
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    const Receptor &receptor = receptors_[r];
-    if (receptor.alive() && !receptor.is_bound() && bind_to_wall(dt, r)) note_formed(r);
-  }
-  form_bonds_of_bodies(dt);
+void Adhesion::form_bonds(double dt, const std::vector<char> &free) {
+  for (std::size_t r = 0; r < receptors_.size(); ++r)
+    if (free[r] && bind_to_wall(dt, r)) note_formed(r);
+  form_bonds_of_bodies(dt, free);
 }
 
 PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
@@ -312,8 +317,9 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscCall(move_receptors(dt));
   PetscCall(follow_surfaces());
   find_bonds();
+  const std::vector<char> free = find_free();
   break_bonds(dt);
-  form_bonds(dt);
+  form_bonds(dt, free);
   find_bonds();
   PetscFunctionReturn(0);
 }

@@ -79,11 +79,12 @@ private:
   PetscErrorCode follow_surfaces();
   double random(std::size_t receptor, unsigned which) const;
   void break_bonds(double dt);
-  void form_bonds(double dt);
+  std::vector<char> find_free() const;
+  void form_bonds(double dt, const std::vector<char> &free);
   bool bind_to_wall(double dt, std::size_t receptor);
   struct Candidate;
   Candidate nearest_partner(std::size_t receptor, const ReceptorBins &bins) const;
-  void form_bonds_of_bodies(double dt);
+  void form_bonds_of_bodies(double dt, const std::vector<char> &free);
   void note_formed(std::size_t receptor);
   void release(Receptor *receptor, double tension);
   void add_at(const double place[3], const Real3 &force, double factor, Field *field) const;

@@ -69,7 +69,7 @@ TEST_P(Checkpoint, GoesOnWithTheSameBits) {
   Scene writer, alone;
   RunPosition position;
   position.dt = 0.125;
-  position.outputs = {3, 2, 1, 0.5, 0.25, 0.75, {}};
+  position.outputs = {3, 2, 1, 0.5, 0.25, 0.75, {}, 0, {}};
   std::uint64_t expected = 0, hash = 0;
   ASSERT_EQ(build(run_communicator(), GetParam(), &writer), 0);
   ASSERT_EQ(advance(&writer, 7, &hash), 0);
