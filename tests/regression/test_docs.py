@@ -217,6 +217,31 @@ class Docs(unittest.TestCase):
             loaded = re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(https?:[^"]+)"', place.read_text())
             self.assertEqual([url for url in loaded if "canonical" not in url], [], place)
 
+    def test_citations_of_the_method_lead_somewhere(self):
+        """Sections and equations that sources, tests and pages cite stand on one page each, which the index of method.md links."""
+        index = (ROOT / "docs/method.md").read_text()
+        pages_of_method = {path: path.read_text() for path in [ROOT / "docs/method.md", *(ROOT / "docs/method").glob("*.md")]}
+        sections = [int(n) for text in pages_of_method.values() for n in re.findall(r"^## (\d+)\. ", text, re.MULTILINE)]
+        self.assertEqual(sorted(sections), list(range(1, max(sections) + 1)))
+        self.assertEqual([int(n) for n in re.findall(r"^\| \[(\d+)\. ", index, re.MULTILINE)], sorted(sections))
+        tags = [tag for text in pages_of_method.values() for tag in re.findall(r"\\tag\{([^}]*)\}", text)]
+        self.assertEqual(len(tags), len(set(tags)))
+        rows = {tag for row in re.findall(r"^\| \[\d+\..*", index, re.MULTILINE) for tag in re.findall(r"\((\d+[\d,a-z]*)\)", row)}
+        self.assertEqual(rows, set(tags))
+        known = {part for tag in tags for part in tag.split(",")}
+        cited = 0
+        for path in (path for folder in ("src", "tests", "scripts", "docs", "options") for path in sorted((ROOT / folder).rglob("*"))):
+            if not path.is_file() or path.suffix in (".png", ".jpg", ".svg", ".h5", ".stl", ".nrrd") or "__pycache__" in path.parts:
+                continue
+            text = path.read_text(errors="replace")
+            for numbers in re.findall(r"method\.md\)?,? sections? (\d+(?:(?:,| and| to) \d+)*)", text):
+                self.assertLessEqual({int(n) for n in re.findall(r"\d+", numbers)}, set(sections), path)
+                cited += 1
+            for equation in re.findall(r"method\.md\)?, \((\d+[a-z]?)\)", text):
+                self.assertIn(equation, known, path)
+                cited += 1
+        self.assertGreater(cited, 50)
+
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():
             for name in set(re.findall(r"\bscripts/[a-z0-9_./]+[a-z0-9_]", page.read_text())):
