@@ -189,6 +189,40 @@ class Docs(unittest.TestCase):
                 self.assertEqual(tables_by_hand(text), [], name)
                 self.assertEqual(numbers_by_hand(text) - set(GIVEN[name].split()), set(), f"{name}.md: is it measured?")
 
+    def test_exceptions_to_fast_are_those_of_the_tables(self):
+        """performance.md names in its prose the cases and grids where `classic` is faster or more accurate than `fast`, no others."""
+        text = (ROOT / "docs/performance.md").read_text()
+
+        def rows(name):
+            table = re.search(rf"<!-- table {name} -->(.*?)<!-- end -->", text, re.DOTALL)[1]
+            return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if re.match(r"\| [a-z].*\d", line)]
+        found = set()
+        for case, cells, fast, _, classic, _ in rows("work_precision"):
+            if "-" not in (fast, classic):
+                (error, time), (error_classic, time_classic) = (map(float, re.findall(r"[\d.e+-]+", cell)) for cell in (fast, classic))
+                if error_classic < error or time_classic < time:
+                    found.add(f"{case}, {cells}")
+        race = {(row[0], row[1], row[2]): (float(row[3]), float(row[6])) for row in rows("race")}
+        compared = 0
+        for (case, method, cells), (error, time) in race.items():
+            if method == "classic":
+                other_error, other_time = race[case, "fast", cells]
+                compared += 1
+                if error < other_error or time < other_time:
+                    found.add(f"{case}, {cells}")
+        self.assertGreaterEqual(compared, 5)
+        self.assertEqual(found, set(re.findall(r"`([a-z_0-9 ]+, \d+)`", text)))
+
+    def test_soft_spheres_need_what_their_errors_say(self):
+        """The cells per radius for 1 % of resolution.md and of the note in validation.md follow from the coefficients of S8."""
+        page = (ROOT / "docs/validation.md").read_text()
+        coefficients = dict(re.findall(r"^\| S8 \| Ca 0?(\.\d+): error of D at h, of \(h/R\)\^2 \|(?:[^|]*\|){3} *([\d.]+)", page, re.MULTILINE))
+        cells = {capillary: round((100 * float(c)) ** 0.5) for capillary, c in coefficients.items()}
+        self.assertEqual(sorted(cells), [".05", ".1", ".2"])
+        words = f"{cells['.2']}, {cells['.1']} and {cells['.05']} cells per radius at Ca = .2, .1 and .05"
+        self.assertIn(words, page)
+        self.assertIn(f"{words} (validation, S8)", (ROOT / "docs/howto/resolution.md").read_text())
+
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""
         def anchors(page):

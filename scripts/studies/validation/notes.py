@@ -15,7 +15,7 @@ NOTES = {
           "inertia the flow should balance the stress from the start; a forced step delays the disc by about a step, once. "
           "The automatic step therefore begins small and doubles (docs/method.md, section 8).",
     "S8": "Extrapolated with (R/L)^3 and h^2 from 8 to 12 or 16 cells per radius. Without extrapolation in h the error is (h/R)^2 "
-          "times the coefficient in the table, so that 1 % needs 16 to 18 cells per radius.",
+          "times the coefficient in the table, so that 1 % needs 8, 16 and 20 cells per radius at Ca = .2, .1 and .05.",
     "S9": "The reference is D(t) of the exact transient (tests/reference/ringing_disc.csv): beside the mode s = -1.441313 +- "
           "7.313910 i a disc that is let go excites the continuous spectrum of the viscous fluid, so that a fitted rate "
           "depends on its window. Our error is of first order or a little less.",
