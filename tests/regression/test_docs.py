@@ -223,6 +223,17 @@ class Docs(unittest.TestCase):
         self.assertIn(words, page)
         self.assertIn(f"{words} (validation, S8)", (ROOT / "docs/howto/resolution.md").read_text())
 
+    def test_the_note_on_tweezers_is_that_of_its_rows(self):
+        """Validation, V6: the largest error of the axial diameter, and the growth of the area."""
+        page = (ROOT / "docs/validation.md").read_text()
+        axial = re.findall(r"^\| V6 \| axial diameter at \d+ pN, um \|[^|]*\|[^|]*\|([^|]*)\|([^|]*)\|", page, re.MULTILINE)
+        self.assertEqual(len(axial), 6)
+        largest = max(abs(float(reference) - float(ours)) for reference, ours in axial)
+        area = float(re.search(r"^\| V6 \| largest change of the membrane's area \|(?:[^|]*\|){3}([^|]*)\|", page, re.MULTILINE)[1])
+        note = re.findall(r"^- V6: .*", page, re.MULTILINE)[-1]
+        self.assertIn(f"within {largest:.2f} um".replace("0.", "."), note)
+        self.assertIn(f"{100 * area:.1f} %", note)
+
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""
         def anchors(page):
