@@ -223,6 +223,20 @@ class Docs(unittest.TestCase):
         self.assertIn(words, page)
         self.assertIn(f"{words} (validation, S8)", (ROOT / "docs/howto/resolution.md").read_text())
 
+    def test_durations_agree(self):
+        """README.md, the scripts and the main case give the same durations."""
+        def text(name):
+            return re.sub(r"\s+(# )?", " ", (ROOT / name).read_text())
+        for name in "README.md", "scripts/quickstart", "options/channel_rbc.opts":
+            self.assertRegex(text(name), r"(?i)a quarter of a minute", name)
+        readme, words = text("README.md"), text("scripts/test")
+        self.assertIn("must pass: about ten minutes on two cores, after the build", words)
+        self.assertIn("The tests take about ten minutes after a build", readme)
+        self.assertIn("under five minutes, after the build", words)
+        self.assertIn("`scripts/test --quick` takes less than five minutes", readme)
+        self.assertIn("--full all tests, some hours", words)
+        self.assertIn("`scripts/test --full` runs all tests and takes hours", readme)
+
     def test_the_note_on_tweezers_is_that_of_its_rows(self):
         """Validation, V6: the largest error of the axial diameter, and the growth of the area."""
         page = (ROOT / "docs/validation.md").read_text()
