@@ -248,6 +248,15 @@ class Docs(unittest.TestCase):
         self.assertIn(f"within {largest:.2f} um".replace("0.", "."), note)
         self.assertIn(f"{100 * area:.1f} %", note)
 
+    def test_kinds_of_boundaries_in_python(self):
+        """The docstring of Run.side names every kind of boundary that the options have."""
+        sys.path.insert(0, str(ROOT / "python"))
+        from eulastic.reading import Run
+        accepted = re.search(r"^\| `-boundary_xmin` \|.*\| one of ([\w, ]+) \|$", (ROOT / "docs/options.md").read_text(), re.MULTILINE)[1]
+        kinds = {kind for kind in accepted.split(", ") if kind != "same"} | {"periodic"}
+        self.assertGreaterEqual(len(kinds), 6)
+        self.assertEqual({kind for kind in kinds if kind in Run.side.__doc__}, kinds)
+
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""
         def anchors(page):
