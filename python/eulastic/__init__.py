@@ -1,4 +1,4 @@
-"""Runs of Eulastic, soft bodies in incompressible flow: start them, sweep over options, read and average what they wrote.
+"""Starts runs of Eulastic and sweeps over options, reads their results as numpy arrays, and computes averages.
 
     run = eulastic.read("output/mine")
     run = eulastic.run("mine.opts", "output/stiff", rbc_shear_modulus=0.05)

@@ -1,5 +1,5 @@
-"""Numbers that are computed from a run: averages over time with standard errors, pressure drop, apparent viscosity, averages
-of the wall shear stress, and the cell-free layer. `since` and `until` bound the time of what is averaged."""
+"""Computes averages over time with standard errors, pressure drop, apparent viscosity, averages of the wall shear stress, and the
+cell-free layer of a run. `since` and `until` bound the time of the average."""
 import collections
 import types
 
@@ -11,7 +11,7 @@ Average = collections.namedtuple("Average", "mean standard_error correlation_tim
 
 
 def weights(time):
-    """Weights of the trapezoidal rule, whose sum is 1; equal ones if there is one time only."""
+    """Returns the weights of the trapezoidal rule, with the sum 1; equal weights if there is only one time."""
     if len(time) < 2 or time[-1] == time[0]:
         return numpy.full(len(time), 1 / max(1, len(time)))
     steps = numpy.diff(time)
@@ -19,7 +19,7 @@ def weights(time):
 
 
 def correlated_rows(deviations):
-    """The integrated autocorrelation time in rows, at least 1: 1 + 2 sum of r_k, the initial positive sequence of Geyer,
+    """Returns the integrated autocorrelation time in rows, at least 1: 1 + 2 sum of r_k, the initial positive sequence of Geyer,
     "Practical Markov Chain Monte Carlo", Statistical Science 7 (1992). Not a number if it is longer than a tenth of the rows."""
     n = len(deviations)
     variance = deviations @ deviations / n
@@ -35,10 +35,10 @@ def correlated_rows(deviations):
 
 
 def time_average(time, values, since=-numpy.inf, until=numpy.inf):
-    """Average(mean, standard_error, correlation_time, independent) of values (nt) at times (nt), which are evenly spaced, as
-    rows of series.csv are. The mean is an integral by the trapezoidal rule. The standard error takes into account that near
-    rows are alike: there are `independent` samples. It is not a number where the rows are too few to tell (less than 4, or
-    correlated over half of them), as in a flow that still develops."""
+    """Returns Average(mean, standard_error, correlation_time, independent) of values (nt) at evenly spaced times (nt), such as the
+    rows of series.csv. The mean is an integral by the trapezoidal rule. The standard error accounts for the correlation of
+    neighbouring rows; `independent` is the number of independent samples. The error is not a number for less than 4 rows, or if
+    the correlation extends over half of them, as in a developing flow."""
     time, values = numpy.asarray(time, float), numpy.asarray(values, float)
     used = (time >= since) & (time <= until)
     time, values = time[used], values[used]
@@ -59,7 +59,7 @@ def dimension(run):
 
 
 def drops(run):
-    """(3, nt): along x, y and z at the rows of series.csv."""
+    """Returns the pressure drops along x, y and z at the rows of series.csv, (3, nt)."""
     series, number = run.series, lambda name, default: float(run.options.get(name, default))
     swing = numpy.cos(number("body_force_frequency", 0) * series.time + number("body_force_phase", 0))
     found = number("fluid_density", 1) * numpy.outer(vector(run, "body_force") * run.length, swing)
@@ -71,22 +71,22 @@ def drops(run):
 
 
 def direction_of_flow(run):
-    """The direction with the largest pressure drop. ValueError if nothing drives the flow."""
+    """Returns the direction with the largest pressure drop. ValueError if nothing drives the flow."""
     largest = abs(drops(run)).max(axis=1)
     if not largest.max() > 0:
-        raise ValueError(f"{run.directory}: neither a body force nor the pressure of sides drives this flow")
+        raise ValueError(f"{run.directory}: neither a body force nor the pressure of boundaries drives this flow")
     return int(largest.argmax())
 
 
 def pressure_drop(run, d=None):
-    """(nt) at the rows of series.csv: the drop along direction d (0, 1, 2; by default the one with the largest drop), of the
-    body force (density x force x length of the box) and between inflow, pressure and outflow sides."""
+    """Returns the pressure drop (nt) at the rows of series.csv along direction d (0, 1, 2; by default the one with the largest
+    drop): that of the body force (density x force x length of the box) and that between inflow, pressure and outflow boundaries."""
     return drops(run)[direction_of_flow(run) if d is None else d]
 
 
 def channels(run, d):
-    """[(low, high, low wall, high wall)]: where fluid is along d between walls of the box and slabs. A wall is "ymin", ... or a
-    slab and its face, "NAME_ymax", ...; of sides that are no walls it is None. Across a periodic side `high` is beyond the box."""
+    """Returns [(low, high, low wall, high wall)] for the fluid along d between walls of the box and slabs. A wall is "ymin", ... or a
+    slab and its face, "NAME_ymax", ...; it is None for other boundaries. Across a periodic boundary `high` is beyond the box."""
     axis, length, spaces = "xyz"[d], run.length[d], []
     slabs = [name for name, shape in run.species.items()
              if shape == "slab" and run.is_fixed(name) and run.options.get(f"{name}_axis", "y") == axis]
@@ -108,8 +108,8 @@ def channels(run, d):
 
 
 def channel(run, d):
-    """(height of the fluid along d, gap): of the only channel between walls normal to d, with what a plane of symmetry mirrors
-    in the gap; (0, 0) if there is none or there are several."""
+    """Returns (height of the fluid along d, gap) of the only channel between walls normal to d; the gap includes the mirror image
+    behind a plane of symmetry. (0, 0) if there is no channel or there are several."""
     spaces = channels(run, d)
     if len(spaces) != 1:
         return 0.0, 0.0
@@ -123,17 +123,17 @@ def tubes(run):
 
 
 def refuse_inner_walls(run, what):
-    """In vessels from a file the distance of the walls is not known here."""
+    """Raises ValueError for vessels from a file, whose walls have no known distance."""
     inner = [name for name, shape in run.species.items() if shape == "voxels" and run.is_fixed(name)]
     if inner:
         raise ValueError(f"{run.directory}: {what}: {inner[0]} is neither a tube, a slab nor a wall of the box")
 
 
 def apparent_viscosity(run, species=None):
-    """(nt) at the rows of series.csv: the viscosity with which a Newtonian fluid would have the flow rate of this run, driven
-    by its pressure drop. In a tube, `species` or the only one, it is the column NAME_apparent_viscosity (Poiseuille's law); in
-    a plane channel between two walls of the box or slabs, pressure drop / length x gap^2 / (12 x mean velocity of the fluid). It
-    means what it says in steady flow, or averaged over periods. 0 where nothing flows. ValueError in any other flow."""
+    """Returns the viscosity (nt), at the rows of series.csv, with which a Newtonian fluid would have the flow rate of this run at its
+    pressure drop. In a tube, `species` or the only one, it is the column NAME_apparent_viscosity (Poiseuille's law); in a plane
+    channel between two walls of the box or slabs, pressure drop / length x gap^2 / (12 x mean velocity of the fluid). It is
+    meaningful in steady flow or averaged over periods. 0 where nothing flows. ValueError in any other flow."""
     vessels = [species] if species else tubes(run)
     if len(vessels) == 1 and f"{vessels[0]}_apparent_viscosity" in run.series.dtype.names:
         return run.series[f"{vessels[0]}_apparent_viscosity"]
@@ -156,8 +156,8 @@ def between(run, since, until):
 
 
 def wall_shear(run, where="", since=-numpy.inf, until=numpy.inf):
-    """Averages over the snapshots of the shear stress on vessels and obstacles, (nz, ny, nx), or with where="ymin", ... on that
-    wall of the box, one layer. The namespace has `mean`, the mean vector (..., 3); `tawss`, the mean of its size (time-averaged
+    """Returns averages over the snapshots of the shear stress on vessels and obstacles, (nz, ny, nx), or with where="ymin", ... on
+    that wall of the box, one layer. The namespace has `mean`, the mean vector (..., 3); `tawss`, the mean magnitude (time-averaged
     wall shear stress); and `osi`, the oscillatory shear index (1 - |mean| / tawss) / 2: 0 where the stress keeps its direction,
     1/2 where its mean vanishes, not a number where there is no stress."""
     snapshots = between(run, since, until)
@@ -172,7 +172,8 @@ def wall_shear(run, where="", since=-numpy.inf, until=numpy.inf):
 
 
 def first_crossing(fraction, distance):
-    """Where each row of (n, m), values at growing distances (m), first reaches 1/2, linear in between; not a number if never."""
+    """Returns the distance at which each row of (n, m), values at increasing distances (m), first reaches 1/2, by linear
+    interpolation; not a number if it never does."""
     inside = fraction >= 0.5
     at, rows = inside.argmax(axis=1), numpy.arange(len(fraction))
     before = numpy.maximum(at - 1, 0)
@@ -183,8 +184,8 @@ def first_crossing(fraction, distance):
 
 
 def rays_of_tube(run, name):
-    """Points (n, m, 3) from the lumen's surface to its axis, about a cell apart around and along, a quarter of one inward; and
-    their distances (m) from the surface."""
+    """Returns points (n, m, 3) from the surface of the lumen to its axis, about a cell apart around and along the axis and a quarter
+    of a cell inward, and their distances (m) from the surface."""
     axis, radius = "xyz".index(run.options.get(f"{name}_axis", "y")), float(run.options[f"{name}_radius"])
     centre, h = vector(run, f"{name}_centre"), min(run.spacing[:dimension(run)])
     turns = int(numpy.ceil(2 * numpy.pi * radius / h)) if dimension(run) == 3 else 2
@@ -203,7 +204,7 @@ def rays_of_tube(run, name):
 
 
 def layers(run, fraction):
-    """{wall: distances of the nearest bodies (n)} in one snapshot."""
+    """Returns {wall: distances of the nearest bodies (n)} in one snapshot."""
     found, periodic = {}, [not run.is_bounded(d) for d in (2, 1, 0)]
     for name in tubes(run):
         points, distance = rays_of_tube(run, name)
@@ -225,8 +226,8 @@ def layers(run, fraction):
 
 
 def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
-    """The layer beside the walls that is free of bodies, of all species that move or of one. On a line from every cell of the
-    wall inward, in a tube to its axis, it ends where the solid fraction reaches 1/2; lines that meet no body do not count.
+    """Returns the thickness of the layer beside the walls without bodies of all moving species, or of one. On a line from every cell
+    of the wall inward, in a tube to its axis, it ends where the solid fraction reaches 1/2; lines without a body do not count.
 
     The namespace has `time` (nt) of the snapshots; `thickness` (nt), the mean over all walls, and `walls`, {wall: (nt)} for
     each (ymin, ..., NAME_ymax, ... of a slab, or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time
@@ -252,6 +253,6 @@ def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
 
 
 def mean_of(distances):
-    """Of the numbers among them; not a number if there are none."""
+    """Returns the mean of the finite distances; not a number if there are none."""
     met = distances[numpy.isfinite(distances)]
     return float(met.mean()) if met.size else numpy.nan

@@ -88,14 +88,14 @@ def is_finished(directory):
 
 
 class Run:
-    """A finished or unfinished run; what has not been written yet is empty or None. FileNotFoundError if there is none;
-    print(run) says what is there.
+    """A finished or unfinished run. Parts that have not been written yet are empty or None. Raises FileNotFoundError if the
+    directory holds no run; print(run) summarises it.
 
     options    {name: value} as resolved
     summary    summary.json
     series     numpy record array, one entry per line of series.csv, fields named by its header
     bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
-    probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ...: those that are there
+    probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ..., if they exist
     snapshots  list of Snapshot in the order of time
     """
 
@@ -124,8 +124,8 @@ class Run:
         return {name: self.options.get(name + "_shape") for name in names.split(",")} if names else {}
 
     def is_fixed(self, species):
-        """Whether the species is a vessel or an obstacle (rigid, attached or from a file, membranes aside): no body that the flow
-        carries along."""
+        """Whether the species is a vessel or an obstacle (rigid, anchored or from a file, but no membrane), which the flow does not
+        carry along."""
         shape, of = self.species[species], lambda name, default: self.options.get(f"{species}_{name}", default)
         attached = of("attached", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
         law = of("law", "neo_hookean")
@@ -145,7 +145,7 @@ class Run:
         return self.length / self.cells
 
     def side(self, d, high):
-        """periodic, wall or symmetry."""
+        """Kind of the low (0) or high (1) boundary in direction d: periodic, wall, symmetry, inflow, pressure or outflow."""
         name = "boundary_" + "xyz"[d]
         both, own, other = (self.options.get(name + end, "same") for end in ("", *("min", "max")[::1 - 2 * high]))
         both = "periodic" if both == "same" else both
@@ -175,7 +175,7 @@ class Run:
 
 
 def _unless_damaged(read, path):
-    """None, with a warning, of an HDF5 file that is cut or damaged: the program would refuse it."""
+    """Returns None, with a warning, for a truncated or damaged HDF5 file."""
     try:
         return read(path)
     except (OSError, KeyError) as error:
@@ -184,7 +184,7 @@ def _unless_damaged(read, path):
 
 
 def read_series(path):
-    """The complete lines of a table, as the program takes them: one that is cut short is left out. None without a header."""
+    """Returns the complete lines of a table; a truncated last line is left out. None without a header."""
     lines = path.read_text().split("\n")[:-1]
     if not lines:
         return None
@@ -194,7 +194,7 @@ def read_series(path):
 
 
 def read_bodies(path):
-    """Arrays of bodies.h5, cut to the rows that all of them have. None, with a warning, of a damaged file."""
+    """Returns the arrays of bodies.h5, cut to the rows that all of them have. None, with a warning, for a damaged file."""
     def read(path):
         with h5py.File(path) as file:
             return {name: item[...] for name, item in file.items()}
@@ -209,8 +209,8 @@ def read_bodies(path):
 
 
 def over_time(rows):
-    """Rows of profiles or probes as arrays over time: time (nt); every other column (nt, n), but places, which do not change,
-    (n). A last time whose rows are not all there is left out."""
+    """Rows of profiles or probes as arrays over time: time (nt); positions (n), which are constant; every other column (nt, n).
+    A last time with missing rows is left out."""
     names = [name for name in rows.dtype.names if name != "time"]
     count = int((rows.time == rows.time[0]).sum()) if len(rows) else 0
     whole = rows[:len(rows) // count * count] if count else rows

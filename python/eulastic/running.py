@@ -1,5 +1,4 @@
-"""Runs of the program, one or many, by scripts/run: one that is finished is not repeated, one that was interrupted goes
-on."""
+"""Starts one or many runs by scripts/run. Finished runs are not repeated; interrupted runs are continued."""
 import collections.abc
 import concurrent.futures
 import decimal
@@ -20,8 +19,8 @@ SCALARS = int, float, str, bool, type(None)
 
 
 class RunError(RuntimeError):
-    """A run that did not come to its end: the program's own line. exit_code is the program's (docs/reliability.md),
-    directory where the run is; table, of a sweep, the rows that did."""
+    """A run that did not reach its end, with the program's message. exit_code is that of the program (docs/reliability.md),
+    directory that of the run; table contains the successful rows of a sweep."""
 
     def __init__(self, text, exit_code=None, directory=None, table=None):
         super().__init__(text)
@@ -29,8 +28,8 @@ class RunError(RuntimeError):
 
 
 def option_value(value):
-    """The text that the program reads: True is true, numbers keep all their digits, sequences and arrays have commas, sequences
-    of sequences (points) colons between them; texts and paths stay as they are. TypeError for anything else."""
+    """Returns the text of a value for the program: True is true, numbers keep all digits, sequences and arrays are joined by commas,
+    sequences of sequences (points) by colons; strings and paths are unchanged. TypeError for anything else."""
     if isinstance(value, (numpy.generic, numpy.ndarray)):
         value = value.tolist()
     if isinstance(value, (str, os.PathLike, bytes)):
@@ -50,7 +49,7 @@ def option_value(value):
 
 
 def option_words(options):
-    """{name: text}; options that are None are not given. TypeError names the option."""
+    """Returns {name: text} without options that are None. TypeError names the option."""
     words = {}
     for name, value in options.items():
         try:
@@ -62,13 +61,13 @@ def option_words(options):
 
 
 def stop(process):
-    """Asks all that it has started to end: the program writes a checkpoint."""
+    """Asks a run and its processes to end; the program then writes a checkpoint."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGTERM)
 
 
 def launch(case, directory, ranks, options, say, replace=False, started=lambda process: None):
-    """Runs to the end and returns the Run; options are texts, `say` gets the lines on the way."""
+    """Runs to the end and returns the Run; options are strings, and `say` is called with each line."""
     words = [word for name, text in options.items() for word in (f"-{name}", text)]
     command = ["bash", SCRIPT, "--ranks", str(ranks), *(["--replace"] if replace else []), case, directory, *words]
     # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
@@ -87,22 +86,22 @@ def launch(case, directory, ranks, options, say, replace=False, started=lambda p
         process.wait()
         process.stdout.close()
     if process.returncode:
-        told = [line for line in lines if line.startswith("eulastic: error: ")] or lines[-1:] or ["it ended in silence"]
+        told = [line for line in lines if line.startswith("eulastic: error: ")] or lines[-1:] or ["the program ended without a message"]
         raise RunError(told[0].removeprefix("eulastic: error: "), process.returncode, directory)
     return Run(directory)
 
 
 def run(case, output_dir=None, ranks=2, progress=True, replace=False, **options):
-    """Runs a case, a file or the name of one that comes with the program, and returns its Run.
+    """Runs a case, which is a file or the name of a case of options/, and returns its Run.
 
-    output_dir  where the results go, by default output/CASE
-    progress    prints the program's lines: percent, time left; a function is called with each
-    replace     a run that is there is lost; otherwise one that has other options or a later end is a RunError
-    options     those of the program without dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0),
+    output_dir  directory of the results, by default output/CASE
+    progress    whether to print the program's lines (percentage, time left), or a function that is called with each
+    replace     whether to replace an existing run; otherwise a run with other options or a later end raises RunError
+    options     options of the program without the dash: rbc_shear_modulus=0.05, body_force=(1e-3, 0, 0),
                 probe_points=[(0, 1, 2), (3, 4, 5)]; None: not given
 
-    RunError says what was wrong, in the program's words. A run that is there, finished and of the same options is only
-    read; one that was interrupted goes on.
+    RunError contains the program's message. A finished run with the same options is only read; an interrupted run is
+    continued.
     """
     directory = output_dir or pathlib.Path("output") / pathlib.Path(case).stem
     say = progress if callable(progress) else print if progress else lambda _: None
@@ -112,11 +111,11 @@ def run(case, output_dir=None, ranks=2, progress=True, replace=False, **options)
 def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, replace=False, **options):
     """Runs a case with every combination of the options in `grid`, {option: values}, `jobs` at a time.
 
-    Returns a numpy record array with a row per run, in the order of the grid: the options of the grid, the numbers and
-    words of summary.json, and `run`, the Run. Its directories are output_dir/OPTION=VALUE+..., by default in
-    output/CASE_sweep; what is finished there is not repeated. If runs fail the others go on to their end, and RunError
-    says what was wrong with each; its `table` has the rows of the others. `progress` prints a line when a run has ended;
-    `ranks` are those of each run, `options` and `replace`, as in run(), are for all.
+    Returns a numpy record array with one row per run, in the order of the grid: the swept options, the numbers and strings of
+    summary.json, and `run`, the Run. The directories are output_dir/OPTION=VALUE+..., by default in output/CASE_sweep; finished
+    runs are not repeated. If runs fail, the others continue to their end, and RunError lists the messages; its `table` has the
+    rows of the others. `progress` prints a line when a run has ended; `ranks` is the number for each run; `options` and
+    `replace` apply to all runs, as in run().
     """
     folder = pathlib.Path(output_dir or pathlib.Path("output") / f"{pathlib.Path(case).stem}_sweep")
     points = [dict(zip(grid, values)) for values in itertools.product(*grid.values())]

@@ -16,15 +16,15 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
        "species alone"},
       {{"neumann", "dirichlet", "farfield"},
-       "a side of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both sides of a "
-       "direction, -boundary_xmin and -boundary_xmax for each"},
+       "a boundary of the box is periodic, wall, symmetry, inflow, pressure or outflow: -boundary_x for both "
+       "boundaries "
+       "of a direction, -boundary_xmin and -boundary_xmax for each"},
       {{"prescribed", "torque"},
-       "bodies go with the flow, or are rigid (-NAME_law rigid) and go as -NAME_velocity and -NAME_angular_velocity "
-       "say: "
-       "a force on a rigid one cannot be given"},
+       "bodies are carried by the flow, or are rigid (-NAME_law rigid) and move as -NAME_velocity and "
+       "-NAME_angular_velocity prescribe; a force on a rigid body cannot be prescribed"},
       {{"shell", "plate"}, "membranes (-NAME_law membrane) are thin: they resist shear, change of area and bending"},
       {{"marangoni", "surfactant", "wetting"},
-       "-NAME_surface_tension is one number for a species, and surfaces meet walls at 90 degrees"},
+       "-NAME_surface_tension is constant for a species, and surfaces meet walls at 90 degrees"},
       {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
        "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
       {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",
@@ -35,12 +35,13 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "the fluid is Newtonian (-fluid_viscosity), a species may have another viscosity (-NAME_viscosity), and every "
        "eddy is resolved"},
       {{"temperature", "heat", "thermal", "concentration", "diffusion", "scalar", "solute", "salt", "charge"},
-       "velocity, pressure and bodies are all that is computed"},
+       "only velocity, pressure and bodies are computed"},
       {{"adhesion", "friction", "repulsion", "lubrication", "aggregation"},
-       "bodies that touch are kept apart by what the grid resolves of the fluid between them; no other law of contact"},
+       "bodies in contact are separated by the fluid that the grid resolves between them; there is no other contact "
+       "law"},
       {{"refinement", "refine", "amr", "adaptive", "stretching", "grading", "unstructured"},
-       "one uniform grid; -grid_cells and -grid_length"},
-      {{"gpu", "cuda", "hip"}, "processors only; ranks of MPI and -threads"},
+       "the grid is uniform; -grid_cells and -grid_length"},
+      {{"gpu", "cuda", "hip"}, "the program runs on processors only, with ranks of MPI and -threads"},
   };
   return table;
 }

@@ -18,23 +18,23 @@ const Names method_names{"fast", "classic"};
 void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
   rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
-                "cells in x, y, z; 1 in z is 2-D, shapes then ignore z");
+                "number of cells in x, y, z; 1 in z selects 2-D, where shapes ignore z");
   rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
   for (int d = 0; d < 3; ++d) {
     const std::string name = std::string("boundary_") + "xyz"[d];
-    rows.choice(name, config.boundary.both[d], boundary_names, std::string("both sides in ") + "xyz"[d]);
+    rows.choice(name, config.boundary.both[d], boundary_names, std::string("both boundaries in ") + "xyz"[d]);
     for (int high = 0; high < 2; ++high)
       rows.choice(name + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
-                  "this side alone; same: as the option for both sides says");
+                  "this boundary alone; same: as the option for both boundaries");
   }
   const std::size_t processors = rows.rows.size();
   for (int d = 0; d < 3; ++d)
     rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
-                  std::string("ranks along ") + "xyz"[d] + "; 0 = chosen by the program");
+                  std::string("ranks along ") + "xyz"[d] + "; 0 = automatic");
   rows.integers("threads", &config.threads, 1, {1, false, 1024},
-                "threads per rank, which share its planes of cells, in 2-D rows");
+                "threads per rank; they share its planes of cells, in 2-D its rows, and its bodies in boxes");
   rows.boolean("balance", config.balance,
-               "cut y and z so that ranks have about as much to do, by an estimate at the start and at restarts");
+               "load balance: cut y and z by the estimated cost of the cells, at the start and at restarts");
   rows.allow_change(processors);
 }
 
@@ -46,11 +46,12 @@ void add_walls(Rows &rows, Config &config) {
       WallMotion &motion = config.sides[d][side].motion;
       const std::size_t first = rows.rows.size();
       rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
-                "velocity U; the component normal to the wall is 0");
+                "velocity U of the wall; its normal component must be 0");
       rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
       rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
       for (std::size_t r = first; r < rows.rows.size(); ++r) {
-        rows.rows[r].only_with = std::string("-boundary_") + "xyz"[d] + " wall";
+        rows.rows[r].only_with =
+            std::string("-boundary_") + "xyz"[d] + " wall or -boundary_" + "xyz"[d] + (side ? "max" : "min") + " wall";
         rows.rows[r].applies = [&config, d, side] { return config.boundary.is_wall(d, side); };
       }
     }
@@ -59,12 +60,12 @@ void add_walls(Rows &rows, Config &config) {
 void add_flow(Rows &rows, Config &config) {
   rows.group = "Fluid";
   Fluid &fluid = config.fluid;
-  rows.real("fluid_density", fluid.density, positive, "mass/volume", "density, of the bodies too");
+  rows.real("fluid_density", fluid.density, positive, "mass/volume", "density of fluid and bodies");
   rows.real("fluid_viscosity", fluid.viscosity, not_negative, "mass/length/time",
-            "dynamic viscosity, of bodies too unless they have -NAME_viscosity");
-  rows.boolean("fluid_inertia", fluid.inertia, "false drops v.grad v");
+            "dynamic viscosity of the fluid, and of bodies without -NAME_viscosity");
+  rows.boolean("fluid_inertia", fluid.inertia, "whether the momentum equation has the term v.grad v");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
-            "force per mass, F cos(frequency t + phase)");
+            "force per mass F cos(frequency t + phase) on fluid and bodies");
   rows.real("body_force_frequency", fluid.body_force.frequency, not_negative, "1/time", "angular frequency");
   rows.real("body_force_phase", fluid.body_force.phase, any_number, "rad", "phase");
 
@@ -79,15 +80,16 @@ void add_flow(Rows &rows, Config &config) {
     return initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
            initial.kind != InitialVelocity::couette;
   };
-  rows.real("initial_velocity_mean", initial.mean, any_number, "length/time", "added to every initial flow");
+  rows.real("initial_velocity_mean", initial.mean, any_number, "length/time",
+            "mean velocity that is added to the initial flow");
   rows.path("initial_state", config.initial_state,
-            "HDF5 file with fields of the start, or a snapshot; what it holds wins over the options (docs/outputs.md)")
+            "HDF5 file with initial fields, or a snapshot; its fields override the options (docs/outputs.md)")
       .names_file = any_file;
 }
 
 void add_bodies(Rows &rows, Config &config) {
   rows.group = "Bodies";
-  Option &species = rows.add("species", "", "names of the species; each has the options of species NAME");
+  Option &species = rows.add("species", "", "names of the species; each has its own set of the options NAME_...");
   species.accepted = "a list without spaces of names made of letters, digits and _, beginning with a letter";
   species.default_note = "none";
   species.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
@@ -98,7 +100,7 @@ void add_bodies(Rows &rows, Config &config) {
   };
   rows.boolean(
       "body_series", config.body_series,
-      "name, follow and measure every body; false: no labels, no bodies.h5, no body in snapshots, and no cost");
+      "label, track and measure every body; false saves this cost: no labels, no bodies.h5, no body in snapshots");
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
     add_species_rows(rows, spec, !config.initial_state.empty());
@@ -119,13 +121,14 @@ std::string by_method(const Option &row, Method &method) {
 void add_method(Rows &rows, Config &config) {
   rows.group = "Method";
   Method &method = config.method;
-  rows.choice("method", method.kind, method_names, "second order with bodies at half steps, or the paper's");
+  rows.choice("method", method.kind, method_names,
+              "fast: second order in time, with bodies at half steps; classic: the scheme of the original paper");
   const std::size_t parts = rows.rows.size();
   rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"}, "super time stepping RKL2, or one explicit stage");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
-              "solid fraction: sharp and conservative, or WENO5");
+              "transport of the solid fraction: plic is sharp and conservative; or WENO5");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
-              "B outside bodies: extended, or reset to I");
+              "B outside bodies: extrapolated, or reset to I");
   rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
               "elastic force within a step: linear in time, or that of its middle");
   rows.restrict(parts, "method", method.kind, method_names, {MethodKind::fast});
@@ -135,10 +138,12 @@ void add_method(Rows &rows, Config &config) {
               "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
               "-pressure_pc_type");
   const std::size_t first = rows.rows.size();
-  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one, "most sweeps per step");
-  rows.real("acm_tolerance", method.acm_tolerance, positive, "", "sweep until rms(div v) h/U is below");
-  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4}, "increments of earlier steps used as directions");
-  rows.boolean("acm_coarse", method.acm_coarse, "sweep along a V-cycle over coarse grids");
+  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one,
+                "largest number of pressure iterations (sweeps) per step");
+  rows.real("acm_tolerance", method.acm_tolerance, positive, "", "iterate until rms(div v) h/U is below this");
+  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4},
+                "number of increments of earlier steps that are used as search directions");
+  rows.boolean("acm_coarse", method.acm_coarse, "precondition the iterations by a V-cycle over coarse grids");
   rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
   rows.allow_change(pressure);
   for (std::size_t r = parts; r < rows.rows.size(); ++r) rows.rows[r].default_note = by_method(rows.rows[r], method);
@@ -150,8 +155,8 @@ void add_profile(Rows &rows, ProfileSpec &profile, int d) {
   const std::string plane{"xyz"[a], ',', "xyz"[b]};
   Option &row =
       rows.add(std::string("profile_") + "xyz"[d], "length",
-               std::string("flow along ") + "xyz"[d] + ", at the centres of the cells: averaged over planes, " +
-                   "or along the line through " + plane);
+               std::string("profile of the flow along ") + "xyz"[d] +
+                   ", at the centres of the cells: averaged over planes, " + "or along the line through " + plane);
   row.accepted = "mean, or 2 numbers " + plane;
   row.default_note = "none";
   row.read = [&profile, a, b](const std::string &value) {
@@ -172,7 +177,8 @@ void add_profile(Rows &rows, ProfileSpec &profile, int d) {
 
 void add_samples(Rows &rows, Config &config) {
   SampleControl &samples = config.samples;
-  Option &probes = rows.add("probe_points", "length", "points where probes.csv records the flow, with series.csv");
+  Option &probes =
+      rows.add("probe_points", "length", "points at which probes.csv records the flow, with each row of series.csv");
   probes.accepted = "points x,y,z separated by colons, x,y,z:x,y,z";
   probes.default_note = "none";
   probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
@@ -183,18 +189,18 @@ void add_samples(Rows &rows, Config &config) {
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
   rows.real("profile_interval", samples.profile_interval, not_negative, "time",
-            "time between profiles, the start and the end included; 0 = only at the end");
+            "time between profiles, which are also written at the start and the end; 0 = only at the end");
 }
 
 void add_output(Rows &rows, Config &config) {
   rows.group = "Output";
   OutputControl &output = config.output;
-  rows.path("output_dir", output.directory, "directory of everything that is written");
+  rows.path("output_dir", output.directory, "directory of all output");
   rows.boolean("output_overwrite", output.overwrite,
-               "replaces the run that -output_dir holds; counts only on the command line, not in a file of options")
+               "replace the run in -output_dir; accepted on the command line only")
       .command_line = true;
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
-            "time between snapshots, the start and the end included; 0 = none");
+            "time between snapshots, which are also written at the start and the end; 0 = none");
   rows.choice(
       "snapshot_times", output.snapshot_exact, {"steps", "exact"},
       "steps: of the first step at or after each multiple of the interval; exact: interpolated to the multiple");
@@ -207,7 +213,7 @@ void add_output(Rows &rows, Config &config) {
       "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later; vti: also a "
       "file for each that every version of VTK and ParaView reads, with the wall shear stress always");
   rows.real("series_interval", output.series_interval, not_negative, "time",
-            "time between lines of series.csv; 0 = default")
+            "time between rows of series.csv; 0 = default")
       .default_note = "time_end/200";
   add_samples(rows, config);
 }
@@ -217,19 +223,20 @@ void add_checkpoints(Rows &rows, Config &config) {
   CheckpointControl &checkpoint = config.checkpoint;
   const std::size_t regular = rows.rows.size();
   rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
-            "simulated time between checkpoints; 0 = none but by wall time and before the end");
+            "simulated time between checkpoints; 0 = only by wall time and at the end");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
-            "wall time between checkpoints; 0 = none but by simulated time and before the end");
+            "wall time between checkpoints; 0 = only by simulated time and at the end");
   for (std::size_t r = regular; r < rows.rows.size(); ++r) {
     rows.rows[r].only_with = "-checkpoint_keep > 0";
     rows.rows[r].applies = [&checkpoint] { return checkpoint.keep > 0; };
   }
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
-               "checkpoints that stay; a run that ends well leaves one of its end, with 0 none");
+               "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
-            "wall time after which a checkpoint is written and the run ends; 0 = never");
-  rows.path("restart", checkpoint.restart,
-            "checkpoint, or output directory whose newest good one is taken; in the same -output_dir its files go on");
+            "wall time after which the run writes a checkpoint and ends; 0 = no limit");
+  rows.path(
+      "restart", checkpoint.restart,
+      "checkpoint, or output directory, whose newest intact one is used; in the same -output_dir files are continued");
 }
 
 void add_guards(Rows &rows, Config &config) {
@@ -242,23 +249,23 @@ void add_guards(Rows &rows, Config &config) {
   rows.real("guard_volume_drift", guard.volume_drift, not_negative, "", "relative change of the volume of any body");
   rows.real(
       "guard_energy_growth", guard.energy_growth, not_negative, "",
-      "energy that a run makes of its own within any time, per energy that it held at the beginning of that time and "
-      "was supplied with since");
+      "energy made by the numerics within any time, relative to the energy held at its beginning and supplied since");
   rows.real("guard_memory", guard.memory, not_negative, "",
-            "memory that the ranks of a node need, per memory it has; looked at before the start");
+            "memory that the ranks of a node need, relative to its physical memory; checked before the start");
 }
 
 void add_program(Rows &rows, Config &config) {
   rows.group = "Program";
-  rows.boolean("check_only", config.check_only, "validate, print derived numbers and stop");
+  rows.boolean("check_only", config.check_only, "validate the case, print derived numbers and stop");
   rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
-                "with -check_only: as if the run had so many ranks; 0 = those of mpiexec, as a run has");
-  rows.boolean("print_options", config.print_options, "validate, print every option as resolved and stop");
-  rows.add("options_file", "", "options of another file; those of this file win").accepted =
+                "number of ranks that -check_only assumes; 0 = those of mpiexec");
+  rows.boolean("print_options", config.print_options,
+               "validate the case, print every option with its resolved value and stop");
+  rows.add("options_file", "", "file of options to include; options of the including file override it").accepted =
       "only in an options file; a path, from the directory of this file";
   rows.add("help", "",
-           "print all options and stop; -help WORD those with this word in name, text or values; -help markdown prints "
-           "docs/options.md, -help man a page for man; -h a few lines")
+           "print all options and stop; -help WORD: those with this word in name, text or values; -help markdown: "
+           "docs/options.md; -help man: a manual page; -h: a summary")
       .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
 }
@@ -269,7 +276,7 @@ void add_running(Rows &rows, Config &config) {
   rows.group = "Time";
   rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
   rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
-  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "stop after so many steps; 0 = no limit");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "largest number of steps; 0 = no limit");
   add_output(rows, config);
   add_checkpoints(rows, config);
   add_guards(rows, config);

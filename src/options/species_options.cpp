@@ -18,12 +18,13 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
     rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
   };
   rows.choice("shape", spec.shape, shape_names,
-              "shape; tubes: all outside of a lumen; voxels: from a file; in 2-D its cut at z = 0; state: as in "
-              "-initial_state, then the "
-              "default")
+              "shape of the bodies; tube: everything outside a lumen; voxels: from a file; state: as in "
+              "-initial_state, and "
+              "the default with it; in 2-D the section of the shape at z = 0")
       .required = !from_state;
-  rows.real("radius", spec.radius, positive, "length", "radius, of tubes that of the lumen").required = true;
-  Option &diameter = rows.real("diameter", spec.radius, positive, "length", "another way to give the radius");
+  rows.real("radius", spec.radius, positive, "length", "radius of the body, of a tube that of the lumen").required =
+      true;
+  Option &diameter = rows.real("diameter", spec.radius, positive, "length", "diameter, instead of the radius");
   diameter.alias_of = rows.prefix + "radius";
   diameter.text = nullptr;
   diameter.read = [read = diameter.read, &spec](const std::string &value) {
@@ -32,17 +33,18 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
     return wrong;
   };
   for_shapes(2, {Shape::sphere, Shape::biconcave, Shape::cylinder, Shape::tube, Shape::constricted_tube});
-  rows.real("throat_radius", spec.throat_radius, positive, "length", "radius of the lumen where it is narrowest")
+  rows.real("throat_radius", spec.throat_radius, positive, "length", "radius of the lumen at its narrowest position")
       .required = true;
   rows.real("throat_length", spec.throat_length, positive, "length",
-            "length of the constriction, around the centre, in the form of a cosine")
+            "length of the constriction, a cosine around the centre")
       .required = true;
   for_shapes(2, {Shape::constricted_tube});
   rows.real("semi_axes", spec.semi_axes, positive, "length", "semi-axes along x, y, z").required = true;
   for_shapes(1, {Shape::ellipsoid});
   rows.choice("axis", spec.axis, {"x", "y", "z"}, "axis of symmetry, or normal of a slab");
   for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab, Shape::tube, Shape::constricted_tube});
-  rows.real("interval", spec.interval, any_number, "length", "low and high side of the slab").required = true;
+  rows.real("interval", spec.interval, any_number, "length", "coordinates of the low and the high face of the slab")
+      .required = true;
   for_shapes(1, {Shape::slab});
   const std::size_t voxels = rows.rows.size();
   add_voxel_rows(rows, spec.voxels);
@@ -55,22 +57,23 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   };
   rows.choice(
       "law", spec.law, law_names,
-      "constitutive law: sigma = G B, or 2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B, without the trace; or an "
-      "elastic membrane around a fluid; red_cell: a membrane with the numbers of a red blood cell in um, us and "
-      "1 mPa s, -NAME_shape biconcave and -NAME_viscosity 6, each for its option to overrule");
+      "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
+      "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
+      "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
   rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
       .required = true;
   for_law(1, {Law::neo_hookean});
   rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
       .required = true;
   rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
-  rows.real("c3", spec.c3, not_negative, "pressure", "third coefficient: stiffens with the square of the strain");
+  rows.real("c3", spec.c3, not_negative, "pressure",
+            "third coefficient, which stiffens the body with the square of the strain");
   for_law(3, {Law::mooney_rivlin});
   rows.choice("membrane", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
   rows.choice(
       "membrane_scheme", spec.membrane.scheme, membrane_scheme_names,
-      "what remembers the shape of a membrane at rest: material points on its surface, or its strain on the grid "
-      "alone, which fades");
+      "storage of the undeformed shape of a membrane: markers, material points on its surface; grid, the strain on the "
+      "grid alone, which is diffusive");
   rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
             "shear modulus G_s of a membrane")
       .required = true;
@@ -78,24 +81,26 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("area_modulus", spec.membrane.area_modulus, not_negative, "",
             "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; that of neo_hookean is 3 G_s");
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
-            "area of a membrane at the start over that at rest");
+            "initial area of a membrane relative to its undeformed area");
   rows.real("bending_modulus", spec.membrane.bending_modulus, not_negative, "energy",
             "E_b of the bending energy E_b/2 (kappa - c0)^2 per area of a membrane, kappa the sum of its principal "
             "curvatures");
   rows.real("spontaneous_curvature", spec.membrane.spontaneous_curvature, any_number, "1/length",
-            "c0: of a ball with the radius 2/c0, in 2-D of a disc with 1/c0, it is that at rest");
+            "c0 of the bending energy; a sphere of radius 2/c0, in 2-D a disc of radius 1/c0, has none");
   rows.real("stretch_force", spec.stretch_force.force, not_negative, "force",
-            "pulls both ends of every body apart along x, as optical tweezers do; 2-D: per depth");
+            "force that pulls the two ends of every body apart along x, as optical tweezers do; 2-D: per depth");
   rows.real("stretch_volume", spec.stretch_force.volume, {0, true, 0.5}, "",
-            "the part of its volume at each end that -NAME_stretch_force pulls; of a red cell the outer half um");
+            "share of the volume at each end on which -NAME_stretch_force acts; for a red cell the default is the "
+            "outer half um");
   for_law(9, {Law::membrane, Law::red_cell});
   Option &area_modulus = rows.rows[modulus];
   area_modulus.only_with = "-" + rows.prefix + "membrane skalak";
   area_modulus.applies = [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; };
   const std::size_t first = rows.rows.size();
-  rows.real("velocity", spec.motion.velocity, any_number, "length/time",
-            "velocity V cos(frequency t + phase) of a rigid body, which travels through the grid (a slab: along its "
-            "axis, as a piston), or slides along itself: tube, cylinder along its axis, slab in its plane");
+  rows.real(
+      "velocity", spec.motion.velocity, any_number, "length/time",
+      "velocity V cos(frequency t + phase) of a rigid body, which moves through the grid (a slab along its axis, as a "
+      "piston) or slides along its own surface: tube and cylinder along the axis, slab in its plane");
   rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
   rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
   rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
@@ -127,18 +132,18 @@ void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
 
 void add_body_force(Rows &rows, SpeciesSpec &spec) {
   rows.real("body_force", spec.body_force.force, any_number, "length/time^2",
-            "force per mass on these bodies alone, F cos(frequency t + phase)");
+            "force per mass F cos(frequency t + phase) on the bodies of this species only");
   rows.real("body_force_frequency", spec.body_force.frequency, not_negative, "1/time", "angular frequency");
   rows.real("body_force_phase", spec.body_force.phase, any_number, "rad", "phase");
 }
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {
   Option &row = rows.add("contact", "",
-                         "bodies of this species that touch stay separate, each in a box of cells of its own, or "
-                         "merge as drops do");
+                         "whether bodies of this species that touch stay separate, each in a box of cells of its own, "
+                         "or merge as drops do");
   row.accepted = "one of separate, merge";
   row.default_note =
-      "separate; merge where bodies have no boxes: with -interface_scheme weno5, cylinders, bodies attached to walls, "
+      "separate; merge where bodies have no boxes: with -interface_scheme weno5, cylinders, bodies anchored to walls, "
       "-body_series false";
   row.read = [&spec](const std::string &value) {
     int index = 0;
@@ -151,7 +156,7 @@ void add_contact(Rows &rows, SpeciesSpec &spec) {
 
 // 3 integers for a lattice, 1 for bodies at random: read before it is known which.
 void add_count(Rows &rows, SpeciesSpec &spec) {
-  Option &count = rows.add("count", "", "bodies along x, y, z of a lattice, or all bodies placed at random");
+  Option &count = rows.add("count", "", "number of bodies along x, y, z of a lattice, or of all bodies at random");
   count.accepted = "with lattice 3 integers >= 1, separated by commas, with random an integer >= 0";
   count.default_note = "1,1,1 with lattice";
   count.read = [&spec](const std::string &value) {
@@ -189,43 +194,41 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   };
   rows.choice("placement", spec.placement, placement_names,
               "one body, a list of bodies, a lattice that fills the box, or random without overlap");
-  Option &centre =
-      rows.real("centre", spec.centre, any_number, "length",
-                "centre of the body, of the lumen, of its throat; rigid voxels: what they turn and have their torque "
-                "about");
+  Option &centre = rows.real(
+      "centre", spec.centre, any_number, "length",
+      "centre of the body, of the lumen or of its constriction; for rigid voxels the centre of rotation and torque");
   centre.default_note = "centre of the box";
   centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab, state and soft voxels";
   centre.applies = [&spec] {
     const bool placed = spec.shape != Shape::slab && spec.shape < Shape::voxels;
     return spec.placement == Placement::one && (placed || (spec.shape == Shape::voxels && spec.law == Law::rigid));
   };
-  Option &positions =
-      rows.path("positions", spec.positions_file,
-                "file with the bodies: rows of x,y,z, or of x,y,z and angles in degrees (docs/howto/numbers.md)");
+  Option &positions = rows.path("positions", spec.positions_file,
+                                "file with rows of x,y,z, or of x,y,z and angles in degrees (docs/howto/numbers.md)");
   positions.required = true;
   positions.names_file = any_file;
   for_placement(1, {Placement::list});
   add_count(rows, spec);
   for_placement(1, {Placement::lattice, Placement::random});
   rows.real("jitter", spec.jitter, {0, false, 1}, "",
-            "random displacement, in parts of what is free between bodies of the lattice");
+            "random displacement, relative to the free distance between bodies of the lattice");
   for_placement(1, {Placement::lattice});
   Option &hematocrit = rows.real("hematocrit", spec.hematocrit, {0, false, 1}, "",
-                                 "volume of the bodies in that of the tube or the box, less slabs and bodies from "
-                                 "files; instead of count");
+                                 "volume of the bodies relative to that of the tube, or of the box less slabs and "
+                                 "bodies from files; instead of the count");
   hematocrit.default_note = "none";
   hematocrit.text = [&spec] { return spec.hematocrit < 0 ? std::string() : to_text(spec.hematocrit); };
-  Option &inside =
-      rows.path("inside", spec.inside,
-                "species of tubes or voxels that the bodies are in; out of the solid of voxels they keep anyway");
+  Option &inside = rows.path(
+      "inside", spec.inside,
+      "species of a tube or of voxels in which the bodies are placed; they avoid the solid of voxels in any case");
   inside.accepted = "the name of a species of tubes or voxels";
   inside.default_note = "the only tube, or none";
   rows.real("gap", spec.gap, not_negative, "length",
-            "least distance between bodies; half of it to walls, of membranes a cell at least")
-      .default_note = "0; of membranes the spacing of the grid";
+            "least initial distance between bodies, and half of it to walls; membranes: at least a cell to walls")
+      .default_note = "0; for membranes the spacing of the grid";
   for_placement(3, {Placement::random});
   add_orientation(rows, spec);
-  Option &seed = rows.integer("seed", spec.seed, {0, false}, "another seed is another scene");
+  Option &seed = rows.integer("seed", spec.seed, {0, false}, "seed of the random numbers");
   seed.only_with =
       "-" + rows.prefix + "placement random, -" + rows.prefix + "orientation random or -" + rows.prefix + "jitter";
   seed.applies = [&spec] { return spec.placement == Placement::random || spec.random_orientation || spec.jitter > 0; };
@@ -247,8 +250,8 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   add_body_force(rows, spec);
   rows.real(
       "initial_stretch", spec.initial_stretch, positive, "",
-      "principal stretches l along the body's own x, y, z, which -NAME_orientation turns: B = R diag(l^2) R^T, of "
-      "a membrane what that makes of its surface; the shape is given in the stretched state");
+      "initial principal stretches l along the axes of the body, which -NAME_orientation rotates: B = R diag(l^2) R^T, "
+      "for a membrane the part along its surface; the given shape is the stretched one");
   for_all_but_rigid(first);
   add_attached_row(rows, spec);
   first = rows.rows.size();

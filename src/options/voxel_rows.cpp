@@ -5,7 +5,7 @@ namespace eulastic {
 void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
   Option &path =
       rows.path("voxels", voxels.path,
-                "volume of solid fractions or a mask (HDF5, NRRD), or a closed surface (STL): docs/voxels.md");
+                "file with solid fractions or a mask (HDF5, NRRD), or a closed surface (STL): docs/voxels.md");
   path.accepted = "a path, of HDF5 also FILE:DATASET";
   path.required = true;
   path.names_file = any_file;
@@ -14,18 +14,19 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
     option.text = [text = option.text, &value] { return value[0] == value[0] ? text() : std::string(); };
   };
   unless_not_given(rows.real("voxels_spacing", voxels.spacing, positive, "length", "size of a voxel; unit of an STL"),
-                   voxels.spacing, "as the file says, else the volume fills the box; 1,1,1 for an STL");
+                   voxels.spacing, "from the file, else the volume fills the box; 1,1,1 for an STL");
   unless_not_given(rows.real("voxels_origin", voxels.origin, any_number, "length",
-                             "where the first voxel begins; where the point 0,0,0 of an STL is"),
-                   voxels.origin, "as the file says if the spacing is its own, else 0,0,0");
-  rows.boolean("voxels_invert", voxels.invert, "what is not solid in the file is the body: the wall around a lumen");
+                             "low corner of the first voxel; position of the point 0,0,0 of an STL"),
+                   voxels.origin, "from the file if the spacing is, else 0,0,0");
+  rows.boolean("voxels_invert", voxels.invert, "exchange solid and fluid of the file, for a mask of a lumen");
 }
 
 void add_attached_row(Rows &rows, SpeciesSpec &spec) {
   bool unused = false;
-  Option &row =
-      rows.boolean("attached", unused,
-                   "a wall that hardly moves (slab, tube, vessel): B is extended linearly, second order at rest");
+  Option &row = rows.boolean(
+      "attached", unused,
+      "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
+      "second order at rest");
   row.default_note = "true for slab and tubes, else false";
   row.read = [&spec](const std::string &value) {
     bool attached = false;

@@ -253,6 +253,74 @@ class Docs(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertRegex(done.stderr, r"\Aevidence: --only nowhere: accepted: grid, .*\n\Z")
 
+    def test_exceptions_to_fast_are_those_of_the_tables(self):
+        """performance.md names in its prose the cases and grids where `classic` is faster or more accurate than `fast`, no others."""
+        text = (ROOT / "docs/performance.md").read_text()
+
+        def rows(name):
+            table = re.search(rf"<!-- table {name} -->(.*?)<!-- end -->", text, re.DOTALL)[1]
+            return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if re.match(r"\| [a-z].*\d", line)]
+        found = set()
+        for case, cells, fast, _, classic, _ in rows("work_precision"):
+            if "-" not in (fast, classic):
+                (error, time), (error_classic, time_classic) = (map(float, re.findall(r"[\d.e+-]+", cell)) for cell in (fast, classic))
+                if error_classic < error or time_classic < time:
+                    found.add(f"{case}, {cells}")
+        race = {(row[0], row[1], row[2]): (float(row[3]), float(row[6])) for row in rows("race")}
+        compared = 0
+        for (case, method, cells), (error, time) in race.items():
+            if method == "classic":
+                other_error, other_time = race[case, "fast", cells]
+                compared += 1
+                if error < other_error or time < other_time:
+                    found.add(f"{case}, {cells}")
+        self.assertGreaterEqual(compared, 5)
+        self.assertEqual(found, set(re.findall(r"`([a-z_0-9 ]+, \d+)`", text)))
+
+    def test_soft_spheres_need_what_their_errors_say(self):
+        """The cells per radius for 1 % of resolution.md and of the note in validation.md follow from the coefficients of S8."""
+        page = (ROOT / "docs/validation.md").read_text()
+        coefficients = dict(re.findall(r"^\| S8 \| Ca 0?(\.\d+): error of D at h, of \(h/R\)\^2 \|(?:[^|]*\|){3} *([\d.]+)", page, re.MULTILINE))
+        cells = {capillary: round((100 * float(c)) ** 0.5) for capillary, c in coefficients.items()}
+        self.assertEqual(sorted(cells), [".05", ".1", ".2"])
+        words = f"{cells['.2']}, {cells['.1']} and {cells['.05']} cells per radius at Ca = .2, .1 and .05"
+        self.assertIn(words, page)
+        self.assertIn(f"{words} (validation, S8)", (ROOT / "docs/howto/resolution.md").read_text())
+
+    def test_durations_agree(self):
+        """README.md, the scripts and the main case give the same durations."""
+        def text(name):
+            return re.sub(r"\s+(# )?", " ", (ROOT / name).read_text())
+        for name in "README.md", "scripts/quickstart", "options/channel_rbc.opts":
+            self.assertRegex(text(name), r"(?i)a quarter of a minute", name)
+        readme, words = text("README.md"), text("scripts/test")
+        self.assertIn("must pass: about ten minutes on two cores, after the build", words)
+        self.assertIn("The tests take about ten minutes after a build", readme)
+        self.assertIn("under five minutes, after the build", words)
+        self.assertIn("`scripts/test --quick` takes less than five minutes", readme)
+        self.assertIn("--full all tests, some hours", words)
+        self.assertIn("`scripts/test --full` runs all tests and takes hours", readme)
+
+    def test_the_note_on_tweezers_is_that_of_its_rows(self):
+        """Validation, V6: the largest error of the axial diameter, and the growth of the area."""
+        page = (ROOT / "docs/validation.md").read_text()
+        axial = re.findall(r"^\| V6 \| axial diameter at \d+ pN, um \|[^|]*\|[^|]*\|([^|]*)\|([^|]*)\|", page, re.MULTILINE)
+        self.assertEqual(len(axial), 6)
+        largest = max(abs(float(reference) - float(ours)) for reference, ours in axial)
+        area = float(re.search(r"^\| V6 \| largest change of the membrane's area \|(?:[^|]*\|){3}([^|]*)\|", page, re.MULTILINE)[1])
+        note = re.findall(r"^- V6: .*", page, re.MULTILINE)[-1]
+        self.assertIn(f"within {largest:.2f} um".replace("0.", "."), note)
+        self.assertIn(f"{100 * area:.1f} %", note)
+
+    def test_kinds_of_boundaries_in_python(self):
+        """The docstring of Run.side names every kind of boundary that the options have."""
+        sys.path.insert(0, str(ROOT / "python"))
+        from eulastic.reading import Run
+        accepted = re.search(r"^\| `-boundary_xmin` \|.*\| one of ([\w, ]+) \|$", (ROOT / "docs/options.md").read_text(), re.MULTILINE)[1]
+        kinds = {kind for kind in accepted.split(", ") if kind != "same"} | {"periodic"}
+        self.assertGreaterEqual(len(kinds), 6)
+        self.assertEqual({kind for kind in kinds if kind in Run.side.__doc__}, kinds)
+
     def test_anchors_exist(self):
         """Links into pages, as GitHub and the site name their headings."""
         def anchors(page):
@@ -280,6 +348,31 @@ class Docs(unittest.TestCase):
         for place in site.rglob("*.html"):
             loaded = re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(https?:[^"]+)"', place.read_text())
             self.assertEqual([url for url in loaded if "canonical" not in url], [], place)
+
+    def test_citations_of_the_method_lead_somewhere(self):
+        """Sections and equations that sources, tests and pages cite stand on one page each, which the index of method.md links."""
+        index = (ROOT / "docs/method.md").read_text()
+        pages_of_method = {path: path.read_text() for path in [ROOT / "docs/method.md", *(ROOT / "docs/method").glob("*.md")]}
+        sections = [int(n) for text in pages_of_method.values() for n in re.findall(r"^## (\d+)\. ", text, re.MULTILINE)]
+        self.assertEqual(sorted(sections), list(range(1, max(sections) + 1)))
+        self.assertEqual([int(n) for n in re.findall(r"^\| \[(\d+)\. ", index, re.MULTILINE)], sorted(sections))
+        tags = [tag for text in pages_of_method.values() for tag in re.findall(r"\\tag\{([^}]*)\}", text)]
+        self.assertEqual(len(tags), len(set(tags)))
+        rows = {tag for row in re.findall(r"^\| \[\d+\..*", index, re.MULTILINE) for tag in re.findall(r"\((\d+[\d,a-z]*)\)", row)}
+        self.assertEqual(rows, set(tags))
+        known = {part for tag in tags for part in tag.split(",")}
+        cited = 0
+        for path in (path for folder in ("src", "tests", "scripts", "docs", "options") for path in sorted((ROOT / folder).rglob("*"))):
+            if not path.is_file() or path.suffix in (".png", ".jpg", ".svg", ".h5", ".stl", ".nrrd") or "__pycache__" in path.parts:
+                continue
+            text = path.read_text(errors="replace")
+            for numbers in re.findall(r"method\.md\)?,? sections? (\d+(?:(?:,| and| to) \d+)*)", text):
+                self.assertLessEqual({int(n) for n in re.findall(r"\d+", numbers)}, set(sections), path)
+                cited += 1
+            for equation in re.findall(r"method\.md\)?, \((\d+[a-z]?)\)", text):
+                self.assertIn(equation, known, path)
+                cited += 1
+        self.assertGreater(cited, 50)
 
     def test_scripts_that_are_mentioned_exist(self):
         for page in pages():

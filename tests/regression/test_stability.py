@@ -40,7 +40,7 @@ class Map(unittest.TestCase):
         done = subprocess.run([ROOT / "scripts/studies/stability/stability_map", "--quick", "--shake", "1", "--group", "flat_cells"],
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertRegex(done.stdout, r"[1-9]\d* scenes at the automatic time step, 0 died")
+        self.assertRegex(done.stdout, r"[1-9]\d* scenes at the automatic time step, 0 failed")
         self.assertEqual((ROOT / "docs/stability.md").read_text(), page)
 
 

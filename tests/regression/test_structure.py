@@ -20,7 +20,7 @@ def files(*rooms):
 
 def text_files():
     tops = [path for suffix in ("md", "txt", "json", "cff") for path in sorted(ROOT.glob("*." + suffix))]
-    return [path for path in tops + files(*ROOMS) if path.suffix not in (".png", ".h5", ".stl", ".nrrd")]
+    return [path for path in tops + files(*ROOMS) if path.suffix not in (".png", ".svg", ".h5", ".stl", ".nrrd")]
 
 
 def includes(path):

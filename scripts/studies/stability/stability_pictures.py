@@ -8,7 +8,7 @@ from matplotlib.patches import Patch  # noqa: E402
 SHEETS = {"flows": ["cavity", "random", "shear", "extension"],
           "bodies": ["cells", "thin", "contact", "stretched", "flat_cells", "solid", "viscosity"],
           "times": ["time_step", "reversing", "layers", "nothing", "long", "corner"]}
-COLOURS = {"lives": "#7fbf7b", "reported": "#fee08b", "energy": "#d73027", "nonfinite": "#67001f", "guard": "#f46d43",
+COLOURS = {"stable": "#7fbf7b", "reported": "#fee08b", "energy": "#d73027", "nonfinite": "#67001f", "guard": "#f46d43",
            "volume": "#b2182b", "phi": "#d6604d", "det B": "#c51b7d", "other": "#542788"}
 
 
@@ -16,7 +16,7 @@ def verdict(scene):
     reason = scene.outcome["reason"]
     if reason:
         return reason if reason in COLOURS else "other"
-    return "reported" if scene.outcome["notes"] else "lives"
+    return "reported" if scene.outcome["notes"] else "stable"
 
 
 def draw_group(axis, group, method, scenes):
@@ -54,18 +54,18 @@ def worst(scenes, name, of=max, digits=2):
 
 def table_row(group, method, scenes):
     own = [s for s in scenes if s.group is group and s.method == method and s.automatic]
-    alive = [s for s in own if not s.outcome["reason"]]
-    det = [d for s in alive for d in s.outcome["det"] or []]
+    stable = [s for s in own if not s.outcome["reason"]]
+    det = [d for s in stable for d in s.outcome["det"] or []]
     forgetful = [s.outcome for s in own if s.outcome.get("forgotten")]
     forgot, least = len(forgetful), f"{min(o['stretch'] for o in forgetful):.2g}" if forgetful else ""
-    return (f"| {group.title} | {method} | {len(alive)} | {sum(bool(s.outcome['notes']) for s in alive)} | "
-            f"{len(own) - len(alive)} | {worst(own, 'energy', digits=3)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
+    return (f"| {group.title} | {method} | {len(stable)} | {sum(bool(s.outcome['notes']) for s in stable)} | "
+            f"{len(own) - len(stable)} | {worst(own, 'energy', digits=3)} | {worst(own, 'phi')} | {worst(own, 'volume')} | "
             + (f"{min(det):.2g} ... {max(det):.2g}" if det else "") + f" | {worst(own, 'stretch')} | {forgot} | {least} |")
 
 
 def write_table(scenes, path):
     """Between the two marks in the file: a row per group and method, of the scenes at the automatic time step. Rows of
-    groups that are not among `scenes` stay as they are."""
+    groups that are not among `scenes` are kept."""
     before, rest = path.read_text().split("<!-- table -->\n")
     old, after = rest.split("<!-- end of table -->\n")
     groups = {s.group.name: s.group for s in scenes}
@@ -73,11 +73,11 @@ def write_table(scenes, path):
     for group in groups.values():
         for method in ("fast", "classic"):
             rows["| " + group.title, method] = table_row(group, method, scenes)
-    died = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
-    died += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
+    failed = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
+    failed += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
-    lines = ["| scenes | method | live | of them reported | die | energy | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
+    lines = ["| scenes | method | stable | of them reported | failed | energy | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
-             f"{count} scenes at the automatic time step (up to 1.2 of it), {len(died)} die" + (":" if died else "."),
-             *[""] * bool(died), *died]
+             f"{count} scenes at the automatic time step (up to 1.2 of it), {len(failed)} failed" + (":" if failed else "."),
+             *[""] * bool(failed), *failed]
     path.write_text(before + "<!-- table -->\n" + "\n".join(lines) + "\n<!-- end of table -->\n" + after)

@@ -108,28 +108,29 @@ def draw(cases, results, path):
 
 PAGE = """# Validation
 
-Written by `scripts/validate`; do not edit. It runs every case below with the program, from the files of options/, and
-compares what the run wrote with exact solutions or published references; it exits with 1 if a row fails. Finished
-runs are kept in build/validation, a killed one goes on. A row that misses its tolerance for a reason that is known
-("What is known") has a bound of its own, "kept", and fails beyond that.
+Written by `scripts/validate`; do not edit. This page is for readers who want to know how accurate the program is: it
+compares results with exact solutions and published references. The script runs every case below from the files of
+options/ and exits with 1 if a row fails. Finished runs are kept in build/validation, and an interrupted run is continued.
+A row that misses its tolerance for a known reason (see the end of the table) has another bound, "kept", and fails
+beyond that.
 
-    scripts/validate              # everything: hours
+    scripts/validate              # all cases: hours
     scripts/validate --quick      # a short form of every reference, part of scripts/test --full
     scripts/validate --only S6
-    scripts/validate --only S6 --update       # and puts its rows into this page
+    scripts/validate --only S6 --update       # also writes its rows into this page
 
-"at" is the finest grid: cells in a direction; in S8 cells per radius and size of the box in radii. Its errors on the
-coarser grids stand in front of it, with the observed order. Errors in % are relative. A tolerance follows from theory
-(the formula stands beside it, "twice" is a factor for what it leaves out), from the error of the reference, or it is
-"asked for": set without a theory. Those that depend on the grid are those of that grid. Rows without a tolerance are reported, not judged: numbers of the classic method beside those
-of the fast one. The cases, with their options, formulas and sources, are in
-scripts/studies/validation.
+"at" is the finest grid: cells in a direction; in S8 cells per radius and the size of the box in radii. The errors on
+coarser grids precede that of the finest one, with the observed order. Errors in % are relative. A tolerance follows from
+theory (the formula is given; "twice" is a factor for neglected terms), from the error of the reference, or it is "asked
+for", that is, set without a theory. A tolerance that depends on the grid is that of the grid in the row. Rows without a
+tolerance are reported, not judged: results of the classic method for comparison with the fast one. The cases, with their
+options, formulas and sources, are in scripts/studies/validation.
 
 {counts}
 
 {made}{table}
 
-## What is known about misses and limits
+## Known misses and limits
 
 {notes}
 {plots}"""
@@ -163,5 +164,5 @@ def write_page(rows, titles, pictures, path, made=None):
                     for name, picture in pictures.items())
     notes = "\n".join(f"- {name}: {text}" for name, text in NOTES.items() if name in titles)
     since = "".join(f"- {name}: {text}\n" for name, text in (made or {}).items())
-    since = f"Rows of these cases are newer than the page:\n\n{since}\n" if since else ""
+    since = f"The rows of these cases are newer than the others:\n\n{since}\n" if since else ""
     path.write_text(PAGE.format(notes=notes, counts=counts + ".", made=since, table=table(rows), plots=plots))

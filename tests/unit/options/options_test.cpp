@@ -223,7 +223,8 @@ TEST(Options, WhatHasLostItsMeaningIsDropped) {
   ASSERT_EQ(result.error, "");
   ASSERT_EQ(result.warnings.size(), 2U);
   EXPECT_EQ(result.warnings[0],
-            "-wall_ymax_velocity (" + file.path() + ":5): dropped, as it has a meaning only with -boundary_y wall");
+            "-wall_ymax_velocity (" + file.path() +
+                ":5): dropped, as it has a meaning only with -boundary_y wall or -boundary_ymax wall");
   EXPECT_EQ(result.warnings[1],
             "-pressure_ksp_rtol (" + file.path() + ":3): dropped, as it has a meaning only with -pressure_solver ksp");
   EXPECT_EQ(result.config.sides[1][1].motion.velocity, Real3{});
@@ -330,6 +331,15 @@ TEST(Options, HelpListsWhatIsOfAllSidesOnce) {
   const std::string some = parse_line("-help wall_x").message;
   EXPECT_NE(some.find("  -wall_SIDE_velocity"), std::string::npos) << some;
   EXPECT_NE(some.find("      SIDE: xmin, xmax\n"), std::string::npos) << some;
+  EXPECT_NE(some.find("only with -boundary_SIDE wall "), std::string::npos) << some;
+}
+
+TEST(Options, WallsOfOneBoundaryMayMove) {
+  const ParseResult result =
+      parse_line("-time_end 1 -boundary_ymin wall -boundary_ymax symmetry -wall_ymin_velocity 1,0,0");
+  EXPECT_EQ(result.error, "");
+  EXPECT_EQ(result.config.sides[1][0].motion.velocity[0], 1);
+  EXPECT_NE(help_markdown().find("only with -boundary_y wall or -boundary_ymin wall"), std::string::npos);
 }
 
 TEST(Options, HelpAndVersionWinOverErrors) {

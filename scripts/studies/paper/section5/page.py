@@ -17,39 +17,40 @@ WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 
 PAGE = """# Red cells and platelets in a capillary
 
-Written by `scripts/studies/paper/paper_section5`; do not edit. Section 5 of Sugiyama et al. (HPCS 2013), red cells and platelets in
-an elastic vessel at hematocrits of 0, 5, 10, 15 and 20 %, at a size for two cores instead of the K computer:
+Written by `scripts/studies/paper/paper_section5`; do not edit. This page repeats section 5 of Sugiyama et al. (HPCS 2013)
+for readers who want to see what the program computes for blood: red cells and platelets in an elastic vessel at hematocrits of 0, 5, 10,
+15 and 20 %, at a size for two cores instead of the K computer:
 
-    scripts/studies/paper/paper_section5                # everything: about an hour; called again, it goes on
-    scripts/studies/paper/paper_section5 --finished     # run nothing: the page of what is there
-    scripts/studies/paper/paper_section5 --only h20     # of {cases}
+    scripts/studies/paper/paper_section5                # all runs: about an hour; the same command continues after an interruption
+    scripts/studies/paper/paper_section5 --finished     # no runs: writes the page from the finished ones
+    scripts/studies/paper/paper_section5 --only h20     # one of {cases}
 
 The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (tube) in a box of {cells} cells of
-{spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest; lengths in µm,
-times in µs, density 1; they end at {end:g}. Red cells are biconcave, 8 µm wide; platelets {platelets} ellipsoids of 2 x 2 x 1.6 µm that begin at the
-same places whatever the hematocrit. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's
-own case, a vessel of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is
-options/capillary_paper.opts: `-check_only` says what it takes, {memory} of memory and about {time} of one core.
+{spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest. Lengths are in µm, times in µs, and the
+density is 1; the runs end at {end:g}. Red cells are biconcave solids, 8 µm wide. The {platelets} platelets are ellipsoids of 2 x 2 x 1.6 µm, which start from
+the same positions at all hematocrits. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's own case, a vessel
+of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is options/capillary_paper.opts. `-check_only` estimates
+{memory} of memory and about {time} of one core for it.
 
 {unfinished}## Figure 7: the cells
 
 ![Snapshots at five hematocrits](images/section5_snapshots.png)
 
-*At the beginning and at the end. Of the vessel the far side of the lumen is
-drawn, behind it the velocity along x in the middle plane. Cells that cross a periodic end are cut there and drawn at both.*
+*Cells at the beginning and at the end. The far half of the lumen is drawn, and behind it the velocity along x in the middle plane. Cells that cross a
+periodic end are cut there and drawn at both ends. At 13 cells of the grid per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
 
-## Figure 8: where the platelets are
+## Figure 8: positions of the platelets
 
 ![Distance of platelets from the axis](images/section5_platelets.png)
 
 *Distance of every platelet from the axis, without red cells and with the most of them. The grey line is the wall.*
 
-## Figure 9: how much they fluctuate
+## Figure 9: fluctuation of the platelets
 
 ![Radial velocity of platelets](images/section5_radial_velocity.png)
 
-*Root mean square of the radial velocity over the platelets: in twentieths of the run, and over its last two thirds; bars:
-standard error from the differences between platelets.*
+*Root mean square of the radial velocity over the platelets, in twentieths of the run and over its last two thirds. The bars are
+standard errors from the differences between platelets.*
 
 {trend}
 
@@ -59,28 +60,25 @@ standard error from the differences between platelets.*
 |---|{columns}---|---|
 {checks}
 
-Rows without a verdict are reported. Means are over the last two thirds of a run, stresses those of the last snapshot.
+Rows without a verdict are reported, not judged. Means are over the last two thirds of a run; stresses are those of the last snapshot.
 
-**The wall shear stress** is that at the lumen's surface, which no wall of the grid coincides with. It is taken from the
-fields: on a cylinder of radius r around the axis the mean of sigma_xr = mu du/dr + sum of G phi B_xr over bodies (less
-the flux of momentum), from the staggered velocities and the B of every species in the snapshot, is the force per area
-that what is inside passes on. A steady flow has force x r/2 there, at every r and whatever the bodies do; at the wall
-that is force x diameter/4. It says that the flow is steady, that the stress in momentum equation and bodies is the one
-the fields show, and that no force gets lost at the surface, where half of it is viscous and half elastic in the cell
-that contains it. The force on the walls of the box balances the body force on all that is in the box, the vessel
-included.
+**The wall shear stress** is that at the surface of the lumen, which does not coincide with faces of the grid. It is computed from the fields: the mean over
+a cylinder of radius r around the axis of sigma_xr = mu du/dr + sum of G phi B_xr over bodies, less the flux of momentum, from the staggered
+velocities and the B of every species in the snapshot. In a steady flow this is force x r/2 at every r, independent of the bodies; at the wall it is force x
+diameter/4. The check shows that the flow is steady, that the stresses of the momentum equation are those of the fields, and that no force is lost
+at the surface, where in a cut cell half of the stress is viscous and half elastic. The force on the walls of the box balances the body force on
+everything in the box, including the vessel.
 
-**The wall** is an elastic solid that begins without stress. The sides of the box that it reaches hold it, as they hold
-fluid; there is no spring that pulls it back. The flow shears it by {shear:.2f}, which moves its surface along x by about
-{elastic:.2f} µm where it is thinnest. Cells that pass press on it: the outward displacement of its
-surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is there at the first snapshot
-already; its mean is zero, volume is kept. What cells leave behind must not grow by itself ([method.md](method.md),
-section 7): the rms of the last snapshot is set against that of the first. With cells the wall also creeps a little along
-x: at its mean velocity within two cells of the lumen, {creep:.3f} µm in 1000 µs where it is fastest.
+**The wall** is an elastic solid that is initially without stress. It is held by the boundaries of the box that it reaches; there is no spring that pulls it
+back. The flow shears it by {shear:.2f}, which moves its surface along x by about {elastic:.2f} µm where it is thinnest. Passing cells press on it: the
+outward displacement of its surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is present at the first snapshot already;
+its mean is zero, since volume is conserved. The displacement must not grow by itself ([method.md](method.md), section 7), so that the rms of the last
+snapshot is compared with that of the first. With cells, the wall also creeps slowly along x: at its mean velocity within two cells of the lumen, by
+{creep:.3f} µm in 1000 µs at most.
 
 ![Shares of the shear stress](images/section5_stress.png)
 
-*Shear stress at the distance r from the axis at the end: what viscosity and what elastic bodies carry.*
+*Shear stress at the distance r from the axis at the end: viscous and elastic part.*
 {tube}{flow}"""
 
 FLOW = """
@@ -96,48 +94,48 @@ hematocrit is the red cells' share of the volume that flows.*
 |---|---|---|---|---|---|---|---|---|
 {flow}
 
-"Membranes" are red cells as they are (options/capillary_red_cells_h20.opts): a membrane around a fluid five times as viscous as
-plasma, in the same places at the start; the others are solids as viscous as plasma.
+In the last row red cells are membranes around a fluid five times as viscous as plasma, from the same initial positions
+(options/capillary_red_cells_h20.opts); in all other rows they are solids as viscous as plasma.
 
-Where the gap comes from, by what the runs say themselves:
+The next table shows measures that help to explain the gap:
 
 | hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same places | layer, µm | layer for Pries et al., µm |
 |---|---|---|---|---|---|---|---|
 {layers}
 
-Sixths of the run: from the second on. From the profile: the apparent viscosity of a tube with the cells where they are
-at the end and the local viscosity {local}, H the local share of cells; that is a fit to force x r/2 over
-the slope of u at all radii and later snapshots of all runs with such cells. Blood in the same places: likewise, with the viscosity that
-Pries et al. give for wide tubes. Layer: how wide a layer without cells at the wall would have to be to give the
-apparent viscosity here, the cells evenly in what is left; then likewise for the one of Pries et al. at the discharge
-hematocrit that results. Such a layer is an equivalent, not what the profile looks like.
+- *Apparent viscosity in sixths of the run*: from the second sixth on.
+- *From the profile*: the apparent viscosity of a tube with the final distribution of cells and the local viscosity {local}, where H is
+  the local share of cells. The local viscosity is a fit to force x r/2 over the slope of u at all radii and later snapshots of all runs with such cells.
+- *Blood in the same places*: the same with the viscosity that Pries et al. give for wide tubes.
+- *Layer*: the width of a cell-free layer at the wall that would give the apparent viscosity of the run, with the cells distributed evenly in the remaining lumen; then the
+  same for the value of Pries et al. at the resulting discharge hematocrit. Such a layer is an equivalent, not a feature of the profile.
 
-1. **Where the cells are.** They were seeded in the whole lumen and have not gathered around the axis as in a long tube:
-   the tube hematocrit is too near to that of the discharge, the layer too thin. With the layer of the last column the
-   gap would be closed. {strain:.0f} units of shear at the wall are few for that; the sixths say how far it has come.
-2. **What the cells are.** In the same places blood would flow more easily: a solid cell is a lump of neo-Hookean material as
-   viscous as plasma that cannot tank-tread; few grid cells span a cell's thickness ([dimple.md](dimple.md)), less than one the
-   plasma between two of them.
+Two causes of the gap can be separated:
 
-It is not the vessel: the flow rate of plasma is right to {plasma}.{coarse}
+1. **Positions of the cells.** They were seeded in the whole lumen and have not gathered around the axis as in a long tube: the tube hematocrit is too close to the
+   discharge hematocrit, and the layer is too thin. The layer of the last column would close the gap. {strain:.0f} units of shear at the wall are few for such a migration; the
+   sixths of the run show its progress.
+2. **Properties of the cells.** In the same positions real blood would flow more easily. A solid cell is a neo-Hookean body as viscous as plasma, which cannot tank-tread. Few grid
+   cells span the thickness of a cell ([dimple.md](dimple.md)), and less than one the plasma between two cells.
+
+The vessel is not a cause: the flow rate of plasma alone is correct to {plasma}.{coarse}
 The period, two diameters, has not been varied.
 """
 
 TUBE = """
 ## Plasma alone: Poiseuille's flow in the tube
 
-The same vessel and force without any cell, four cells long, until it is steady; the surface cuts the cells of the grid
-anywhere. tests/convergence/tube_test.cpp asserts the order.
+These runs have the same vessel and force without cells, four grid cells long, until the flow is steady; the surface cuts the grid in all ways.
+tests/convergence/tube_test.cpp asserts the order.
 
 | cells across the lumen | rms error of u | order | error of flow rate | rms velocity of the wall / largest of plasma |
 |---|---|---|---|---|
 {rows}
 
-u: root mean square over the lumen, in parts of the largest; order: from half as many cells, it scatters as the surface
-cuts the cells otherwise; flow rate: relative. From 40 cells on the wall is four cells thick where it is thinnest; in
-two or three the errors are larger than the order says. The last line is `-vessel_attached false`, which treats the wall like a
-free body ([method.md](method.md), section 7): it stands as well, but its surface is of first order and
-the lumen acts as if it were narrower.
+The error of u is the root mean square over the lumen, relative to the largest u; that of the flow rate is relative. The order is taken from half as many cells; it scatters
+because the surface cuts the grid differently. From 40 cells on, the wall is at least four grid cells thick; with two or three the errors are larger than the order suggests. The last
+line has `-vessel_attached false`, which treats the wall like a free body ([method.md](method.md), section 7): it does not move either, but its surface is of first
+order, and the lumen acts as if it were narrower.
 """
 
 
@@ -260,7 +258,7 @@ def grid_effect(runs, coarse):
     def viscosity(pair):
         plasma, blood = (run.series.bulk_velocity_x[(run.series.time >= end / 3) & (run.series.time <= end)].mean() for run in pair)
         return f"{plasma / blood:.3f}"
-    return (f"\nNor is it the grid in the first place: at 10 % the apparent viscosity from {end / 3:.0f} to {end:.0f} is "
+    return (f"\nThe grid is not the main cause either: at 10 % the apparent viscosity from {end / 3:.0f} to {end:.0f} is "
             f"{viscosity(coarse.values())} on {' x '.join(map(str, list(coarse.values())[0].cells))} cells and "
             f"{viscosity(fine.values())} here.")
 
@@ -286,7 +284,7 @@ def tube_rows(tubes):
             errors[cells] = error
         rate = run.series.bulk_velocity_x[-1] * run.length[1] * run.length[2] / measures.poiseuille(run) - 1
         order = f"{math.log2(errors[cells // 2] / error):.2f}" if cells // 2 in errors and name != "free" else ""
-        label = f"{2 * radius / run.spacing[1]:.1f}" + (", not attached" if name == "free" else "")
+        label = f"{2 * radius / run.spacing[1]:.1f}" + (", not anchored" if name == "free" else "")
         yield f"| {label} | {error:.2e} | {order} | {rate:+.2e} | {measures.wall_speed(run)[1]:.0e} |"
 
 
@@ -297,16 +295,14 @@ def trend(runs):
     rms = {case: [1e3 * v for v in measures.radial_rms(run)] for case, run in runs.items()}
     cells = list(rms)[1:]
     value = [rms[c][0] for c in cells]
-    rises = value == sorted(value)
-    words = "grows with every step of hematocrit" if rises else "grows with the hematocrit, though not with every step of it" \
-        if value[-1] > value[0] else "does not grow with the hematocrit beyond that"
-    return (f"In plasma alone platelets stay on their circles: {rms['plasma'][0]:.3f} µm/ms. Red cells push them about, "
-            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast with the fewest cells; the rms {words}: "
+    spread, error = value[-1] - value[0], math.hypot(rms[cells[0]][1], rms[cells[-1]][1])
+    words = "increases with the hematocrit" if spread > 2 * error and value == sorted(value) else \
+        "shows no trend with the hematocrit beyond its standard error"
+    return (f"In plasma alone platelets stay on their circles, with {rms['plasma'][0]:.3f} µm/ms. Red cells push them about "
+            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast already at the lowest hematocrit. Among the runs with red cells the rms {words}: "
             + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
-            + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. That is "
-            "what the paper is about: the motion of the red cells makes the platelets fluctuate"
-            + (", the more the more cells." if rises else ".\nThe order among the hematocrits is within the scatter of so few "
-               "platelets in so short a time."))
+            + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. So the motion "
+            "of the red cells makes the platelets fluctuate, which is the result of the paper.")
 
 
 def other_options(run):
