@@ -1,5 +1,5 @@
 // Adhesion: bonds between receptors of two bodies, or of a body and a wall, that form and break at random and pull as
-// springs; docs/method.md, "Adhesion".
+// springs; docs/method.md, section 21.
 #pragma once
 
 #include "adhesion/receptor_bins.hpp"

@@ -1,5 +1,5 @@
 // A molecular bond as a spring with rates of formation and rupture: Bell (1978), Dembo et al. (1988); docs/method.md,
-// "Adhesion".
+// (37) to (39).
 #pragma once
 
 #include <cmath>
