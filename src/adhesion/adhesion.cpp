@@ -124,32 +124,26 @@ PetscErrorCode Adhesion::find_velocity(const std::vector<Real3> &places, std::ve
   PetscFunctionReturn(0);
 }
 
-// By the midpoint rule, the anchors of bonds with their walls.
+// By the midpoint rule, with the anchors of bonds: on walls the velocity between faces is that of the wall.
 PetscErrorCode Adhesion::move_receptors(double dt) {
   const Domain &domain = flow_.domain;
+  std::vector<double *> moved;
   std::vector<Real3> places, velocities;
   PetscFunctionBeginUser;
-  for (const Receptor &receptor : receptors_)
-    places.push_back({receptor.place[0], receptor.place[1], receptor.place[2]});
+  for (Receptor &receptor : receptors_) moved.push_back(receptor.place);
+  for (Receptor &receptor : receptors_)
+    if (receptor.partner == Receptor::wall) moved.push_back(receptor.anchor);
+  for (const double *place : moved) places.push_back({place[0], place[1], place[2]});
   PetscCall(find_velocity(places, &velocities));
-  for (std::size_t r = 0; r < places.size(); ++r)
-    for (int d = 0; d < 3; ++d) places[r][d] += 0.5 * dt * velocities[r][d];
+  for (std::size_t p = 0; p < places.size(); ++p)
+    for (int d = 0; d < 3; ++d) places[p][d] += 0.5 * dt * velocities[p][d];
   PetscCall(find_velocity(places, &velocities));
-  for (std::size_t r = 0; r < places.size(); ++r) {
-    Receptor &receptor = receptors_[r];
+  for (std::size_t p = 0; p < places.size(); ++p)
     for (int d = 0; d < domain.dimension(); ++d) {
-      receptor.place[d] += dt * velocities[r][d];
+      moved[p][d] += dt * velocities[p][d];
       const double length = domain.spacing()[d] * domain.domain_cells()[d];
-      if (domain.is_wall(d)) receptor.place[d] = std::clamp(receptor.place[d], 0.0, length);
+      if (domain.is_wall(d)) moved[p][d] = std::clamp(moved[p][d], 0.0, length);
     }
-    if (receptor.partner != Receptor::wall) continue;
-    for (const auto [d, high] : domain.sides()) {
-      const double end = high ? domain.spacing()[d] * domain.domain_cells()[d] : 0;
-      if (receptor.anchor[d] != end) continue;
-      const Real3 wall = flow_.spec.sides[d][high].motion.at(flow_.now.time);
-      for (int e = 0; e < 3; ++e) receptor.anchor[e] += dt * wall[e];
-    }
-  }
   PetscFunctionReturn(0);
 }
 
@@ -210,41 +204,74 @@ std::vector<char> Adhesion::find_free() const {
   return free;
 }
 
-// The nearest wall that adheres to its species.
-bool Adhesion::bind_to_wall(double dt, std::size_t r) {
+// Whether a pair is adhesive at a place.
+bool Adhesion::is_in_region(const AdhesionPair &pair, const Real3 &place) const {
   const Domain &domain = flow_.domain;
-  Receptor &receptor = receptors_[r];
+  bool inside = true;
+  for (int d = 0; d < domain.dimension(); ++d) {
+    const double length = domain.spacing()[d] * domain.domain_cells()[d];
+    const double wrapped = domain.is_wall(d) ? place[d] : place[d] - length * std::floor(place[d] / length);
+    inside = inside && wrapped >= pair.low[d] && wrapped <= pair.high[d];
+  }
+  return inside;
+}
+
+// Where a receptor would bind to a wall of the box.
+Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Receptor &receptor) const {
+  const Domain &domain = flow_.domain;
   double nearest = HUGE_VAL;
-  int found = -1;
-  Real3 anchor{};
+  Foot foot;
+  for (const auto [d, high] : domain.sides()) {
+    if (flow_.spec.sides[d][high].kind != SideKind::wall) continue;
+    const double end = high ? domain.spacing()[d] * domain.domain_cells()[d] : 0;
+    const double distance = std::fabs(receptor.place[d] - end);
+    Real3 place{receptor.place[0], receptor.place[1], receptor.place[2]};
+    place[d] = end;
+    if (distance >= nearest || !is_in_region(pair, place)) continue;
+    nearest = distance;
+    foot = {place, 1};
+  }
+  return foot;
+}
+
+// Free receptors and what they may bind to that is no other receptor: the nearest of all pairs.
+PetscErrorCode Adhesion::form_bonds_to_walls(double dt, const std::vector<char> &free) {
+  std::vector<Real3> places;
+  std::vector<double> distances(receptors_.size(), HUGE_VAL);
+  std::vector<Foot> anchors(receptors_.size()), feet(receptors_.size());
+  std::vector<int> pairs(receptors_.size());
+  PetscFunctionBeginUser;
+  for (const Receptor &receptor : receptors_)
+    places.push_back({receptor.place[0], receptor.place[1], receptor.place[2]});
   for (std::size_t p = 0; p < spec_.pairs.size(); ++p) {
     const AdhesionPair &pair = spec_.pairs[p];
-    if (!pair.to_wall() || !pair.has(static_cast<int>(receptor.species))) continue;
-    for (const auto [d, high] : domain.sides()) {
-      if (flow_.spec.sides[d][high].kind != SideKind::wall) continue;
-      const double end = high ? domain.spacing()[d] * domain.domain_cells()[d] : 0;
-      const double distance = std::fabs(receptor.place[d] - end);
-      if (distance > pair.law.reach || distance >= nearest) continue;
-      Real3 foot{receptor.place[0], receptor.place[1], receptor.place[2]};
-      foot[d] = end;
-      bool inside = true;
-      for (int e = 0; e < domain.dimension(); ++e) {
-        const double length = domain.spacing()[e] * domain.domain_cells()[e];
-        const double wrapped = domain.is_wall(e) ? foot[e] : foot[e] - length * std::floor(foot[e] / length);
-        inside = inside && wrapped >= pair.low[e] && wrapped <= pair.high[e];
-      }
-      if (!inside) continue;
-      nearest = distance;
-      found = static_cast<int>(p);
-      anchor = foot;
+    std::vector<char> wanted(free);
+    for (std::size_t r = 0; r < wanted.size(); ++r)
+      wanted[r] = wanted[r] && static_cast<int>(receptors_[r].species) == pair.first;
+    if (is_on_grid(pair)) PetscCall(find_feet(flow_.domain, flow_.now.phases[pair.second], places, wanted, &feet));
+    for (std::size_t r = 0; r < wanted.size() && (pair.to_wall() || is_on_grid(pair)); ++r) {
+      if (!wanted[r]) continue;
+      const Foot foot = pair.to_wall() ? foot_on_wall(pair, receptors_[r]) : feet[r];
+      if (!(foot.found > 0) || !is_in_region(pair, foot.place)) continue;
+      const Real3 way = way_to(receptors_[r], foot.place.data());
+      const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+      if (distance > pair.law.reach || distance >= distances[r]) continue;
+      distances[r] = distance;
+      anchors[r] = foot;
+      pairs[r] = static_cast<int>(p);
     }
   }
-  if (found < 0 || random(r, 1) >= kernels::probability(spec_.pairs[found].law.on_rate(nearest), dt)) return false;
-  receptor.partner = Receptor::wall;
-  receptor.pair = found;
-  receptor.since = flow_.now.time;
-  std::copy_n(anchor.data(), 3, receptor.anchor);
-  return true;
+  for (std::size_t r = 0; r < receptors_.size(); ++r) {
+    if (!(distances[r] < HUGE_VAL)) continue;
+    if (random(r, 1) >= kernels::probability(spec_.pairs[pairs[r]].law.on_rate(distances[r]), dt)) continue;
+    Receptor &receptor = receptors_[r];
+    receptor.partner = Receptor::wall;
+    receptor.pair = pairs[r];
+    receptor.since = flow_.now.time;
+    std::copy_n(anchors[r].place.data(), 3, receptor.anchor);
+    note_formed(r);
+  }
+  PetscFunctionReturn(0);
 }
 
 // The pair by which a receptor binds to the nearest free one of another body within reach, of those after it.
@@ -275,7 +302,7 @@ Adhesion::Candidate Adhesion::nearest_partner(std::size_t r, const ReceptorBins 
 void Adhesion::form_bonds_of_bodies(double dt, const std::vector<char> &free) {
   double reach = 0;
   for (const AdhesionPair &pair : spec_.pairs)
-    if (!pair.to_wall()) reach = std::max(reach, pair.law.reach);
+    if (!pair.to_wall() && !is_on_grid(pair)) reach = std::max(reach, pair.law.reach);
   if (!(reach > 0)) return;
   ReceptorBins bins(flow_.domain, reach);
   for (std::size_t r = 0; r < receptors_.size(); ++r)
@@ -304,12 +331,6 @@ void Adhesion::note_formed(std::size_t r) {
                      static_cast<int>(receptor.pair), 0, 0});
 }
 
-void Adhesion::form_bonds(double dt, const std::vector<char> &free) {
-  for (std::size_t r = 0; r < receptors_.size(); ++r)
-    if (free[r] && bind_to_wall(dt, r)) note_formed(r);
-  form_bonds_of_bodies(dt, free);
-}
-
 PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   if (phases != &flow_.now.phases || receptors_.empty()) PetscFunctionReturn(0);
@@ -319,7 +340,8 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   find_bonds();
   const std::vector<char> free = find_free();
   break_bonds(dt);
-  form_bonds(dt, free);
+  PetscCall(form_bonds_to_walls(dt, free));
+  form_bonds_of_bodies(dt, free);
   find_bonds();
   PetscFunctionReturn(0);
 }
@@ -341,6 +363,17 @@ double Adhesion::shortest_period() const {
     if (rate > 0) shortest = std::min(shortest, 0.2 / rate);
   }
   return periods * shortest;
+}
+
+bool Adhesion::is_on_grid(const AdhesionPair &pair) const {
+  return !pair.to_wall() && !flow_.now.phases[pair.second].boxed;
+}
+
+// Where a bond pulls on the flow with its other end too; null: a wall of the box bears that.
+const double *Adhesion::other_end(const Bond &bond) const {
+  const Receptor &receptor = receptors_[bond.receptor];
+  if (bond.other >= 0) return receptors_[bond.other].place;
+  return is_on_grid(spec_.pairs[static_cast<std::size_t>(receptor.pair)]) ? receptor.anchor : nullptr;
 }
 
 // On the faces around a place, with the weights with which the velocity is read there, so that the power of a force is
@@ -371,7 +404,7 @@ void Adhesion::add(const std::vector<WeightedTarget> &targets) const {
   for (const Bond &bond : bonds_)
     for (const WeightedTarget &target : targets) {
       add_at(receptors_[bond.receptor].place, bond.pull, target.factor * per_mass, target.field);
-      if (bond.other >= 0) add_at(receptors_[bond.other].place, bond.pull, -target.factor * per_mass, target.field);
+      if (const double *end = other_end(bond)) add_at(end, bond.pull, -target.factor * per_mass, target.field);
     }
 }
 
@@ -410,14 +443,17 @@ void Adhesion::mark_forced_rows(std::vector<char> *rows) const {
 
 PetscErrorCode Adhesion::add_power(const FlowLook &, double *power) {
   std::vector<Real3> places, velocities;
+  const auto add_place = [&](const double *place) { places.push_back({place[0], place[1], place[2]}); };
   PetscFunctionBeginUser;
-  for (const Receptor &receptor : receptors_)
-    places.push_back({receptor.place[0], receptor.place[1], receptor.place[2]});
+  for (const Bond &bond : bonds_) {
+    add_place(receptors_[bond.receptor].place);
+    add_place(other_end(bond) ? other_end(bond) : receptors_[bond.receptor].place);
+  }
   PetscCall(find_velocity(places, &velocities));
-  for (const Bond &bond : bonds_)
+  for (std::size_t b = 0; b < bonds_.size(); ++b)
     for (int d = 0; d < 3; ++d) {
-      *power += bond.pull[d] * velocities[bond.receptor][d];
-      if (bond.other >= 0) *power -= bond.pull[d] * velocities[bond.other][d];
+      *power += bonds_[b].pull[d] * velocities[2 * b][d];
+      if (other_end(bonds_[b])) *power -= bonds_[b].pull[d] * velocities[2 * b + 1][d];
     }
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
 
 #include "adhesion/receptor_bins.hpp"
 #include "adhesion/receptors.hpp"
+#include "adhesion/surface_feet.hpp"
 #include "parts/flow.hpp"
 #include "parts/flow_part.hpp"
 
@@ -16,7 +17,7 @@ namespace eulastic {
 struct BondEvent {
   double time;
   bool formed;
-  int body, partner;    ///< numbers of bodies; partner 0: a wall
+  int body, partner;    ///< numbers of bodies; partner 0: a wall or a surface on the grid
   int pair;             ///< of AdhesionSpec::pairs
   double tension, age;  ///< of a bond that breaks
 };
@@ -66,13 +67,15 @@ private:
   /// A bond with its tension: the pull on a receptor, and on the other one, unless that is a wall.
   struct Bond {
     std::size_t receptor;
-    std::ptrdiff_t other;  ///< index; negative: a wall
+    std::ptrdiff_t other;  ///< index; negative: the anchor on a wall or a surface of the grid
     Real3 pull;
     double length, tension;
   };
   /// From a receptor to what it is bound to, the shortest way across periodic sides.
   Real3 way_to(const Receptor &from, const double to[3]) const;
   const kernels::BondLaw &law(const Receptor &receptor) const { return spec_.pairs[int(receptor.pair)].law; }
+  bool is_on_grid(const AdhesionPair &pair) const;
+  const double *other_end(const Bond &bond) const;
   void find_bonds();
   PetscErrorCode find_velocity(const std::vector<Real3> &places, std::vector<Real3> *velocities) const;
   PetscErrorCode move_receptors(double dt);
@@ -80,8 +83,9 @@ private:
   double random(std::size_t receptor, unsigned which) const;
   void break_bonds(double dt);
   std::vector<char> find_free() const;
-  void form_bonds(double dt, const std::vector<char> &free);
-  bool bind_to_wall(double dt, std::size_t receptor);
+  bool is_in_region(const AdhesionPair &pair, const Real3 &place) const;
+  Foot foot_on_wall(const AdhesionPair &pair, const Receptor &receptor) const;
+  PetscErrorCode form_bonds_to_walls(double dt, const std::vector<char> &free);
   struct Candidate;
   Candidate nearest_partner(std::size_t receptor, const ReceptorBins &bins) const;
   void form_bonds_of_bodies(double dt, const std::vector<char> &free);

@@ -13,7 +13,7 @@ struct Receptor {
   double place[3];        ///< not wrapped around periodic sides
   double partner = none;  ///< index of the receptor that it is bound to; `wall`: bound to `anchor`
   double pair = 0;        ///< of AdhesionSpec::pairs, while bound
-  double anchor[3]{};     ///< on a wall
+  double anchor[3]{};     ///< on a wall or a surface of the grid
   double since = 0;       ///< time of formation
 
   bool alive() const { return body > 0; }

@@ -4,11 +4,11 @@ namespace eulastic {
 namespace {
 
 void add_region(Rows &rows, AdhesionPair &pair) {
-  Option &region = rows.add("region", "length", "the box, by its low and high corner, in which a wall is adhesive");
+  Option &region = rows.add(
+      "region", "length",
+      "the box, by its low and high corner, in which a wall or the surface of a rigid or attached species is adhesive");
   region.accepted = several(6, "number", any_number);
-  region.default_note = "all walls";
-  region.only_with = "-adhesion NAME-wall";
-  region.applies = [&pair] { return pair.to_wall(); };
+  region.default_note = "everywhere";
   region.read = [&pair](const std::string &value) {
     double corners[6];
     std::string wrong = read_reals(value, any_number, corners, 6);
