@@ -69,6 +69,33 @@ class Adhesion(SceneCase):
         last = [row for row in bonds if row["time"] == bonds[-1]["time"]]
         self.assertEqual(len(last), len(events) - 2 * sum(not event["formed"] for event in events))
 
+    def test_vessels(self):
+        """Bonds to rigid and elastic vessels: the same on any ranks and after a restart, on the vessel's surface, and where that is in
+        the region alone."""
+        file = self.room / "in_vessel.csv"
+        file.write_text("x,y,z\n3,2.9,6\n9,6,9\n12,9.1,6\n")
+        words = [*("-grid_cells 32,24,24 -grid_length 16,12,12 -boundary_y wall -boundary_z wall -fluid_viscosity 1.2 -body_force 1e-4,0,0 "
+                   "-species vessel,cell -vessel_shape tube -vessel_axis x -vessel_diameter 9 -cell_shape sphere -cell_radius 1.2 "
+                   "-cell_shear_modulus .05 -cell_placement list -adhesion cell-vessel -adhesion_cell_vessel_region 0,0,0,10,12,12 "
+                   "-time_end 60 -snapshot_interval 60 -cell_positions").split(), file, *pair("cell_vessel", density=10, rate_on=.1)]
+        for law in ["-vessel_law", "rigid"], ["-vessel_shear_modulus", ".5"]:
+            name = law[1].strip(".")
+            found = self.run_together({**{f"{name}{n}": ([*words, *law], {"ranks": n}) for n in (1, 2, 3)},
+                                       f"{name}half": ([*words, *law, "-time_steps_max", 12], {"ranks": 2})})
+            found |= self.run_together({f"{name}rest": ([*words, *law, "-restart", self.room / f"{name}half"], {"ranks": 3})})
+            for run, of in found.items():
+                if not run.endswith("half"):
+                    self.assertEqual(of.summary["state_hash"], found[f"{name}1"].summary["state_hash"], run)
+            last = rows_of(self.room / f"{name}1" / FILES[1])
+            self.assertGreater(len(last), 20)
+            self.assertEqual({row["body"] for row in last}, {2, 3})  # the third cell is beside the region
+            for row in last:
+                self.assertAlmostEqual(math.hypot(row["to_y"] - 6, row["to_z"] - 6), 4.5, delta=.25)  # half a cell
+        refused = [word if word != ".8" else "1.1" for word in map(str, [*words, "-vessel_law", "rigid"])]
+        done = subprocess.run([BINARY, *refused], cwd=self.room, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("-adhesion_cell_vessel_reach: 1.1 is more than 2 cells", done.stderr)
+
     def test_files_of_a_run_that_goes_on(self):
         words = self.scene([(3, 1.7, 4)], *SHEAR, "-adhesion", "cell-wall", *pair("cell_wall"), "-time_end", 60, "-series_interval", 3,
                            "-snapshot_interval", 15, "-checkpoint_interval", 10)
