@@ -235,6 +235,16 @@ class Docs(unittest.TestCase):
         two = re.search(r"^\| fast, red cells \|(?:[^|]*\|){2} *([\d.]+) \(", text["performance"], re.MULTILINE)[1]
         self.assertIn(f"two ranks are {two} times as fast as one, at 128^3", readme)
 
+    def test_messages_of_questions_are_those_of_the_program(self):
+        """The longest run of words of every quoted message of questions.md stands in the sources."""
+        joined = "".join(re.sub(r'"\s*\n\s*"', "", path.read_text()) for path in sorted((ROOT / "src").rglob("*.cpp")))
+        rows = re.findall(r"^\| `([^`]+)` ", (ROOT / "docs/howto/questions.md").read_text(), re.MULTILINE)
+        self.assertGreaterEqual(len(rows), 12)
+        for row in rows:
+            words = max(re.findall(r"(?<![\w-])[a-z]+(?: [a-z]+)*(?![\w-])", row), key=len)
+            with self.subTest(message=row, words=words):
+                self.assertTrue(words in joined)
+
     def test_durations_agree(self):
         """README.md, the scripts and the main case give the same durations."""
         def text(name):
