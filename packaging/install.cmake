@@ -9,7 +9,7 @@ install(PROGRAMS scripts/run scripts/plot scripts/render scripts/compare_pressur
 install(FILES scripts/environment scripts/eulastic DESTINATION ${share}/scripts)
 install(DIRECTORY python/eulastic DESTINATION ${share}/python PATTERN __pycache__ EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.jpg PATTERN *.svg)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.jpg PATTERN *.svg PATTERN *.csv)
 file(RELATIVE_PATH cases /${CMAKE_INSTALL_DOCDIR} /${share}/options)  # for links of the documents
 file(CREATE_LINK ${cases} ${PROJECT_BINARY_DIR}/options SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/options DESTINATION ${CMAKE_INSTALL_DOCDIR})

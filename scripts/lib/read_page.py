@@ -1,7 +1,7 @@
 """Reads the commands, files and Python programs in the pages of docs/: for scripts/dev/tutorial and the tests."""
 import re
 
-PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic", "cmake", "git", ".ci/", "sbatch", "srun", "for ", "EULASTIC_MPIEXEC=")
+PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic ", "eulastic-", "cmake", "git", ".ci/", "sbatch", "srun", "for ", "EULASTIC_MPIEXEC=")
 
 
 def blocks(page):

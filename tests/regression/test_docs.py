@@ -278,14 +278,36 @@ class Docs(unittest.TestCase):
         self.assertEqual(found, set(re.findall(r"`([a-z_0-9 ]+, \d+)`", text)))
 
     def test_soft_spheres_need_what_their_errors_say(self):
-        """The cells per radius for 1 % of resolution.md and of the note in validation.md follow from the coefficients of S8."""
-        page = (ROOT / "docs/validation.md").read_text()
+        """The cells per radius for 1 % of resolution.md and of the note on S8 follow from the coefficients of S8."""
+        page = (ROOT / "docs/validation/solids.md").read_text()
         coefficients = dict(re.findall(r"^\| S8 \| Ca 0?(\.\d+): error of D at h, of \(h/R\)\^2 \|(?:[^|]*\|){3} *([\d.]+)", page, re.MULTILINE))
         cells = {capillary: round((100 * float(c)) ** 0.5) for capillary, c in coefficients.items()}
         self.assertEqual(sorted(cells), [".05", ".1", ".2"])
         words = f"{cells['.2']}, {cells['.1']} and {cells['.05']} cells per radius at Ca = .2, .1 and .05"
         self.assertIn(words, page)
         self.assertIn(f"{words} (validation, S8)", (ROOT / "docs/howto/resolution.md").read_text())
+
+    def test_numbers_of_the_front_page_are_those_of_the_tables(self):
+        """Accuracy, speed and scale of README.md."""
+        readme = (ROOT / "README.md").read_text()
+        text = {name: (ROOT / f"docs/{name}.md").read_text() for name in ("validation/membranes", "performance")}
+        errors = re.findall(r"^\| V9 \| [^|]*: D at [^|]*\|(?:[^|]*\|){4} *([\d.]+) % \|", text["validation/membranes"], re.MULTILINE)
+        self.assertGreaterEqual(len(errors), 18)
+        self.assertIn(f"within {max(map(float, errors)):g} % of boundary-integral", readme)
+        sooner = re.search(r"^\| fast \|(?:[^|]*\|){5} *([\d.]+) \|$", text["performance"], re.MULTILINE)[1]
+        self.assertIn(f"{int(float(sooner))} times sooner", readme)
+        two = re.search(r"^\| fast, red cells \|(?:[^|]*\|){2} *([\d.]+) \(", text["performance"], re.MULTILINE)[1]
+        self.assertIn(f"two ranks are {two} times as fast as one, at 128^3", readme)
+
+    def test_messages_of_questions_are_those_of_the_program(self):
+        """The longest run of words of every quoted message of questions.md stands in the sources."""
+        joined = "".join(re.sub(r'"\s*\n\s*"', "", path.read_text()) for path in sorted((ROOT / "src").rglob("*.cpp")))
+        rows = re.findall(r"^\| `([^`]+)` ", (ROOT / "docs/howto/questions.md").read_text(), re.MULTILINE)
+        self.assertGreaterEqual(len(rows), 12)
+        for row in rows:
+            words = max(re.findall(r"(?<![\w-])[a-z]+(?: [a-z]+)*(?![\w-])", row), key=len)
+            with self.subTest(message=row, words=words):
+                self.assertTrue(words in joined)
 
     def test_durations_agree(self):
         """README.md, the scripts and the main case give the same durations."""
@@ -303,7 +325,7 @@ class Docs(unittest.TestCase):
 
     def test_the_note_on_tweezers_is_that_of_its_rows(self):
         """Validation, V6: the largest error of the axial diameter, and the growth of the area."""
-        page = (ROOT / "docs/validation.md").read_text()
+        page = (ROOT / "docs/validation/membranes.md").read_text()
         axial = re.findall(r"^\| V6 \| axial diameter at \d+ pN, um \|[^|]*\|[^|]*\|([^|]*)\|([^|]*)\|", page, re.MULTILINE)
         self.assertEqual(len(axial), 6)
         largest = max(abs(float(reference) - float(ours)) for reference, ours in axial)
