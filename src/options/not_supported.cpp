@@ -36,9 +36,9 @@ const std::vector<std::pair<Words, std::string>> &missing() {
        "eddy is resolved"},
       {{"temperature", "heat", "thermal", "concentration", "diffusion", "scalar", "solute", "salt", "charge"},
        "only velocity, pressure and bodies are computed"},
-      {{"adhesion", "friction", "repulsion", "lubrication", "aggregation"},
-       "bodies in contact are separated by the fluid that the grid resolves between them; there is no other contact "
-       "law"},
+      {{"friction", "repulsion", "lubrication", "aggregation"},
+       "bodies in contact are separated by the fluid that the grid resolves between them, and held together by "
+       "-adhesion; there is no other contact law"},
       {{"refinement", "refine", "amr", "adaptive", "stretching", "grading", "unstructured"},
        "the grid is uniform; -grid_cells and -grid_length"},
       {{"gpu", "cuda", "hip"}, "the program runs on processors only, with ranks of MPI and -threads"},
